@@ -136,11 +136,11 @@ pub struct JobArgs {
     #[arg(long)]
     pub no_refraction: bool,
     /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
-    #[arg(long, allow_negative_numbers = true, value_parser = weight)]
+    #[arg(long = "min-throughput", alias = "weight", value_name = "SHARE", allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
     /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
-    /// --dialect, 1; with --time, no end; with --noise, 4096]
+    /// --dialect, 1; with --time-limit, no end; with --noise-threshold, 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub samples: Option<u32>,
     /// Where samples lie; all but sobol are the course's, with its filters
@@ -160,7 +160,7 @@ pub struct JobArgs {
     pub blur: bool,
     /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
     /// from black to white
-    #[arg(long, value_name = "ERROR", value_parser = noise)]
+    #[arg(long = "noise-threshold", alias = "noise", value_name = "ERROR", value_parser = noise)]
     pub noise: Option<f32>,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
@@ -184,7 +184,7 @@ pub struct WorkArgs {
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
     pub tile: Option<u32>,
     /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration)]
     pub time: Option<Duration>,
     /// Go on with the work that was saved; from the start where none was
     #[arg(long)]
@@ -220,4 +220,34 @@ pub const ERROR: &str = "error";
 
 fn shows() -> Vec<&'static str> {
     std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain([ERROR]).chain(DIAGRAMS).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RenderArgs;
+    use clap::{Args, Command, FromArgMatches};
+
+    #[test]
+    fn options_that_have_other_names_now_keep_the_older_ones() {
+        let command = || RenderArgs::augment_args(Command::new("render"));
+        let read = |option: &str, value: &str| {
+            let matches = command().try_get_matches_from(["render", "scene.txt", option, value]);
+            matches.and_then(|matches| RenderArgs::from_arg_matches(&matches)).unwrap()
+        };
+        for option in ["--min-throughput", "--weight"] {
+            assert_eq!(read(option, "0.5").job.weight, Some(0.5));
+        }
+        for option in ["--noise-threshold", "--noise"] {
+            assert_eq!(read(option, "0.25").job.noise, Some(0.25));
+        }
+        for option in ["--time-limit", "--time"] {
+            assert_eq!(read(option, "90s").work.time, Some(std::time::Duration::from_secs(90)));
+        }
+        let help = command().render_long_help().to_string();
+        for (shown, hidden) in
+            [("--min-throughput <", "--weight "), ("--noise-threshold <", "--noise "), ("--time-limit <", "--time ")]
+        {
+            assert!(help.contains(shown) && !help.contains(hidden), "{shown} {hidden}");
+        }
+    }
 }

@@ -18,7 +18,7 @@ use std::path::Path;
   durer render walk.%04d.txt -o walk.png --frames 1-100
   durer render scene.txt -o picture.png --watch
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
-  durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
+  durer render scene.txt -o picture.exr --noise-threshold 0.01 --time-limit 10m --preview preview.png
   durer render scene.txt -o picture.exr --samples 256 --resume
   durer render scene.txt -o three.part --shard 3/16
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
