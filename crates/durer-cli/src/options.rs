@@ -221,33 +221,3 @@ pub const ERROR: &str = "error";
 fn shows() -> Vec<&'static str> {
     std::iter::once("color").chain(AOVS.iter().map(|aov| aov.name)).chain([ERROR]).chain(DIAGRAMS).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::RenderArgs;
-    use clap::{Args, Command, FromArgMatches};
-
-    #[test]
-    fn options_that_have_other_names_now_keep_the_older_ones() {
-        let command = || RenderArgs::augment_args(Command::new("render"));
-        let read = |option: &str, value: &str| {
-            let matches = command().try_get_matches_from(["render", "scene.txt", option, value]);
-            matches.and_then(|matches| RenderArgs::from_arg_matches(&matches)).unwrap()
-        };
-        for option in ["--min-throughput", "--weight"] {
-            assert_eq!(read(option, "0.5").job.weight, Some(0.5));
-        }
-        for option in ["--noise-threshold", "--noise"] {
-            assert_eq!(read(option, "0.25").job.noise, Some(0.25));
-        }
-        for option in ["--time-limit", "--time"] {
-            assert_eq!(read(option, "90s").work.time, Some(std::time::Duration::from_secs(90)));
-        }
-        let help = command().render_long_help().to_string();
-        for (shown, hidden) in
-            [("--min-throughput <", "--weight "), ("--noise-threshold <", "--noise "), ("--time-limit <", "--time ")]
-        {
-            assert!(help.contains(shown) && !help.contains(hidden), "{shown} {hidden}");
-        }
-    }
-}

@@ -69,3 +69,33 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::RenderCommand;
+    use clap::{Args, Command, FromArgMatches};
+
+    #[test]
+    fn options_that_have_other_names_now_keep_the_older_ones() {
+        let command = || RenderCommand::augment_args(Command::new("render"));
+        let read = |option: &str, value: &str| {
+            let matches = command().try_get_matches_from(["render", "scene.txt", option, value]);
+            matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)).unwrap()
+        };
+        for option in ["--min-throughput", "--weight"] {
+            assert_eq!(read(option, "0.5").render.job.weight, Some(0.5));
+        }
+        for option in ["--noise-threshold", "--noise"] {
+            assert_eq!(read(option, "0.25").render.job.noise, Some(0.25));
+        }
+        for option in ["--time-limit", "--time"] {
+            assert_eq!(read(option, "90s").render.work.time, Some(std::time::Duration::from_secs(90)));
+        }
+        let help = command().render_long_help().to_string();
+        for (shown, hidden) in
+            [("--min-throughput <", "--weight "), ("--noise-threshold <", "--noise "), ("--time-limit <", "--time ")]
+        {
+            assert!(help.contains(shown) && !help.contains(hidden), "{shown} {hidden}");
+        }
+    }
+}
