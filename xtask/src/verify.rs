@@ -8,7 +8,7 @@ use std::process::{Command, ExitCode};
 /// Ways of sampling and rules of stopping; scenes take turns.
 const JOBS: [&str; 5] = [
     "--show color,depth,normals,albedo,sample-count,variance",
-    "--samples 40 --noise 0.03",
+    "--samples 40 --noise-threshold 0.03",
     "--sampler random --samples 9 --filter gaussian",
     "--jitter --blur --crop 9,3,31x29 --show color,position",
     "--filter mitchell --samples 13",

@@ -138,7 +138,7 @@ fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sam
     let sampler = Sampler::from_name(&args.sampler).unwrap_or_default();
     if matches!(sampler, Sampler::Uniform | Sampler::Jittered) && (args.noise.is_some() || timed) {
         return Err(bad(
-            "--noise and --time need a sampler whose first samples are spread over the pixel: sobol or random",
+            "--noise-threshold and --time-limit need a sampler whose first samples are spread over the pixel: sobol or random",
         ));
     }
     let filter = args.filter.as_deref().and_then(Filter::from_name);
@@ -206,7 +206,7 @@ pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
     flags.into_iter().filter(|flag| flag.1).for_each(|flag| add(flag.0.into()));
     let old = asked && loaded.dialect != Dialect::Durer;
     if settings.least_weight != if old { 0.0 } else { 1.0 / 256.0 } {
-        add(format!("--weight {}", settings.least_weight));
+        add(format!("--min-throughput {}", settings.least_weight));
     }
     match job.sampling {
         Sampling::Center if !old => add("--samples 1".into()),

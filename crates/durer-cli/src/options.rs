@@ -136,11 +136,11 @@ pub struct JobArgs {
     #[arg(long)]
     pub no_refraction: bool,
     /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
-    #[arg(long, allow_negative_numbers = true, value_parser = weight)]
+    #[arg(long = "min-throughput", alias = "weight", value_name = "SHARE", allow_negative_numbers = true, value_parser = weight)]
     pub weight: Option<f32>,
 
     /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
-    /// --dialect, 1; with --time, no end; with --noise, 4096]
+    /// --dialect, 1; with --time-limit, no end; with --noise-threshold, 4096]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
     pub samples: Option<u32>,
     /// Where samples lie; all but sobol are the course's, with its filters
@@ -160,7 +160,7 @@ pub struct JobArgs {
     pub blur: bool,
     /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
     /// from black to white
-    #[arg(long, value_name = "ERROR", value_parser = noise)]
+    #[arg(long = "noise-threshold", alias = "noise", value_name = "ERROR", value_parser = noise)]
     pub noise: Option<f32>,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
@@ -184,7 +184,7 @@ pub struct WorkArgs {
     #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
     pub tile: Option<u32>,
     /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
-    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration)]
     pub time: Option<Duration>,
     /// Go on with the work that was saved; from the start where none was
     #[arg(long)]

@@ -18,7 +18,7 @@ use std::path::Path;
   durer render walk.%04d.txt -o walk.png --frames 1-100
   durer render scene.txt -o picture.png --watch
   durer render scene.txt -o picture.exr --size 1920x1080 --samples 64
-  durer render scene.txt -o picture.exr --noise 0.01 --time 10m --preview preview.png
+  durer render scene.txt -o picture.exr --noise-threshold 0.01 --time-limit 10m --preview preview.png
   durer render scene.txt -o picture.exr --samples 256 --resume
   durer render scene.txt -o three.part --shard 3/16
   durer render scene.txt -o picture.png --show color,depth,normals --depth-range 9 10
@@ -66,6 +66,36 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         (None, false) => {
             let sample = command.sample;
             once(args, command.pixel.map(|place| Pixel { place, sample }), &Watched::default())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::RenderCommand;
+    use clap::{Args, Command, FromArgMatches};
+
+    #[test]
+    fn options_that_have_other_names_now_keep_the_older_ones() {
+        let command = || RenderCommand::augment_args(Command::new("render"));
+        let read = |option: &str, value: &str| {
+            let matches = command().try_get_matches_from(["render", "scene.txt", option, value]);
+            matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)).unwrap()
+        };
+        for option in ["--min-throughput", "--weight"] {
+            assert_eq!(read(option, "0.5").render.job.weight, Some(0.5));
+        }
+        for option in ["--noise-threshold", "--noise"] {
+            assert_eq!(read(option, "0.25").render.job.noise, Some(0.25));
+        }
+        for option in ["--time-limit", "--time"] {
+            assert_eq!(read(option, "90s").render.work.time, Some(std::time::Duration::from_secs(90)));
+        }
+        let help = command().render_long_help().to_string();
+        for (shown, hidden) in
+            [("--min-throughput <", "--weight "), ("--noise-threshold <", "--noise "), ("--time-limit <", "--time ")]
+        {
+            assert!(help.contains(shown) && !help.contains(hidden), "{shown} {hidden}");
         }
     }
 }

@@ -22,7 +22,7 @@ use std::sync::atomic::Ordering::Relaxed;
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer verify scene.txt
-  durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise 0.02
+  durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise-threshold 0.02
 
 Ways differ by threads, tile size, shards by tiles or samples, interruptions, the structure that finds what rays
 hit, and the processor's instructions. A small picture is enough; its default is 64x48 with 8 samples.")]

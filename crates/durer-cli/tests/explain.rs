@@ -192,7 +192,7 @@ fn all_that_the_json_has_is_documented() {
         "scene.txt --pixel 20,26 --bounces 1 --samples 1",
         "scene.txt --pixel 0,0 --jitter --blur",
         "scene.txt --pixel 20,13 --sampler random --samples 2 --filter box",
-        "glass.txt --pixel 20,13 --bounces 3 --weight 0.5 --samples 1",
+        "glass.txt --pixel 20,13 --bounces 3 --min-throughput 0.5 --samples 1",
     ] {
         let ran = place.gives(0, &format!("explain {arguments} --json {SMALL}"));
         words(&serde_json::from_str(&ran.out).unwrap(), &mut found);

@@ -50,7 +50,7 @@ fn work_that_was_stopped_is_gone_on_with() {
     let place = Place::new();
     let work = "render scene.txt --size 120x90 --samples 300 --quiet --hash";
     let hash = last_line(&place.gives(0, &format!("{work} -o calm.png")).out);
-    place.gives(0, &format!("{work} --time 30ms --checkpoint c.part -o p.png"));
+    place.gives(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
     // What is there is refused for anything else, and stays.
     let other = |options: &str, words: &[&str]| {
@@ -89,7 +89,7 @@ fn one_pixel_is_told_alone() {
 #[test]
 fn rules_of_stopping_and_limits() {
     let place = Place::new();
-    let ran = place.gives(0, "render scene.txt --size 64x48 --noise 0.005 --show sample-count -o n.exr");
+    let ran = place.gives(0, "render scene.txt --size 64x48 --noise-threshold 0.005 --show sample-count -o n.exr");
     assert_eq!(ran.out, "wrote n.exr\n");
     let counts = place.image("n.exr");
     let most = counts.pixels.iter().fold(0.0_f32, |most, p| most.max(p.x));
@@ -114,9 +114,9 @@ fn rules_of_stopping_and_limits() {
     });
     assert!(bands == whole, "{:?} {:?}", bands.1, whole.1);
     place.refused(2, "render scene.txt --memory 5Q", &["8G"]);
-    place.refused(2, "render scene.txt --noise 0", &["more than 0"]);
-    place.refused(2, "render scene.txt --noise 0.1 --sampler jittered", &["sobol or random"]);
-    place.refused(2, "render scene.txt --time soon", &["--time"]);
+    place.refused(2, "render scene.txt --noise-threshold 0", &["more than 0"]);
+    place.refused(2, "render scene.txt --noise-threshold 0.1 --sampler jittered", &["sobol or random"]);
+    place.refused(2, "render scene.txt --time-limit soon", &["--time-limit"]);
     place.refused(2, "render scene.txt --preview p.xyz", &["p.xyz"]);
     place.refused(2, "render scene.txt --shard 1/2", &["--output"]);
     let many: String =

@@ -45,7 +45,8 @@ fn errors_are_shown_beside_the_work() {
     assert!(text.contains("with 90 % confidence at most"), "{text}");
     place.refused(2, "render glass.txt --integrator whitted --show error -o p.png", &["--show error"]);
     place.refused(2, "render glass.txt --show error --shard 1/2 -o p.part", &["--show error"]);
-    let noise = "render glass.txt --integrator photons --photons 500 --size 16x12 --noise 0.05 --show error -o n.pfm";
+    let noise =
+        "render glass.txt --integrator photons --photons 500 --size 16x12 --noise-threshold 0.05 --show error -o n.pfm";
     place.refused(2, noise, &["--samples"]);
 }
 

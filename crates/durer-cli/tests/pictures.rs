@@ -162,7 +162,7 @@ fn extreme_values_work() {
         "scene.txt --size 20x20 --sampler uniform --samples 4 --filter gaussian --filter-radius 64",
         "scene.txt --threads 1024 --size 2x2",
         "scene.txt --grid 400x400x400 --size 2x2",
-        "scene.txt --weight 1e30 --size 2x2",
+        "scene.txt --min-throughput 1e30 --size 2x2",
         "scene.txt --depth-range -1e38 1e38 --show depth --size 2x2",
         "scene.txt --depth-range 9 -5 --show depth --size 2x2",
     ] {

@@ -1,6 +1,6 @@
 //! `.balls`: four numbers a line, the middle and the radius of a ball.
 
-use super::scene::{Input, SceneFormat};
+use super::model::{Input, SceneFormat};
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::math::Vec3;
 use crate::scene::{Axis, Group, Node, Object, Scene};

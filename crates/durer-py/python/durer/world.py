@@ -37,6 +37,9 @@ _READING = {
 #: Kinds of picture whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
+#: Words of before, and what they are now.
+_OLDER = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
+
 _OPTIONS = {name: (help, value, words) for name, help, value, words in _durer.options() if name not in _SHELL}
 
 
@@ -45,6 +48,7 @@ def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
     words: list[str] = []
     for name, value in options.items():
         option = name.replace("_", "-")
+        option = _OLDER.get(option, option)
         if option not in _OPTIONS or (option in _READING) != reading and (option, reading) != ("size", True):
             known = [n.replace("-", "_") for n in _OPTIONS if (n in _READING) == reading]
             near = difflib.get_close_matches(name, known, 1)
@@ -72,7 +76,7 @@ def _word(option: str, value: Any) -> str:
         if option == "crop" and len(parts) == 4:
             return f"{parts[0]},{parts[1]},{parts[2]}x{parts[3]}"
         return ("," if option in ("show", "compat") else "/" if option == "shard" else "x").join(parts)
-    if option == "time" and isinstance(value, (int, float)):
+    if option == "time-limit" and isinstance(value, (int, float)):
         return f"{round(1000 * value)}ms"
     return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
 
@@ -352,7 +356,7 @@ class World:
         **options: Any,
     ) -> Pictures:
         """Renders pictures. Options are those of `durer render` with the same meaning, defaults and bits: size, samples, show,
-        bounces, crop, noise, time, threads, shard and all others that `durer.options()` lists.
+        bounces, crop, noise_threshold, time_limit, threads, shard and all others that `durer.options()` lists.
 
         `part` goes on with work that was begun; `callback` gets the pictures as far as they are, every so many seconds. Ctrl-C
         and what a callback raises end it; what is made so far is in the part.

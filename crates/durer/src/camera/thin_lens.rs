@@ -4,7 +4,8 @@
 //! the picture. So the ray through a point l of the lens goes to the point where the ray through
 //! its middle meets the plane at the focus distance F:
 //! direction = (F tan(angle / 2) (x + s, y + r) - l, F). A point at distance z is blurred to the
-//! shape of the opening; in a picture of width 2 its diameter is aperture |F - z| / (F z tan(angle / 2)).
+//! shape of the opening; in a picture of width 2 its diameter is
+//! aperture |F - z| / (F z tan(angle / 2)).
 //!
 //! The shift (s, r) moves the film in its plane, as view cameras do: the camera stays level and
 //! sees more above than below, and upright lines stay parallel.

@@ -1,6 +1,6 @@
 //! Where the beams of lights go.
 
-use super::look::{Look, Probe, Seen};
+use super::probes::{Probe, ProbeGrid, Seen};
 use crate::light::{Emitter as _, Light};
 use crate::math::{Ray, Vec3};
 use crate::world::World;
@@ -33,34 +33,34 @@ pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
 }
 
 /// The places that are seen.
-pub(super) fn places(look: &Look) -> Vec<Vec3> {
-    look.seen().map(|(probe, seen): (&Probe, &Seen)| probe.ray.at(seen.t)).collect()
+pub(super) fn places(grid: &ProbeGrid) -> Vec<Vec3> {
+    grid.seen().map(|(probe, seen): (&Probe, &Seen)| probe.ray.at(seen.t)).collect()
 }
 
 /// The share of them that is in the beam of a light.
-pub(super) fn within(look: &Look, light: usize, places: &[Vec3]) -> f32 {
-    let held = places.iter().filter(|place| share(look.world(), light, **place) > IN_BEAM).count();
+pub(super) fn within(grid: &ProbeGrid, light: usize, places: &[Vec3]) -> f32 {
+    let held = places.iter().filter(|place| share(grid.world(), light, **place) > IN_BEAM).count();
     held as f32 / places.len().max(1) as f32
 }
 
 /// Where the beam of a light goes, if it has one and misses what is seen.
-pub(super) fn aim(look: &Look, light: usize) -> Option<Aim> {
-    let angle = match &look.world().lights()[light] {
+pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
+    let angle = match &grid.world().lights()[light] {
         Light::Spot(spot) => spot.angle,
         Light::Photometric(_) => 90.0,
         _ => return None,
     };
-    let places = places(look);
-    let held = within(look, light, &places);
+    let places = places(grid);
+    let held = within(grid, light, &places);
     if places.is_empty() || held > if angle <= PENCIL { LITTLE } else { NOTHING } {
         return None;
     }
-    Some(if angle <= PENCIL && at_something(look, light) { Aim::Narrow } else { Aim::Away })
+    Some(if angle <= PENCIL && at_something(grid, light) { Aim::Narrow } else { Aim::Away })
 }
 
 /// Whether the middle of a beam meets the scene.
-fn at_something(look: &Look, light: usize) -> bool {
-    let Light::Spot(spot) = &look.world().lights()[light] else { return false };
+fn at_something(grid: &ProbeGrid, light: usize) -> bool {
+    let Light::Spot(spot) = &grid.world().lights()[light] else { return false };
     let ray = Ray::new(spot.position, spot.direction.normalize_or(Vec3::NEG_Y));
-    look.world().closest(&ray, &mut ()).is_some()
+    grid.world().closest(&ray, &mut ()).is_some()
 }

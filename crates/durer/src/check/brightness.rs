@@ -1,6 +1,6 @@
 //! How bright the picture is.
 
-use super::look::{Look, Probe};
+use super::probes::{Probe, ProbeGrid};
 use crate::integrator::{Integrate, Path};
 use crate::math::Color;
 use crate::sampler::SampleId;
@@ -12,17 +12,17 @@ const SAMPLES: u32 = 16;
 
 /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them, each
 /// the mean of a few samples.
-pub(super) fn light(look: &Look) -> Vec<Color> {
-    let exposure = look.subject.exposure;
-    let Some(transport) = look.subject.job.method.transport() else {
-        return look.probes.iter().map(|probe| exposure * probe.color).collect();
+pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
+    let exposure = grid.subject.exposure;
+    let Some(transport) = grid.subject.job.method.transport() else {
+        return grid.probes.iter().map(|probe| exposure * probe.color).collect();
     };
-    let job = look.subject.job;
-    let path = Path::new(look.world(), job.settings, transport);
-    let step = look.probes.len().div_ceil(MOST_PIXELS).max(1);
+    let job = grid.subject.job;
+    let path = Path::new(grid.world(), job.settings, transport);
+    let step = grid.probes.len().div_ceil(MOST_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
     let chosen: Vec<&Probe> =
-        look.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
+        grid.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
         let sample = |i: u32| path.radiance(&probe.ray, SampleId::new(job.seed, probe.pixel, i), &mut ());
         let all = (0..SAMPLES).map(sample).filter(|color| color.is_finite());

@@ -99,7 +99,7 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
                 super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
                 super::finding::number(settings.least_weight)
             ),
-            "ask for a smaller one: `--weight 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+            "ask for a smaller one: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
         ),
     };
     let diagnostic = Diagnostic::warning(message)

@@ -4,7 +4,7 @@
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
 use super::lights::place;
-use super::look::Seen;
+use super::probes::Seen;
 use super::scout::Scout;
 use super::verdict::VISIBLE;
 use crate::diag::{Diagnostic, Severity};

@@ -1,7 +1,7 @@
 //! Lenses and eyes: focus, aperture, shift, separation; and what is seen from its edge.
 
 use super::finding::{Finding, number};
-use super::look::{Probe, Seen};
+use super::probes::{Probe, Seen};
 use super::scout::Scout;
 use super::sight::Sight;
 use crate::camera::{Camera, Lens, ThinLensCamera};

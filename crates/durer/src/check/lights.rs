@@ -1,7 +1,7 @@
 //! Lights that do nothing to what is seen, or less than was meant.
 
 use super::finding::{Finding, percent, vector};
-use super::look::Lit;
+use super::probes::Lit;
 use super::scout::Scout;
 use super::verdict::{GRAZING, MOST_JUDGED, VISIBLE, Verdict, most_common};
 use super::within::around;

@@ -2,8 +2,8 @@
 
 use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
-use super::look::{Look, Subject};
 use super::mesh::files::{MeshFile, files};
+use super::probes::{ProbeGrid, Subject};
 use super::sight::{Sight, sights};
 use super::verdict::{Verdict, verdicts};
 use crate::math::Color;
@@ -16,7 +16,7 @@ const DARK: f32 = 0.02;
 /// A scene, and what a coarse look at its picture found.
 #[derive(Debug)]
 pub struct Scout<'a> {
-    look: Look<'a>,
+    grid: ProbeGrid<'a>,
     sights: OnceLock<Vec<Sight>>,
     verdicts: OnceLock<Vec<Verdict>>,
     aims: OnceLock<Vec<Option<Aim>>>,
@@ -26,10 +26,10 @@ pub struct Scout<'a> {
 }
 
 impl<'a> Deref for Scout<'a> {
-    type Target = Look<'a>;
+    type Target = ProbeGrid<'a>;
 
-    fn deref(&self) -> &Look<'a> {
-        &self.look
+    fn deref(&self) -> &ProbeGrid<'a> {
+        &self.grid
     }
 }
 
@@ -37,7 +37,7 @@ impl<'a> Scout<'a> {
     /// Looks at a scene.
     pub fn new(subject: &Subject<'a>) -> Self {
         Scout {
-            look: Look::new(subject),
+            grid: ProbeGrid::new(subject),
             sights: OnceLock::new(),
             verdicts: OnceLock::new(),
             aims: OnceLock::new(),

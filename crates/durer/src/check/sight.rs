@@ -1,6 +1,6 @@
 //! How each object is seen: in the picture, behind another, or not at all.
 
-use super::look::Look;
+use super::probes::ProbeGrid;
 use crate::camera::{Camera, CameraSample, Lens};
 use crate::math::{Aabb, Ray, Vec2, Vec3};
 use crate::shape::Primitive;
@@ -26,26 +26,26 @@ const MOST_CORNERS: usize = 40;
 
 /// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
 /// at.
-pub(super) fn sights(look: &Look) -> Vec<Sight> {
-    let objects = look.world().objects();
+pub(super) fn sights(grid: &ProbeGrid) -> Vec<Sight> {
+    let objects = grid.world().objects();
     let mut sights = vec![Sight::Unknown; objects.len()];
-    look.seen().for_each(|(_, seen)| sights[seen.object as usize] = Sight::Seen);
+    grid.seen().for_each(|(_, seen)| sights[seen.object as usize] = Sight::Seen);
     for (i, object) in objects.iter().enumerate().take(MOST_OBJECTS) {
         if sights[i] != Sight::Seen {
-            sights[i] = sight(look, i as u32, object);
+            sights[i] = sight(grid, i as u32, object);
         }
     }
     sights
 }
 
-fn sight(look: &Look, number: u32, object: &Object) -> Sight {
+fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Sight {
     let points = points(object);
     if points.is_empty() {
         return Sight::Unknown;
     }
     let mut sight = Sight::Outside;
-    for ray in points.iter().flat_map(|&point| rays_to(look, point)) {
-        match look.world().closest(&ray, &mut ()) {
+    for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
+        match grid.world().closest(&ray, &mut ()) {
             Some(hit) if hit.object == number => return Sight::Seen,
             Some(hit) => sight = Sight::Hidden(hit.object),
             None => {}
@@ -55,17 +55,17 @@ fn sight(look: &Look, number: u32, object: &Object) -> Sight {
 }
 
 /// The camera's rays to a point that lies in the picture.
-pub(super) fn rays_to(look: &Look, point: Vec3) -> Vec<Ray> {
-    let (world, mut places) = (look.world(), Vec::new());
+pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
+    let (world, mut places) = (grid.world(), Vec::new());
     world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
-    let corner = corner(look);
+    let corner = corner(grid);
     let inside = places.into_iter().filter(|place| place.abs().cmple(corner).all());
     inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
 }
 
 /// The upper right corner of the picture in the square that the camera covers.
-pub(super) fn corner(look: &Look) -> Vec2 {
-    look.raster.point(Vec2::new(look.raster.width as f32, 0.0)).abs()
+pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
+    grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
 }
 
 /// Points of an object in the world: corners of triangles and their middles, else a grid through
@@ -97,13 +97,13 @@ fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
 }
 
 /// Whether the camera sees a place, if nothing is in front of it.
-pub(super) fn aims(look: &Look, place: Vec3) -> bool {
-    !rays_to(look, place).is_empty()
+pub(super) fn aims(grid: &ProbeGrid, place: Vec3) -> bool {
+    !rays_to(grid, place).is_empty()
 }
 
 /// How many pixels of the picture a box spans.
-pub(super) fn pixels(look: &Look, bounds: Aabb) -> Option<f32> {
-    let (world, job) = (look.world(), look.subject.job);
+pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
+    let (world, job) = (grid.world(), grid.subject.job);
     let mut around: Option<(Vec2, Vec2)> = None;
     let mut unseen = 0;
     for point in bounds.corners() {
@@ -117,11 +117,11 @@ pub(super) fn pixels(look: &Look, bounds: Aabb) -> Option<f32> {
     }
     let (min, max) = around.filter(|_| unseen == 0)?;
     // The larger side of the picture spans 2.
-    Some((max - min).max_element() / (2.0 * corner(look).max_element()) * job.width.max(job.height) as f32)
+    Some((max - min).max_element() / (2.0 * corner(grid).max_element()) * job.width.max(job.height) as f32)
 }
 
 /// Whether the camera's rays all start at its place and go one way: those that run both ways see
 /// what is behind as well.
-pub(super) fn has_eye(look: &Look) -> bool {
-    !matches!(look.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
+pub(super) fn has_eye(grid: &ProbeGrid) -> bool {
+    !matches!(grid.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }

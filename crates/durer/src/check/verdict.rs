@@ -1,7 +1,7 @@
 //! What each light does to what is seen, and why it does nothing.
 
 use super::aim::Aim;
-use super::look::{Lit, Look, Seen};
+use super::probes::{Lit, ProbeGrid, Seen};
 use super::within::around;
 use crate::camera::Lens;
 use crate::light::{Emitter as _, Light, PointLight};
@@ -47,25 +47,25 @@ pub(super) enum Verdict {
 }
 
 /// The verdict on each light of the world.
-pub(super) fn verdicts(look: &Look, aims: &[Option<Aim>]) -> Vec<Verdict> {
-    let judged = |light| if light < MOST_JUDGED { verdict(look, light, aims) } else { Verdict::Works };
-    let mut verdicts: Vec<Verdict> = (0..look.world().lights().len()).map(judged).collect();
-    if let Some(most) = weak_together(look, &verdicts) {
+pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
+    let judged = |light| if light < MOST_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
+    let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
+    if let Some(most) = weak_together(grid, &verdicts) {
         verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
     }
-    if cancelled_together(look, &verdicts) {
+    if cancelled_together(grid, &verdicts) {
         verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Cancelled);
     }
     verdicts
 }
 
 /// What arrives of a few lights that work, where all of them together hardly count.
-fn weak_together(look: &Look, verdicts: &[Verdict]) -> Option<f32> {
+fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
         return None;
     }
     let most = |of: fn(&Lit) -> Color| {
-        let sums = look.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
+        let sums = grid.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
         sums.fold(0.0, f32::max)
     };
     let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
@@ -74,14 +74,14 @@ fn weak_together(look: &Look, verdicts: &[Verdict]) -> Option<f32> {
 
 /// Whether what all lights together shine on has none of their colours, on nearly all that they
 /// reach.
-fn cancelled_together(look: &Look, verdicts: &[Verdict]) -> bool {
-    let materials = look.world().materials();
+fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
+    let materials = grid.world().materials();
     if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
     {
         return false;
     }
     let (mut reached, mut lost) = (0, 0);
-    for (_, seen) in look.seen() {
+    for (_, seen) in grid.seen() {
         let Some(Material::Phong(phong)) = materials.get(seen.material as usize) else { return false };
         let lit = seen.lit.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
         let arrives: Color = lit.map(|lit| lit.arrives).sum();
@@ -94,14 +94,14 @@ fn cancelled_together(look: &Look, verdicts: &[Verdict]) -> bool {
     reached > 20 && lost * 10 > reached * 8
 }
 
-fn verdict(look: &Look, number: usize, aims: &[Option<Aim>]) -> Verdict {
-    let light = &look.world().lights()[number];
+fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
+    let light = &grid.world().lights()[number];
     // Clear glass shows what is behind it, not the light that falls on it.
-    let clear = |seen: &Seen| match &look.world().materials()[seen.material as usize] {
+    let clear = |seen: &Seen| match &grid.world().materials()[seen.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Solid(..) => false,
     };
-    let lit = look.seen().filter(|(_, seen)| !clear(seen));
+    let lit = grid.seen().filter(|(_, seen)| !clear(seen));
     let all: Vec<&Lit> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
     if light.color() == Color::ZERO {
         return Verdict::Black;
@@ -118,16 +118,16 @@ fn verdict(look: &Look, number: usize, aims: &[Option<Aim>]) -> Verdict {
     // A few lights are each meant to be seen.
     let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-    if look.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
+    if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
         return Verdict::Faint(arrives);
     }
-    let is_blocked = nearly_blocked(&all) || roofed(look, number);
+    let is_blocked = nearly_blocked(&all) || roofed(grid, number);
     if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
         return Verdict::Works;
     }
     if let Light::Point(point) = light
         && let Some(&object) =
-            around(look.world(), point.position).iter().find(|&&object| keeps_light(look, object, &all))
+            around(grid.world(), point.position).iter().find(|&&object| keeps_light(grid, object, &all))
     {
         return Verdict::Inside(object);
     }
@@ -147,9 +147,9 @@ fn verdict(look: &Look, number: usize, aims: &[Option<Aim>]) -> Verdict {
             false => Verdict::Behind,
         };
     }
-    match main_blocker(look, number, &blocked)
+    match main_blocker(grid, number, &blocked)
         .filter(|_| blocked.len() * 5 > all.len())
-        .or_else(|| behind_plane(look, light))
+        .or_else(|| behind_plane(grid, light))
     {
         Some(object) => Verdict::Blocked(object),
         None => Verdict::Behind,
@@ -166,10 +166,10 @@ fn nearly_blocked(all: &[&Lit]) -> bool {
 
 /// Whether one thing keeps a light off all others that have an end and face it, and off most of the
 /// rest.
-fn roofed(look: &Look, light: usize) -> bool {
-    let objects = look.world().objects();
+fn roofed(grid: &ProbeGrid, light: usize) -> bool {
+    let objects = grid.world().objects();
     let facing = || {
-        let all = look.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
+        let all = grid.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
         all.filter(|(_, lit)| lit.cosine > GRAZING)
     };
     let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
@@ -183,16 +183,16 @@ fn roofed(look: &Look, light: usize) -> bool {
 
 /// Of some objects the one that is in the way of a light at the most places; each may be in the way
 /// of another.
-fn main_blocker(look: &Look, light: usize, blocked: &[u32]) -> Option<u32> {
-    let (common, lamp) = (most_common(blocked)?, &look.world().lights()[light]);
-    let places = look.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
+fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
+    let (common, lamp) = (most_common(blocked)?, &grid.world().lights()[light]);
+    let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
     let mut all = Vec::new();
     for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
         let place = probe.ray.at(seen.t).as_dvec3();
         let seen = lamp.illuminate(place);
         let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
         let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
-        let mut hit: Vec<u32> = look.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
+        let mut hit: Vec<u32> = grid.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
         hit.sort_unstable();
         hit.dedup();
         all.extend(hit);
@@ -203,19 +203,19 @@ fn main_blocker(look: &Look, light: usize, blocked: &[u32]) -> Option<u32> {
 }
 
 /// The seen plane that is between the camera and a light, if one is first of all.
-fn behind_plane(look: &Look, light: &Light) -> Option<u32> {
+fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     let Light::Point(point) = light else { return None };
-    let world = look.world();
+    let world = grid.world();
     let way = world.camera().pose().center - point.position;
     let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
-    let is_seen = look.seen().any(|(_, seen)| seen.object == hit.object);
+    let is_seen = grid.seen().any(|(_, seen)| seen.object == hit.object);
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
 /// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
 /// faces the light.
-fn keeps_light(look: &Look, object: u32, all: &[&Lit]) -> bool {
-    let shadows = look.subject.job.settings.shadows;
+fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&Lit]) -> bool {
+    let shadows = grid.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
     blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
 }

@@ -280,7 +280,7 @@ pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
         let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
             .at(scout.object_span(number))
             .effect("only what is before it is seen of them")
-            .help("a floor lies below things: which axis is up? Look at its `normal` and `offset`, and what turns it");
+            .help("a floor lies below things: which axis is up? ProbeGrid at its `normal` and `offset`, and what turns it");
         Finding::from(diagnostic)
     };
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()

@@ -1,18 +1,19 @@
 //! What can be wrong with a picture.
 
-use super::formats::known_extensions;
 use crate::diag::{at_least, at_most};
 
 /// Why a picture cannot be read or written.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
     /// No format has this file name's extension.
-    #[error("`{path}` does not end like a picture file; known are {}{}", known_extensions(), suggestion(.meant))]
+    #[error("`{path}` does not end like a picture file; known are {known}{}", suggestion(.meant))]
     UnknownExtension {
         /// The file name.
         path: String,
         /// The extension that may have been meant, without its dot.
         meant: Option<&'static str>,
+        /// The usual extension of each format.
+        known: String,
     },
     /// Neither the content nor the name tells the format.
     #[error("`{name}` is not a picture of a known format")]

@@ -170,7 +170,7 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
     FORMATS.iter().find(|format| format.has_extension(&path)).ok_or_else(|| {
         let all = FORMATS.iter().flat_map(|format| format.extensions.iter().copied());
         let meant = extension(&path).and_then(|ending| diag::did_you_mean(&ending, all));
-        ImageError::UnknownExtension { path: path.into(), meant }
+        ImageError::UnknownExtension { path: path.into(), meant, known: known_extensions() }
     })
 }
 
@@ -183,7 +183,7 @@ pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, Ima
 }
 
 /// The usual extension of each format, for a message.
-pub(super) fn known_extensions() -> String {
+fn known_extensions() -> String {
     let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
     endings.join(", ")
 }

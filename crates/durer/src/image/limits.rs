@@ -3,10 +3,7 @@
 //! A declared size is never trusted: it is read from the file's head, and compared with the file's
 //! length and with the memory that the caller allows, before anything is decoded.
 
-use super::ImageError;
-
-/// The most pixels that a picture may have: 2^28, a square of 16384.
-pub const MAX_PIXELS: u64 = 1 << 28;
+use super::{ImageError, MAX_PIXELS};
 
 /// Pixels allowed whatever the length of the file: a square of 2048.
 const FREE_PIXELS: u64 = 1 << 22;

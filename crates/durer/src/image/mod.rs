@@ -21,13 +21,16 @@ mod conformance;
 pub use display::{Display, Tone};
 pub use error::ImageError;
 pub use formats::{Depth, FORMATS, Format, Raster, RowFormat, RowWriter, Strip, WriteOptions, format_for};
-pub use limits::{MAX_PIXELS, checked_count, pixel_limit};
+pub use limits::{checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
 pub use save::{Content, Destination, SaveError, save, save_all};
 pub use transfer::{Transfer, decode_linear, decode_srgb, linear_from_srgb};
 
 use crate::math::{Color, Vec3};
 use std::sync::Arc;
+
+/// The most pixels that a picture may have: 2^28, a square of 16384.
+pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// A picture of linear floating-point pixels.
 #[derive(Clone, Debug, PartialEq)]

@@ -112,7 +112,7 @@ impl Part {
         let all = u64::from(job.sampling.samples()) * job.window().pixels();
         let other = match corrected(job.method) {
             Some(_) if job.noise.is_some() || job.sampling.is_local() && own.statistics().samples != all => {
-                let message = "the error of photons is known where all samples are taken: give a number of --samples, and neither --noise nor --time";
+                let message = "the error of photons is known where all samples are taken: give a number of --samples, and neither --noise-threshold nor --time-limit";
                 return Err(RenderError::Diagram(message.into()));
             }
             Some(method) => Some(made(&Job { method, ..job })?),

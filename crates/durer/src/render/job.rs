@@ -1,5 +1,6 @@
 //! What decides a picture.
 
+use super::crop::Crop;
 use super::passes;
 use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
@@ -10,57 +11,6 @@ use crate::sampler::Sampler;
 use crate::world::World;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
-
-/// Part of a picture, in pixels from its upper left corner.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Crop {
-    /// First column.
-    pub left: u32,
-    /// First row.
-    pub top: u32,
-    /// Columns.
-    pub width: u32,
-    /// Rows.
-    pub height: u32,
-}
-
-impl Crop {
-    /// One pixel.
-    pub fn pixel((left, top): (u32, u32)) -> Crop {
-        Crop { left, top, width: 1, height: 1 }
-    }
-
-    /// How many pixels it has.
-    pub fn pixels(self) -> u64 {
-        u64::from(self.width) * u64::from(self.height)
-    }
-
-    /// The least part around this one and another.
-    pub fn around(self, other: Crop) -> Crop {
-        let (left, top) = (self.left.min(other.left), self.top.min(other.top));
-        let right = (self.left + self.width).max(other.left + other.width);
-        let bottom = (self.top + self.height).max(other.top + other.height);
-        Crop { left, top, width: right - left, height: bottom - top }
-    }
-
-    /// The same with some pixels more on each side, within another.
-    pub fn grown(self, by: u32, within: Crop) -> Crop {
-        let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
-        let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
-        let bottom = self.top.saturating_add(self.height).saturating_add(by).min(within.height);
-        Crop { left, top, width: right - left, height: bottom - top }
-    }
-
-    /// Whether a pixel lies in it.
-    pub fn holds(self, x: u32, y: u32) -> bool {
-        x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
-    }
-
-    /// Its pixels, in reading order.
-    pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
-        (self.top..self.top + self.height).flat_map(move |y| (self.left..self.left + self.width).map(move |x| (x, y)))
-    }
-}
 
 /// Where in a pixel rays go, and how they become a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

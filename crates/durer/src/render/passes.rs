@@ -1,6 +1,6 @@
 //! In which order samples are taken, and when there are enough.
 
-use super::Crop;
+use super::crop::Crop;
 use crate::film::{Film, luminance_of};
 
 /// Samples before which nothing is decided about a block.

@@ -4,7 +4,7 @@ use super::normals::Given;
 use super::topology::Topology;
 use crate::camera::Lens;
 use crate::check::finding::vector;
-use crate::check::look::Look;
+use crate::check::probes::ProbeGrid;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::format::read_mesh;
@@ -32,12 +32,12 @@ pub(in crate::check) struct MeshFile<'s> {
 }
 
 /// All mesh files of a scene.
-pub(in crate::check) fn files<'s>(look: &Look<'s>) -> Vec<MeshFile<'s>> {
+pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     let mut uses = Uses::new();
-    if let Some(root) = &look.subject.scene.root {
+    if let Some(root) = &grid.subject.scene.root {
         collect(root, &mut uses);
     }
-    uses.into_iter().filter_map(|(name, objects)| read(look, name, objects)).collect()
+    uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
 }
 
 type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
@@ -59,14 +59,14 @@ fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
     }
 }
 
-fn read<'s>(look: &Look<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
-    let files = look.subject.files;
+fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
+    let files = grid.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
     let bytes = files.whole(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
     // It was read before, and what is wrong with it was said.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     let topology = Topology::of(&data.positions, &data.triangles);
-    let given = Given::of(&data).filter(|_| look.world().rules().file_normals);
+    let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
     Some(MeshFile { name, file, objects, data, topology, given })
 }
 
@@ -76,8 +76,8 @@ impl MeshFile<'_> {
     }
 
     /// The line of a triangle's face in a Wavefront file: a face of n corners is n - 2 triangles.
-    pub(super) fn face(&self, look: &Look, triangle: u32) -> Option<Span> {
-        let bytes = look.subject.files.bytes(self.file)?;
+    pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
+        let bytes = grid.subject.files.bytes(self.file)?;
         let (mut start, mut before, mut found) = (0, 0, None);
         for line in bytes.split_inclusive(|b| *b == b'\n') {
             if line.starts_with(b"f ") || line.starts_with(b"f\t") {
@@ -96,9 +96,9 @@ impl MeshFile<'_> {
 
     /// A warning about some of its triangles: at the first of them, or where the scene names the
     /// file.
-    pub(super) fn at_triangle(&self, look: &Look, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
+    pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
-        match self.face(look, triangle) {
+        match self.face(grid, triangle) {
             Some(span) => {
                 diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is shown here")
             }
@@ -110,8 +110,8 @@ impl MeshFile<'_> {
     }
 
     /// The first of its objects that is of glass.
-    pub(super) fn glass(&self, look: &Look) -> Option<&Object> {
-        let materials = look.world().materials();
+    pub(super) fn glass(&self, grid: &ProbeGrid) -> Option<&Object> {
+        let materials = grid.world().materials();
         let refracts = |material: u32| match materials.get(material as usize) {
             Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0 && phong.ior != 1.0,
             _ => false,
@@ -120,8 +120,8 @@ impl MeshFile<'_> {
     }
 
     /// Its objects as they are placed in the world.
-    pub(super) fn placed<'w>(&self, look: &Look<'w>) -> impl Iterator<Item = &'w Placed> {
-        look.world().objects().iter().filter(|object| self.is_shown_at(object.span))
+    pub(super) fn placed<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w Placed> {
+        grid.world().objects().iter().filter(|object| self.is_shown_at(object.span))
     }
 
     /// Whether what is written at a place shows it.
@@ -130,20 +130,20 @@ impl MeshFile<'_> {
     }
 
     /// Whether the camera is in it, as in a room: its walls face inwards by right.
-    pub(super) fn is_room(&self, look: &Look) -> bool {
-        let eye = look.world().camera().pose().center;
-        self.placed(look).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
+    pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
+        let eye = grid.world().camera().pose().center;
+        self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
     }
 
     /// Whether it is the inner wall of hollow glass: that faces inwards by right.
-    pub(super) fn is_hollow(&self, look: &Look) -> bool {
-        let objects = look.world().objects();
+    pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
+        let objects = grid.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
-        self.placed(look).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+        self.placed(grid).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
             let around = |other: &Placed| {
                 other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
             };
-            self.glass(look).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
+            self.glass(grid).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
         })
     }
 

@@ -351,7 +351,9 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             }
             text
         }
-        What::Cut { weight } => format!("a ray that counts for {} only is not traced (--weight)", number(*weight)),
+        What::Cut { weight } => {
+            format!("a ray that counts for {} only is not traced (--min-throughput)", number(*weight))
+        }
         What::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
     };
     let contribution = node.contribution();

@@ -83,13 +83,13 @@ pub(super) struct Lit {
 
 /// A scene, and what a grid of camera rays found in it.
 #[derive(Debug)]
-pub struct Look<'a> {
+pub struct ProbeGrid<'a> {
     pub(super) subject: Subject<'a>,
     pub(super) raster: Raster,
     pub(super) probes: Vec<Probe>,
 }
 
-impl<'a> Look<'a> {
+impl<'a> ProbeGrid<'a> {
     /// Looks at a scene.
     pub(super) fn new(subject: &Subject<'a>) -> Self {
         let Job { width, height, settings, .. } = *subject.job;
@@ -120,7 +120,7 @@ impl<'a> Look<'a> {
             Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray, SampleId::default())?))
         };
         let probes = places.par_iter().filter_map(probe).collect();
-        Look { subject: *subject, raster, probes }
+        ProbeGrid { subject: *subject, raster, probes }
     }
 
     /// The larger side of the picture in pixels.
