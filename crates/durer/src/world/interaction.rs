@@ -9,12 +9,12 @@ use crate::shape::{Crossing, Surface};
 /// What a ray met: made once, by [`World::interaction`], and asked by all that shades it.
 #[derive(Clone, Copy, Debug)]
 pub struct Interaction {
+    /// What the thing is like there, in world space.
+    pub surface: Surface,
     /// The ray.
     pub ray: Ray64,
     /// Where it met what.
     pub hit: Hit,
-    /// What the thing is like there, in world space.
-    pub surface: Surface,
     /// The number of the material there.
     pub material: u32,
 }
@@ -44,11 +44,11 @@ impl World {
             moved_normals: self.rules().has(Compat::MovedNormals),
             mesh_textures: self.rules().has(Compat::MeshTextures),
         };
-        let surface = object.surface(&ray, point, &crossing, hit.part, placing);
         let material = match &object.geometry {
             Geometry::Solid(solid) => solid.part(hit.part).material,
             _ => object.material,
         };
-        Interaction { ray, hit, surface, material }
+        // Made where it stays, as the last thing: a copy of what was just written takes long.
+        Interaction { surface: object.surface(&ray, point, &crossing, hit.part, placing), ray, hit, material }
     }
 }
