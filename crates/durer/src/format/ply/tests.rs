@@ -1,6 +1,6 @@
 use crate::format::tests::{abuse, read, read_clean};
 use crate::math::{Vec2, Vec3};
-use crate::shape::mesh::MeshData;
+use crate::shape::mesh::{MeshData, NO_INDEX};
 
 const HEADER: &str = "ply\nformat ascii 1.0\ncomment by hand\nobj_info none\nelement vertex 4\nproperty uchar red\n\
     property float x\nproperty double y\nproperty short z\nproperty float nx\nproperty float ny\nproperty float nz\n\
