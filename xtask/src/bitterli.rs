@@ -19,8 +19,8 @@ const SAMPLES: u32 = 256;
 const STEP: u32 = 4;
 
 /// How far the mean may be off, and FLIP after equal exposure.
-const MOST_OFF: f64 = 0.02;
-const MOST_FLIP: f64 = 0.08;
+const MAX_OFF: f64 = 0.02;
+const MAX_FLIP: f64 = 0.08;
 
 /// Scenes whose file asks for other depths than Tungsten took: how often light is scattered after
 /// the first time. Without any, walls and floor of veach-mis agree to a thousandth.
@@ -77,7 +77,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     for scene in &scenes {
         let row = compared(scene, samples, keep.as_deref())?;
         let cause = CAUSES.iter().find(|known| known.0 == row.name).map_or("", |known| known.1);
-        let met = (row.ratio - 1.0).abs() <= MOST_OFF && row.flip <= MOST_FLIP;
+        let met = (row.ratio - 1.0).abs() <= MAX_OFF && row.flip <= MAX_FLIP;
         let line = format!(
             "| {} | {} x {} | {} | {:+.2} % | {:.3} | {:.3} | {}{cause} |",
             row.name,

@@ -35,9 +35,9 @@ const TARGETS: [(&str, &[&str]); 22] = [
 
 /// Inputs are at most so many bytes, a run takes at most so many MiB of memory, an input so many
 /// seconds.
-const MOST_BYTES: u64 = 16 << 10;
-const MOST_MEMORY: u32 = 2048;
-const MOST_SECONDS: u32 = 20;
+const MAX_BYTES: u64 = 16 << 10;
+const MAX_MEMORY: u32 = 2048;
+const MAX_SECONDS: u32 = 20;
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let minutes: f64 = crate::value(arguments, "--minutes").map_or("10", String::as_str).parse()?;
@@ -84,10 +84,10 @@ fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: 
     command.args([&corpus, &fuzz.join("seeds").join(name), &seeds].into_iter().filter(|folder| folder.is_dir()));
     command.arg("--").args([
         format!("-max_total_time={}", (60.0 * minutes) as u64),
-        format!("-rss_limit_mb={MOST_MEMORY}"),
-        format!("-malloc_limit_mb={MOST_MEMORY}"),
-        format!("-timeout={MOST_SECONDS}"),
-        format!("-max_len={MOST_BYTES}"),
+        format!("-rss_limit_mb={MAX_MEMORY}"),
+        format!("-malloc_limit_mb={MAX_MEMORY}"),
+        format!("-timeout={MAX_SECONDS}"),
+        format!("-max_len={MAX_BYTES}"),
         "-print_final_stats=1".into(),
     ]);
     let start = Instant::now();
@@ -163,7 +163,7 @@ fn files(folder: &Path, endings: &[&str], depth: usize, found: &mut Vec<PathBuf>
             files(&path, endings, depth - 1, found);
         }
         let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let small = entry.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() <= MOST_BYTES);
+        let small = entry.metadata().is_ok_and(|metadata| metadata.is_file() && metadata.len() <= MAX_BYTES);
         if small && endings.contains(&ending.as_str()) {
             found.push(path);
         }

@@ -47,7 +47,7 @@ pub enum Command {
     Convert(ConvertArgs),
     Compare(Box<CompareArgs>),
     Photo(PhotoArgs),
-    /// List the dialects of the scene language, and the old programs' habits that can be had by
+    /// List the dialects of the scene language, and the old programs' quirks that can be had by
     /// name
     #[command(after_help = "Example:\n  durer dialects")]
     Dialects,

@@ -15,7 +15,7 @@ use crate::values::weight;
 use crate::{check, output, progress};
 use clap::Args;
 use durer::LoadOptions;
-use durer::camera::{Lens, Raster};
+use durer::camera::{Projection, Raster};
 use durer::compile::AccelKind;
 use durer::dialect::{Compat, Dialect};
 use durer::film::aov::Aov;
@@ -115,7 +115,7 @@ fn load_options(given: &Given, program_name: Option<&'static Program>) -> Result
     let mut compat: Vec<(Compat, bool)> = named.iter().flat_map(|p| p.compat).map(|&compat| (compat, true)).collect();
     for word in given.text("--compat").into_iter().flat_map(|names| names.split(',')) {
         let (name, on) = word.strip_prefix("no-").map_or((word, true), |name| (name, false));
-        let known = Compat::from_name(name).ok_or_else(|| bad(format!("--compat: there is no habit {name}")))?;
+        let known = Compat::from_name(name).ok_or_else(|| bad(format!("--compat: there is no quirk {name}")))?;
         compat.push((known, on));
     }
     let cells = given.numbers::<u32>("-grid", 3)?.and_then(|cells| <[u32; 3]>::try_from(cells).ok());
@@ -186,8 +186,8 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         return Err(bad("-depth needs two different numbers"));
     }
     let bounces = given.number("-bounces")?.unwrap_or(rules.bounces);
-    if bounces > Settings::MOST_BOUNCES {
-        return Err(bad(format!("-bounces: at most {}", Settings::MOST_BOUNCES)));
+    if bounces > Settings::MAX_BOUNCES {
+        return Err(bad(format!("-bounces: at most {}", Settings::MAX_BOUNCES)));
     }
     let weight = given.text("-weight").map(weight).transpose().map_err(|error| bad(format!("-weight: {error}")))?;
     let wanted = [("-depth", "depth"), ("-normals", "normals")];

@@ -14,10 +14,10 @@ use crate::{output, progress};
 use clap::Args;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
-use durer::integrator::account::What;
-use durer::integrator::{Node, Tree};
+use durer::integrator::trace::TermKind;
+use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{Explanation, Line, Names, Telling, explain, explain_ray, number, ray_text};
+use durer::render::explain::{Explanation, Names, Telling, TextLine, explain, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
 use durer::sampler::SampleId;
 use std::collections::BTreeSet;
@@ -249,7 +249,7 @@ fn percentage(share: f32) -> String {
 }
 
 /// A line with what it adds before it.
-pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
+pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
         Some(adds) if line.depth > 0 => {
@@ -272,12 +272,12 @@ pub fn shown(line: &Line, colored: bool, transfer: Transfer) -> String {
 /// The explanation for programs, with what its numbers of things stand for.
 pub fn json(subject: &Subject, names: &Names) -> serde_json::Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-    let mut note = |node: &Node| match &node.what {
-        What::Ray { hit: Some(hit), .. } => {
+    let mut note = |node: &TraceNode| match &node.what {
+        TermKind::Ray { hit: Some(hit), .. } => {
             objects.insert(hit.object);
             materials.insert(hit.material);
         }
-        What::Light { light, shadow, .. } => {
+        TermKind::Light { light, shadow, .. } => {
             lights.insert(*light);
             objects.extend(shadow.as_ref().and_then(|shadow| shadow.blocker).map(|blocker| blocker.0));
         }
@@ -306,7 +306,7 @@ pub fn json(subject: &Subject, names: &Names) -> serde_json::Value {
     json
 }
 
-fn visit(node: &Node, note: &mut impl FnMut(&Node)) {
+fn visit(node: &TraceNode, note: &mut impl FnMut(&TraceNode)) {
     note(node);
     node.terms.iter().for_each(|term| visit(term, note));
 }

@@ -7,7 +7,7 @@ use crate::options::SceneArgs;
 use crate::terminal::say;
 use clap::Args;
 use durer::bvh::TraversalStats;
-use durer::camera::{Lens, Raster};
+use durer::camera::{Projection, Raster};
 use durer::describe::DescribedList;
 use durer::render::{center_ray, raster};
 use durer::world::{Accel, Geometry, MeshTree, World};

@@ -4,7 +4,7 @@ use crate::failure::{Failure, bad};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::{method, report};
 use durer::Loaded;
-use durer::camera::{Lens, Raster};
+use durer::camera::{Projection, Raster};
 use durer::compile::AccelKind;
 use durer::diag::Diagnostic;
 use durer::dialect::{Compat, Dialect};
@@ -18,8 +18,8 @@ use durer::sampler::Sampler;
 use durer::world::World;
 
 /// Samples where noise or time decides when there are enough.
-const MOST_FOR_NOISE: u32 = 4096;
-const MOST_FOR_TIME: u32 = 1 << 20;
+const MAX_FOR_NOISE: u32 = 4096;
+const MAX_FOR_TIME: u32 = 1 << 20;
 
 /// How often paths are scattered after the first time, unless asked otherwise.
 pub const PATH_BOUNCES: u32 = 16;
@@ -144,8 +144,8 @@ fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sam
     let filter = args.filter.as_deref().and_then(Filter::from_name);
     let usual = match (asked, args.noise.is_some(), timed) {
         (true, ..) => 1,
-        (false, true, _) => MOST_FOR_NOISE,
-        (false, false, true) => MOST_FOR_TIME,
+        (false, true, _) => MAX_FOR_NOISE,
+        (false, false, true) => MAX_FOR_TIME,
         (false, false, false) => plenty,
     };
     let samples = args.samples.unwrap_or(usual);

@@ -7,7 +7,7 @@ use crate::output::{encode, format, lengthened, wrote};
 use crate::terminal::complain;
 use crate::{progress, report};
 use durer::image::{Destination, Display, Format, save_all};
-use durer::render::{Moment, Panicked, Part, PartError};
+use durer::render::{Panicked, Part, PartError, RenderEvent};
 use durer::source::Source;
 use std::cell::Cell;
 use std::path::Path;
@@ -106,7 +106,7 @@ impl Keeper {
     }
 
     /// Saves work and preview.
-    pub fn watch(&self, part: &Part, moment: Moment) {
+    pub fn watch(&self, part: &Part, moment: RenderEvent) {
         let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
         if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
             let before = Instant::now();
@@ -117,7 +117,7 @@ impl Keeper {
             }
             self.saving.set(Some(before.elapsed()));
         }
-        if let (Moment::PassDone, Some((place, format))) = (moment, &self.preview) {
+        if let (RenderEvent::PassDone, Some((place, format))) = (moment, &self.preview) {
             let first = part.pictures().ok().and_then(|rendered| rendered.pictures.into_iter().next());
             let Some(layer) = first else { return };
             let bytes = encode(format, &[layer], self.display, &[]);

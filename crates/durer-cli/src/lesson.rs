@@ -15,7 +15,7 @@ use crate::progress;
 use crate::terminal::say;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use durer::camera::{Lens, Raster};
+use durer::camera::{Projection, Raster};
 use durer::image::{Transfer, checked_count};
 use durer::lesson::{OWN_SCENE, OWN_SCENE_NAME, Stage, TOPICS, Teacher};
 use durer::render::Control;

@@ -6,16 +6,16 @@ use crate::terminal::say;
 use clap::CommandFactory;
 use durer::dialect::{Compat, Dialect};
 
-/// `durer dialects`: the table, and the habits by name.
+/// `durer dialects`: the table, and the quirks by name.
 pub fn dialects() -> Result<(), Failure> {
     say("Dialects (--dialect NAME):");
     for dialect in Dialect::ALL {
         let rules = dialect.rules();
         let names = Compat::ALL.iter().filter(|row| rules.has(row.0)).map(|row| row.1);
-        let habits: Vec<&str> = names.collect();
+        let quirks: Vec<&str> = names.collect();
         say(&format!("  {:<7}{}", rules.name, rules.title));
-        if !habits.is_empty() {
-            say(&format!("         habits: {}", habits.join(", ")));
+        if !quirks.is_empty() {
+            say(&format!("         quirks: {}", quirks.join(", ")));
         }
     }
     say("\nHabits of old programs, and a usual mistake (--compat NAME, --compat no-NAME):");

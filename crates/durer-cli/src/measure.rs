@@ -68,7 +68,7 @@ pub struct Grid {
 }
 
 /// Points at most.
-const MOST_POINTS: usize = 1 << 20;
+const MAX_POINTS: usize = 1 << 20;
 
 fn vector(text: &str) -> Result<Vec3, String> {
     let numbers: Vec<f32> = text.split(',').map_while(|word| word.trim().parse().ok()).collect();
@@ -126,9 +126,9 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         grid.points().map(move |point| (point, normal))
     });
     let own = args.points.iter().map(|&point| (point, Vec3::Y)).chain(grids);
-    let mut places: Vec<(Vec3, Vec3)> = own.take(MOST_POINTS + 1).collect();
-    if places.is_empty() || places.len() > MOST_POINTS {
-        return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MOST_POINTS} points")));
+    let mut places: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
+    if places.is_empty() || places.len() > MAX_POINTS {
+        return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MAX_POINTS} points")));
     }
     if let Some(normal) = args.normal {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };

@@ -19,10 +19,10 @@ use std::time::Duration;
 /// How a scene is read
 #[derive(Args)]
 pub struct SceneArgs {
-    /// The scene's dialect, with all habits of that year's program; guessed where not given
+    /// The scene's dialect, with all quirks of that year's program; guessed where not given
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
     pub dialect: Option<String>,
-    /// Turn an old program's habit on, or off with `no-` before it (see `durer dialects`)
+    /// Turn an old program's quirk on, or off with `no-` before it (see `durer dialects`)
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat)]
     pub compat: Vec<(Compat, bool)>,
     /// Allow only the words of the dialect: no comments, nothing of our own

@@ -12,7 +12,7 @@ use crate::terminal::{complain, say};
 use crate::{check, diagrams, job, large, output, progress};
 use durer::compile::Kept;
 use durer::image::checked_count;
-use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, Shard, ShardBy, Stop, replay};
+use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, RenderOutcome, Shard, ShardBy, replay};
 use durer::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -157,11 +157,11 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     stages.ends("rendering");
     rejected(&part.statistics(), args.quiet);
     let finished = match &stop {
-        Stop::Finished => true,
-        Stop::OutOfTime => part.is_finished(),
-        Stop::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
-        Stop::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
-        Stop::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
+        RenderOutcome::Finished => true,
+        RenderOutcome::OutOfTime => part.is_finished(),
+        RenderOutcome::Cancelled if watched.stale.load(Relaxed) => return Err(Failure::Interrupted(String::new())),
+        RenderOutcome::Cancelled => return Err(stopped(args, &part, &keeper, target.as_ref())),
+        RenderOutcome::Panicked(panicked) => return Err(keeper.after_panic(&part, panicked, &replaying(panicked))),
     };
     match target {
         None => keeper.save(&part)?,

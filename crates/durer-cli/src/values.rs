@@ -7,8 +7,8 @@ pub fn compat(text: &str) -> Result<(Compat, bool), String> {
     Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
         let names = Compat::ALL.iter().map(|row| row.1);
         match durer::diag::did_you_mean(name, names) {
-            Some(near) => format!("there is no such habit; did you mean `{near}`?"),
-            None => "there is no such habit; see `durer dialects`".into(),
+            Some(near) => format!("there is no such quirk; did you mean `{near}`?"),
+            None => "there is no such quirk; see `durer dialects`".into(),
         }
     })
 }

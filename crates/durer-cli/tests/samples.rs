@@ -69,7 +69,7 @@ fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
         let shown = path.display().to_string();
         place.gives(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
         place.gives(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
-        // With all habits of the year's program.
+        // With all quirks of the year's program.
         let asked = format!("{files} --dialect {dialect}");
         assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
         // JSON says whose words it has: in the words of another year they may mean something else.

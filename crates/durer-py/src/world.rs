@@ -5,7 +5,7 @@ use crate::work::{LOOK, each, look};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
-use durer::render::{self, Control, Stop};
+use durer::render::{self, Control, RenderOutcome};
 use durer::world::Interaction;
 use durer::{Loaded, load, load_text};
 use durer_cli::embed::{self, Asked};
@@ -147,10 +147,10 @@ impl World {
         });
         interrupted?;
         match stop.map_err(|_| failed("the render failed; this is an error in durer"))?.map_err(failed)? {
-            Stop::Finished => Ok(true),
-            Stop::OutOfTime => Ok(false),
-            Stop::Cancelled => Err(PyKeyboardInterrupt::new_err("")),
-            Stop::Panicked(panicked) => Err(failed(render::RenderError::from(panicked))),
+            RenderOutcome::Finished => Ok(true),
+            RenderOutcome::OutOfTime => Ok(false),
+            RenderOutcome::Cancelled => Err(PyKeyboardInterrupt::new_err("")),
+            RenderOutcome::Panicked(panicked) => Err(failed(render::RenderError::from(panicked))),
         }
     }
 

@@ -217,7 +217,7 @@ pub type CompatSet = u64;
 
 macro_rules! compats {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or odd habit, of an official program where nothing else is said. Off unless
+        /// A named bug or odd quirk, of an official program where nothing else is said. Off unless
         /// its dialect, or it by name, is asked for.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]
@@ -263,7 +263,7 @@ compats! {
     /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
     StaleTexels = "stale-texels",
     /// A light is blocked only where the nearest thing towards it is seen from its front. Off where
-    /// `exit-r0` is asked for, the habit of an earlier version of the same program.
+    /// `exit-r0` is asked for, the quirk of an earlier version of the same program.
     ShadowFronts = "shadow-fronts",
     /// A `Matrix` is multiplied on the left of everything before it.
     MatrixOnLeft = "matrix-on-left",
@@ -298,7 +298,7 @@ compats! {
     /// The range of a depth picture is cut to whole numbers.
     WholeDepths = "whole-depths",
     /// Shading normals of transformed things go by the matrix itself and not by its inverse
-    /// transpose: no official program's habit, but a usual mistake.
+    /// transpose: no official program's quirk, but a usual mistake.
     MovedNormals = "moved-normals",
 }
 

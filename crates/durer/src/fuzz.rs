@@ -15,7 +15,7 @@ use crate::format::{curve, ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
 use crate::integrator::{Method, Settings};
 use crate::math::Vec3;
-use crate::render::{Control, Job, Part, PartError, Shard, Stop};
+use crate::render::{Control, Job, Part, PartError, RenderOutcome, Shard};
 use crate::scene::Staging;
 use crate::source::{Digest, Source};
 use crate::spectrum::Curve;
@@ -205,7 +205,7 @@ pub fn ways(data: &[u8]) {
         let part = Part::new(&world, &job, Shard::WHOLE).expect("the job is possible");
         let control = Control { threads: Some(1), ..Control::default() };
         match part.render(&world, &control, &mut |_, _| {}).expect("it can be rendered") {
-            Stop::Finished => Some(part.hash()),
+            RenderOutcome::Finished => Some(part.hash()),
             stop => panic!("{stop:?}\n{text}"),
         }
     };

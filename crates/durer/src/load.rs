@@ -148,7 +148,7 @@ pub fn load_text(
     if options.dialect.is_none() && !options.course {
         rules = rules.sane();
     }
-    // The two versions of one program: neither had both habits.
+    // The two versions of one program: neither had both quirks.
     if options.compat.contains(&(Compat::ExitR0, true)) {
         rules.compat &= !Compat::ShadowFronts.bit();
     }

@@ -24,7 +24,7 @@ impl Emitter for GlowLight {
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance: offset.length(), color: self.color }
     }
 
-    fn resolved(&self, _: &Rules) -> Self {
+    fn with_rules(&self, _: &Rules) -> Self {
         self.clone()
     }
 

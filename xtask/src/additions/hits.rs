@@ -1,6 +1,6 @@
 //! White where anything near enough is hit, black elsewhere.
 
-use super::{Integrate, Parameters, Setup, Witness};
+use super::{Integrate, Parameters, Setup, TraceListener};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Color, Ray, Ray64};
@@ -35,7 +35,7 @@ pub struct Hits<'w> {
 }
 
 impl Integrate for Hits<'_> {
-    fn radiance<T: Witness>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
+    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         let hit = self.world.closest(&Ray64::from(ray), tally);
         if hit.is_some_and(|hit| hit.t * ray.dir.length() < self.depth) { Color::ONE } else { Color::ZERO }
     }

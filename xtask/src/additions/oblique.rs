@@ -1,7 +1,7 @@
 //! An oblique camera: parallel rays that are not perpendicular to the picture, as in a cabinet
 //! projection.
 
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraSample, CameraBasis, Projection, Pose};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -23,25 +23,25 @@ described! {
     }
 }
 
-impl Lens for ObliqueCamera {
+impl Projection for ObliqueCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let half = 0.5 * self.size;
         let origin = frame.eye + sample.point.x * half * frame.right + sample.point.y * half * frame.up;
         let dir = frame.forward - self.slant * (frame.right + frame.up);
         Some(Ray::new(origin, dir.normalize()))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let p = frame.camera_from_world(world);
         let moved = DVec2::new(p.x, p.y) + f64::from(self.slant) * p.z.abs();
         found((moved / (0.5 * f64::from(self.size))).as_vec2());
     }
 
-    fn footprint(&self, frame: &Frame, _: &CameraSample, _: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, _: &CameraSample, _: f32) -> f32 {
         let half = 0.5 * f64::from(self.size);
         let slant = f64::from(self.slant);
         (half * half * frame.volume() / (1.0 + 2.0 * slant * slant).sqrt()) as f32

@@ -1,6 +1,6 @@
 //! The regular octahedron: |x| + |y| + |z| <= radius, seen from its centre.
 
-use super::{Crossing, Shape, Surface, padded};
+use super::{ShapeHit, Shape, Surface, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
@@ -36,7 +36,7 @@ impl Shape for Octahedron {
         }
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let (center, radius) = (self.center.as_dvec3(), f64::from(self.radius));
         let normal = (point - center).map(f64::signum);
         let on = point - normal * ((normal.dot(point - center) - radius) / 3.0);

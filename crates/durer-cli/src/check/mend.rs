@@ -35,13 +35,13 @@ pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Res
 }
 
 /// So many findings' edits are tried before they are offered.
-const MOST_TRIED: usize = 8;
+const MAX_TRIED: usize = 8;
 
 /// Takes back the offers of edits that would not be kept.
 pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
     let mut kept = Vec::new();
-    for finding in checked.findings.iter().filter(offered).take(MOST_TRIED) {
+    for finding in checked.findings.iter().filter(offered).take(MAX_TRIED) {
         let repaired = apply(text, 0, std::slice::from_ref(finding));
         kept.push(match repaired.mended.is_empty() {
             true => false,

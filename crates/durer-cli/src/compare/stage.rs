@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 /// The reference is made by these options where fewer of its pixels differ.
 const SAME: f64 = 0.01;
 /// The same where samples count for more pixels than one.
-const MOST_OFF: f64 = 0.2;
+const MAX_OFF: f64 = 0.2;
 
 /// A scene that was opened, and how the reference was made of it.
 pub struct Stage {
@@ -56,7 +56,7 @@ pub fn stage(
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
     // Where samples count for pixels around too, edges are not the same to the bit.
-    let enough = if best.1.1.sampling.is_local() { SAME } else { MOST_OFF };
+    let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
     if best.0 <= enough {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
     }

@@ -7,7 +7,7 @@ use durer::dialect::{Compat, Dialect, DialectSet, set};
 use durer::format::course::Hint;
 use std::path::Path;
 
-/// An official program: its name, its dialect, and habits beyond those of the dialect.
+/// An official program: its name, its dialect, and quirks beyond those of the dialect.
 pub struct Program {
     pub name: &'static str,
     pub dialect: Dialect,
@@ -66,7 +66,7 @@ const OPTIONS: [Row; 32] = [
     Row("-refraction_off", &[], set::F12A5, "leave transmitted rays out"),
     Row("--program", &["NAME"], set::ALL, "be this official program"),
     Row("--dialect", &["NAME"], set::ALL, "the scene's dialect; else guessed from scene and options"),
-    Row("--compat", &["NAMES"], set::ALL, "habits by name, see `durer dialects`"),
+    Row("--compat", &["NAMES"], set::ALL, "quirks by name, see `durer dialects`"),
     Row("--assets", &["FOLDER"], set::ALL, "look for missing meshes and pictures here too"),
 ];
 

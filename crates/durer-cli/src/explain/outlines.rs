@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// At most so many objects are drawn: more hide each other.
 const MOST: usize = 400;
 /// And so many triangles of a mesh.
-const MOST_TRIANGLES: usize = 600;
+const MAX_TRIANGLES: usize = 600;
 /// Points of a circle.
 const ROUND: usize = 32;
 
@@ -61,7 +61,7 @@ fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
         }
         Geometry::Mesh(tree) => {
             let count = tree.mesh.len();
-            let some = (0..count).step_by(count.div_ceil(MOST_TRIANGLES).max(1));
+            let some = (0..count).step_by(count.div_ceil(MAX_TRIANGLES).max(1));
             some.map(|i| place(closed(tree.mesh.corners(i as u32)))).collect()
         }
         _ => object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds)),

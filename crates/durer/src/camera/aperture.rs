@@ -10,7 +10,7 @@ use glam::DVec2;
 use std::f64::consts::{FRAC_PI_4, TAU};
 
 /// The most blades that a lens may have.
-pub const MOST_BLADES: u32 = 64;
+pub const MAX_BLADES: u32 = 64;
 
 /// A point of an opening of radius 1 around 0, evenly over its area: a disc for 0 blades, else a
 /// polygon whose first corner lies to the right, turned counter-clockwise by an angle in degrees.
@@ -44,6 +44,6 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
 
 /// What is wrong with a number of blades.
 pub fn problem(blades: u32) -> Option<String> {
-    let wrong = (1..=2).contains(&blades) || blades > MOST_BLADES;
-    wrong.then(|| format!("`blades` must be 0, for a round opening, or 3 to {MOST_BLADES}"))
+    let wrong = (1..=2).contains(&blades) || blades > MAX_BLADES;
+    wrong.then(|| format!("`blades` must be 0, for a round opening, or 3 to {MAX_BLADES}"))
 }

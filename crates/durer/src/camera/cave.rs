@@ -13,7 +13,7 @@
 
 use super::pose::world_ray;
 use super::sheet::Sheet;
-use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
@@ -88,12 +88,12 @@ impl CaveCamera {
     }
 
     /// An eye in the room.
-    fn eye(&self, frame: &Frame, side: f64) -> DVec3 {
+    fn eye(&self, frame: &CameraBasis, side: f64) -> DVec3 {
         frame.eye.as_dvec3() + 0.5 * side * f64::from(self.separation) * frame.right.as_dvec3()
     }
 
     /// The eye, the wall and its point that a sample sees.
-    fn seen(&self, frame: &Frame, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
+    fn seen(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(DVec3, Wall, DVec3)> {
         let (point, pixel) = (sample.point.as_dvec2(), sample.pixel.as_dvec2());
         let (one, sheet) = (self.one(), self.eyes.sheet(self.one()));
         let (view, place) = self.eyes.view(one, point, pixel)?;
@@ -103,7 +103,7 @@ impl CaveCamera {
     }
 }
 
-impl Lens for CaveCamera {
+impl Projection for CaveCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -116,7 +116,7 @@ impl Lens for CaveCamera {
         if self.walls.is_empty() {
             return Some("`walls` must have at least one row".into());
         }
-        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
+        let frame = CameraBasis::new(self.pose(), Dialect::Durer.rules());
         for (i, wall) in self.walls().enumerate() {
             let size = wall.size();
             if size.min_element() <= 0.0 {
@@ -134,12 +134,12 @@ impl Lens for CaveCamera {
         None
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (eye, _, point) = self.seen(frame, sample)?;
         Some(world_ray(eye, point - eye))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let one = self.one();
         for view in self.eyes.views(one) {
             let eye = self.eye(frame, view.side);
@@ -155,7 +155,7 @@ impl Lens for CaveCamera {
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let Some((eye, wall, point)) = self.seen(frame, sample) else { return 0.0 };
         let (to_wall, unit) = (point - eye, self.eyes.sheet(self.one()).unit());
         let solid_angle = wall.normal().dot(to_wall).abs() / (to_wall.length_squared() * to_wall.length());

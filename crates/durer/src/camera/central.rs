@@ -1,21 +1,21 @@
 //! Cameras whose rays all run through one eye: maps between a picture and directions.
 
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
 /// A camera with one eye. Directions are in the camera's space: x to the right, y upwards, z
 /// forwards.
 pub trait Central {
-    /// See [`Lens::pose`].
+    /// See [`Projection::pose`].
     fn stand(&self) -> Pose;
 
-    /// See [`Lens::proportions`].
+    /// See [`Projection::proportions`].
     fn shape(&self) -> Option<Vec2> {
         None
     }
 
-    /// See [`Lens::problem`].
+    /// See [`Projection::problem`].
     fn fault(&self) -> Option<String> {
         None
     }
@@ -30,7 +30,7 @@ pub trait Central {
     fn solid_angle(&self, point: DVec2, pixel: DVec2) -> f64;
 }
 
-impl<T: Central> Lens for T {
+impl<T: Central> Projection for T {
     fn pose(&self) -> Pose {
         self.stand()
     }
@@ -43,18 +43,18 @@ impl<T: Central> Lens for T {
         self.fault()
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let direction = self.direction(sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         Some(frame.ray(DVec3::ZERO, direction))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         if let Some(direction) = frame.camera_from_world(world).try_normalize() {
             self.image(direction, &mut |point| found(point.as_vec2()));
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let solid_angle = self.solid_angle(sample.point.as_dvec2(), sample.pixel.as_dvec2());
         (solid_angle * f64::from(t) * f64::from(t)) as f32
     }

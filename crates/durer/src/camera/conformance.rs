@@ -59,8 +59,8 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
     }
 }
 
-fn frame(camera: &Camera) -> Frame {
-    Frame::of(camera, Dialect::Durer.rules())
+fn frame(camera: &Camera) -> CameraBasis {
+    CameraBasis::of(camera, Dialect::Durer.rules())
 }
 
 /// A sample anywhere in the natural picture, and its ray.

@@ -10,7 +10,7 @@
 use super::eyes::EyeCircle;
 use super::perspective::half_width;
 use super::sheet::Sheet;
-use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -47,7 +47,7 @@ impl CylindricalCamera {
     }
 }
 
-impl Lens for CylindricalCamera {
+impl Projection for CylindricalCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -56,14 +56,14 @@ impl Lens for CylindricalCamera {
         self.eyes.sheet(self.one()).proportions()
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let place = place - 0.5 * self.one();
         let (eye, level) = self.circle(view.side).tangent(place.x);
         Some(frame.ray(eye, level + place.y * DVec3::Y))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (one, p) = (self.one(), frame.camera_from_world(world));
         for view in self.eyes.views(one) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
@@ -74,7 +74,7 @@ impl Lens for CylindricalCamera {
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
         let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
         let height = place.y - 0.5 * one.y;

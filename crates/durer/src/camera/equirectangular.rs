@@ -10,7 +10,7 @@
 
 use super::eyes::EyeCircle;
 use super::sheet::Sheet;
-use super::{CameraSample, Eyes, Frame, Handedness, Lens, Pose};
+use super::{CameraBasis, CameraSample, Eyes, Handedness, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
@@ -50,7 +50,7 @@ impl EquirectangularCamera {
     }
 }
 
-impl Lens for EquirectangularCamera {
+impl Projection for EquirectangularCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -60,7 +60,7 @@ impl Lens for EquirectangularCamera {
         Some(self.eyes.sheet(DVec2::new(f64::from(self.angle), f64::from(self.vertical_angle))).0.as_vec2())
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let angles = place - 0.5 * self.one();
         let (eye, level) = self.circle(view.side).tangent(angles.x);
@@ -69,7 +69,7 @@ impl Lens for EquirectangularCamera {
         Some(frame.ray(turned(eye), turned(cos * level + sin * DVec3::Y)))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (one, p) = (self.one(), self.handedness.turned(frame.camera_from_world(world)));
         for view in self.eyes.views(one) {
             let Some((heading, distance)) = self.circle(view.side).heading(p) else { continue };
@@ -80,7 +80,7 @@ impl Lens for EquirectangularCamera {
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let (one, pixel) = (self.one(), sample.pixel.as_dvec2());
         let Some((_, place)) = self.eyes.view(one, sample.point.as_dvec2(), pixel) else { return 0.0 };
         let cos = fp::sin_cos_f64(place.y - 0.5 * one.y).1.abs();

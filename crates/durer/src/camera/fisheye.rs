@@ -23,7 +23,7 @@ use glam::{DVec2, DVec3};
 
 described_words! {
     /// How the angle from the axis becomes a radius.
-    Projection {
+    FisheyeProjection {
         Equidistant = "equidistant", Equisolid = "equisolid", Stereographic = "stereographic", Orthographic = "orthographic"
     }
 }
@@ -41,30 +41,30 @@ described! {
         /// for `stereographic`.
         angle: f32 = 180.0, optional, Rule::UpTo(360.0), ["angle" in set::DURER];
         /// How the angle from the axis becomes a radius.
-        projection: Projection = Projection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
+        projection: FisheyeProjection = FisheyeProjection::Equidistant, optional, Rule::Any, ["projection" in set::DURER];
     }
 }
 
-impl Projection {
+impl FisheyeProjection {
     /// The radius for an angle from the axis, and how fast it grows.
     pub fn radius(self, theta: f64) -> (f64, f64) {
         let (sin, cos) = fp::sin_cos_f64(theta);
         let (half_sin, half_cos) = fp::sin_cos_f64(0.5 * theta);
         match self {
-            Projection::Equidistant => (theta, 1.0),
-            Projection::Equisolid => (2.0 * half_sin, half_cos),
-            Projection::Stereographic => (2.0 * half_sin / half_cos, 1.0 / (half_cos * half_cos)),
-            Projection::Orthographic => (sin, cos),
+            FisheyeProjection::Equidistant => (theta, 1.0),
+            FisheyeProjection::Equisolid => (2.0 * half_sin, half_cos),
+            FisheyeProjection::Stereographic => (2.0 * half_sin / half_cos, 1.0 / (half_cos * half_cos)),
+            FisheyeProjection::Orthographic => (sin, cos),
         }
     }
 
     /// The angle from the axis for a radius.
     pub fn theta(self, radius: f64) -> f64 {
         match self {
-            Projection::Equidistant => radius,
-            Projection::Equisolid => 2.0 * fp::asin_f64((0.5 * radius).min(1.0)),
-            Projection::Stereographic => 2.0 * fp::atan_f64(0.5 * radius),
-            Projection::Orthographic => fp::asin_f64(radius.min(1.0)),
+            FisheyeProjection::Equidistant => radius,
+            FisheyeProjection::Equisolid => 2.0 * fp::asin_f64((0.5 * radius).min(1.0)),
+            FisheyeProjection::Stereographic => 2.0 * fp::atan_f64(0.5 * radius),
+            FisheyeProjection::Orthographic => fp::asin_f64(radius.min(1.0)),
         }
     }
 
@@ -118,10 +118,10 @@ impl Central for FisheyeCamera {
 
     fn fault(&self) -> Option<String> {
         match self.projection {
-            Projection::Orthographic if self.angle > 180.0 => {
+            FisheyeProjection::Orthographic if self.angle > 180.0 => {
                 Some("an orthographic fisheye sees at most 180 degrees".into())
             }
-            Projection::Stereographic if self.angle > 359.0 => {
+            FisheyeProjection::Stereographic if self.angle > 359.0 => {
                 Some("a stereographic fisheye sees at most 359 degrees: the last one is infinitely far out".into())
             }
             _ => None,

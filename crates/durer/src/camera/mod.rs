@@ -32,13 +32,13 @@ pub use eyes::Eyes;
 pub use handedness::Handedness;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
-pub use pose::{Frame, Pose};
+pub use pose::{CameraBasis, Pose};
 pub use raster::Raster;
 pub use thin_lens::ThinLensCamera;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        impl Lens for Camera {
+        impl Projection for Camera {
             fn pose(&self) -> Pose {
                 match self { $(Camera::$variant(c) => c.pose(),)+ }
             }
@@ -54,13 +54,13 @@ macro_rules! delegate {
             fn problem(&self) -> Option<String> {
                 match self { $(Camera::$variant(c) => c.problem(),)+ }
             }
-            fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+            fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
                 match self { $(Camera::$variant(c) => c.ray(frame, sample),)+ }
             }
-            fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+            fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
                 match self { $(Camera::$variant(c) => c.project(frame, world, lens, found),)+ }
             }
-            fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+            fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
                 match self { $(Camera::$variant(c) => c.footprint(frame, sample, t),)+ }
             }
         }
@@ -111,7 +111,7 @@ impl CameraSample {
 }
 
 /// What every camera can do.
-pub trait Lens {
+pub trait Projection {
     /// Where it stands.
     fn pose(&self) -> Pose;
 
@@ -139,12 +139,12 @@ pub trait Lens {
 
     /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so
     /// that `t` is a distance.
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray>;
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
 
     /// Calls `found` with every point of the picture at which a point of the world is seen through
     /// a point of the lens: one, none, or several, as for a pair of eyes. What hides it is not
     /// asked. Where the picture may have any shape, points may lie beyond the square.
-    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2));
 
     /// The area across the ray at distance `t` that a unit of the picture's area covers, the point
     /// of the lens held fast.
@@ -152,7 +152,7 @@ pub trait Lens {
     /// This is the Jacobian |(dX/dx × dX/dy) · dir| of X = origin + t dir by the picture's point.
     /// Where all rays meet in one eye it is t² times the solid angle per area of the picture;
     /// where they are parallel it is constant. Undefined where there is no ray.
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32;
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32;
 }
 
 #[cfg(test)]

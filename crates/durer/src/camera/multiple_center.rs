@@ -22,7 +22,7 @@ mod roots;
 use super::perspective::half_width;
 use super::pose::world_ray;
 use super::sheet::Sheet;
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -130,7 +130,7 @@ impl MultipleCenterCamera {
     }
 }
 
-impl Lens for MultipleCenterCamera {
+impl Projection for MultipleCenterCamera {
     /// It stands where the middle column does.
     fn pose(&self) -> Pose {
         let Column { eye, forward, .. } = self.column(0.5);
@@ -156,12 +156,12 @@ impl Lens for MultipleCenterCamera {
         })
     }
 
-    fn ray(&self, _: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, _: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (column, height) = self.seen(sample)?;
         Some(world_ray(column.eye, column.forward + height * column.up))
     }
 
-    fn project(&self, _: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (sheet, up, world) = (self.sheet(), self.up.as_dvec3(), world.as_dvec3());
         for index in 0..self.pieces() {
             let [eyes, targets] = [0, 3].map(|column| self.piece(index, column));
@@ -180,7 +180,7 @@ impl Lens for MultipleCenterCamera {
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let Some((column, height)) = self.seen(sample) else { return 0.0 };
         let (t, square, unit) = (f64::from(t), 1.0 + height * height, self.sheet().unit());
         let turns = (column.forward_turns + height * column.up_turns) / square.sqrt();

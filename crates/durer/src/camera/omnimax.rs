@@ -17,7 +17,7 @@
 
 use super::Pose;
 use super::central::Central;
-use super::fisheye::Projection;
+use super::fisheye::FisheyeProjection;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3, fp};
@@ -73,7 +73,7 @@ impl OmnimaxCamera {
 
     /// The projector's direction for a point of the picture, and where it meets the dome.
     fn thrown(&self, point: DVec2) -> Option<(DVec3, DVec3)> {
-        let direction = self.axes() * Projection::Equidistant.direction(point, self.limit())?;
+        let direction = self.axes() * FisheyeProjection::Equidistant.direction(point, self.limit())?;
         let projector = self.projector.as_dvec3();
         let place = projector + to_sphere(projector, direction) * direction;
         self.on_dome(place).then_some((direction, place))
@@ -109,7 +109,7 @@ impl Central for OmnimaxCamera {
             return;
         }
         let thrown = self.axes().transpose() * (place - projector).normalize();
-        Projection::Equidistant.point(thrown, self.limit()).into_iter().for_each(found);
+        FisheyeProjection::Equidistant.point(thrown, self.limit()).into_iter().for_each(found);
     }
 
     fn solid_angle(&self, point: DVec2, _: DVec2) -> f64 {
@@ -117,6 +117,6 @@ impl Central for OmnimaxCamera {
         let seen = place - self.viewer.as_dvec3();
         let of_projector = (place - self.projector.as_dvec3()).length_squared() / place.dot(thrown);
         let of_viewer = place.dot(seen) / (seen.length_squared() * seen.length());
-        Projection::Equidistant.solid_angle(point, self.limit()) * of_projector * of_viewer
+        FisheyeProjection::Equidistant.solid_angle(point, self.limit()) * of_projector * of_viewer
     }
 }

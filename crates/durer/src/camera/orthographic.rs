@@ -2,7 +2,7 @@
 //!
 //! origin = center + x size/2 right + y size/2 up.
 
-use super::{CameraSample, Frame, Handedness, Lens, Pose};
+use super::{CameraBasis, CameraSample, Handedness, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -25,26 +25,26 @@ described! {
     }
 }
 
-impl Lens for OrthographicCamera {
+impl Projection for OrthographicCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
     /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
         let x = self.handedness.sign() as f32 * point.x;
         let origin = frame.eye + x * half * frame.right + point.y * half * frame.up;
         Some(Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) })
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let p = self.handedness.turned(frame.camera_from_world(world));
         found((DVec2::new(p.x, p.y) / (0.5 * f64::from(self.size))).as_vec2());
     }
 
     /// The same at all distances.
-    fn footprint(&self, frame: &Frame, _: &CameraSample, _: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, _: &CameraSample, _: f32) -> f32 {
         let half = 0.5 * f64::from(self.size);
         (half * half * frame.volume()) as f32
     }

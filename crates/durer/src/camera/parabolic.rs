@@ -13,7 +13,7 @@
 
 use super::Pose;
 use super::central::Central;
-use super::fisheye::Projection;
+use super::fisheye::FisheyeProjection;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec2, Vec3};
@@ -34,7 +34,7 @@ described! {
 }
 
 /// The same picture as a stereographic fisheye's along the axis, mirrored.
-const PROJECTION: Projection = Projection::Stereographic;
+const PROJECTION: FisheyeProjection = FisheyeProjection::Stereographic;
 const MIRROR: DVec3 = DVec3::new(-1.0, 1.0, 1.0);
 
 impl ParabolicCamera {

@@ -8,7 +8,7 @@
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
 use super::pose::unit_or;
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
@@ -33,7 +33,7 @@ pub(super) fn half_width(angle: f32) -> f64 {
     fp::tan_f64(f64::from(angle).to_radians() / 2.0)
 }
 
-impl Lens for PerspectiveCamera {
+impl Projection for PerspectiveCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -42,7 +42,7 @@ impl Lens for PerspectiveCamera {
         half_width(self.angle)
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, frame.half_width as f32);
         let dir = match frame.screen_point {
             false => frame.forward / half + point.x * frame.right + point.y * frame.up,
@@ -56,14 +56,14 @@ impl Lens for PerspectiveCamera {
         Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
             found((DVec2::new(p.x, p.y) / (p.z * frame.half_width)).as_vec2());
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let distance = 1.0 / frame.half_width;
         let [u, v, w] = [frame.right, frame.up, frame.forward].map(|axis| axis.as_dvec3());
         let point = sample.point.as_dvec2();

@@ -9,7 +9,7 @@
 //! Source: Renner, *Pinhole Photography*, 4th edition, 2008, chapter 5, for the geometry.
 
 use super::perspective::half_width;
-use super::{CameraSample, Frame, Lens, Pose, aperture};
+use super::{CameraBasis, CameraSample, Pose, Projection, aperture};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -36,13 +36,13 @@ described! {
 impl PinholeCamera {
     /// The point of the hole, the film's distance, and half the film's width, in the camera's
     /// space.
-    fn parts(&self, frame: &Frame, lens: Vec2) -> (DVec2, f64, f64) {
+    fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let film = f64::from(self.film_distance);
         (0.5 * f64::from(self.hole) * aperture::sample(lens, 0, 0.0), film, film * frame.half_width)
     }
 }
 
-impl Lens for PinholeCamera {
+impl Projection for PinholeCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -55,12 +55,12 @@ impl Lens for PinholeCamera {
         self.hole > 0.0
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (hole, film, width) = self.parts(frame, sample.lens);
         Some(frame.ray(hole.extend(0.0), (hole + width * sample.point.as_dvec2()).extend(film)))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (hole, film, width) = self.parts(frame, lens);
         let p = frame.camera_from_world(world);
         if p.z > 0.0 {
@@ -68,7 +68,7 @@ impl Lens for PinholeCamera {
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let (hole, film, width) = self.parts(frame, sample.lens);
         let dir: DVec3 = (hole + width * sample.point.as_dvec2()).extend(film);
         (f64::from(t * t) * film * width * width / (dir.length_squared() * dir.length())) as f32

@@ -1,6 +1,6 @@
 //! Where a camera stands and how it is turned.
 
-use super::Lens;
+use super::Projection;
 use crate::dialect::{Compat, Rules};
 use crate::math::{Ray, Vec3};
 use glam::{DMat3, DVec3};
@@ -21,7 +21,7 @@ pub struct Pose {
 ///
 /// Together they are the camera's space: x to the right, y upwards, z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Frame {
+pub struct CameraBasis {
     /// Position of the eye.
     pub eye: Vec3,
     /// Where it looks.
@@ -32,7 +32,7 @@ pub struct Frame {
     pub up: Vec3,
     /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
     pub screen_point: bool,
-    /// The camera's [`Lens::half_width`], worked out once.
+    /// The camera's [`Projection::half_width`], worked out once.
     pub half_width: f64,
 }
 
@@ -49,10 +49,10 @@ fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
 }
 
-impl Frame {
+impl CameraBasis {
     /// The axes of a camera, and what all its rays need of its angle.
-    pub fn of(camera: &impl Lens, rules: &Rules) -> Self {
-        Frame { half_width: camera.half_width(), ..Frame::new(camera.pose(), rules) }
+    pub fn of(camera: &impl Projection, rules: &Rules) -> Self {
+        CameraBasis { half_width: camera.half_width(), ..CameraBasis::new(camera.pose(), rules) }
     }
 
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
@@ -69,7 +69,7 @@ impl Frame {
             let up = right.cross(forward);
             if screen_point { scaled_or(up, up) } else { up }
         };
-        Frame { eye: pose.center, forward, right, up, screen_point, half_width: 1.0 }
+        CameraBasis { eye: pose.center, forward, right, up, screen_point, half_width: 1.0 }
     }
 
     /// The axes as columns, in double precision: from the camera's space to the world's.

@@ -21,7 +21,7 @@
 
 use super::pose::world_ray;
 use super::sheet::Sheet;
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -166,7 +166,7 @@ impl ProjectiveCamera {
     }
 }
 
-impl Lens for ProjectiveCamera {
+impl Projection for ProjectiveCamera {
     fn pose(&self) -> Pose {
         let Parts { eye, rotation, .. } = self.parts();
         let rows = rotation.transpose();
@@ -188,13 +188,13 @@ impl Lens for ProjectiveCamera {
         singular.then(|| "the left three columns of `matrix` are singular: such a camera has no eye".into())
     }
 
-    fn ray(&self, _: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, _: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let parts = self.parts();
         let point = self.seen(&parts, sample)?;
         Some(world_ray(parts.eye, parts.rotation.transpose() * point.extend(1.0)))
     }
 
-    fn project(&self, _: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, _: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (parts, sheet) = (self.parts(), self.sheet());
         let p = parts.rotation * (world.as_dvec3() - parts.eye);
         let point = p.truncate() / p.z;
@@ -209,7 +209,7 @@ impl Lens for ProjectiveCamera {
         }
     }
 
-    fn footprint(&self, _: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, _: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let parts = self.parts();
         let Some(point) = self.seen(&parts, sample) else { return 0.0 };
         let pixels = parts.intrinsic.determinant() * self.distorted(point).1.determinant();

@@ -10,7 +10,7 @@
 
 use super::perspective::half_width;
 use super::sheet::Sheet;
-use super::{CameraSample, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::{Dialect, set};
 use crate::math::{Ray, Vec2, Vec3};
@@ -52,7 +52,7 @@ impl PushBroomCamera {
     }
 }
 
-impl Lens for PushBroomCamera {
+impl Projection for PushBroomCamera {
     /// It stands half way.
     fn pose(&self) -> Pose {
         let center = self.start.as_dvec3() + 0.5 * self.way();
@@ -64,7 +64,7 @@ impl Lens for PushBroomCamera {
     }
 
     fn problem(&self) -> Option<String> {
-        let frame = Frame::new(self.pose(), Dialect::Durer.rules());
+        let frame = CameraBasis::new(self.pose(), Dialect::Durer.rules());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
         // Also where the way has no length.
         let moves = sideways > 1e-6 * self.way().length();
@@ -72,13 +72,13 @@ impl Lens for PushBroomCamera {
             .then(|| "from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (u, height) = self.column(sample)?;
         let ray = frame.ray(DVec3::ZERO, DVec3::new(0.0, height, 1.0));
         Some(Ray { origin: (self.start.as_dvec3() + u * self.way()).as_vec3(), ..ray })
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (from_start, way) = (frame.turned(world.as_dvec3() - self.start.as_dvec3()), frame.turned(self.way()));
         // The column whose plane the point lies in.
         let u = from_start.x / way.x;
@@ -91,7 +91,7 @@ impl Lens for PushBroomCamera {
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let Some((_, height)) = self.column(sample) else { return 0.0 };
         let sheet = self.sheet();
         let unit = sheet.unit();

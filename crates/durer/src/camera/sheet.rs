@@ -28,7 +28,7 @@ impl Sheet {
         place.cmpge(DVec2::ZERO).all() && place.cmple(self.0).all()
     }
 
-    /// Its sides, as [`super::Lens::proportions`] has them.
+    /// Its sides, as [`super::Projection::proportions`] has them.
     pub fn proportions(self) -> Option<Vec2> {
         Some(self.0.as_vec2())
     }

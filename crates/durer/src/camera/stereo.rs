@@ -11,7 +11,7 @@
 
 use super::perspective::half_width;
 use super::sheet::Sheet;
-use super::{CameraSample, Eyes, Frame, Lens, Pose};
+use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Rule, described, described_words};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -76,12 +76,12 @@ impl StereoCamera {
     }
 
     /// The units of the window at distance 1 that a unit of one eye's sheet is.
-    fn scale(&self, frame: &Frame) -> f64 {
+    fn scale(&self, frame: &CameraBasis) -> f64 {
         frame.half_width / (0.5 * self.one().max_element())
     }
 
     /// The eye, and the direction from it in its own axes.
-    fn line(&self, frame: &Frame, sample: &CameraSample) -> Option<(Eye, DVec3)> {
+    fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<(Eye, DVec3)> {
         let (view, place) = self.eyes.view(self.one(), sample.point.as_dvec2(), sample.pixel.as_dvec2())?;
         let eye = self.eye(view.side);
         let dir = ((place - 0.5 * self.one()) * self.scale(frame) + eye.shear).extend(1.0);
@@ -89,7 +89,7 @@ impl StereoCamera {
     }
 }
 
-impl Lens for StereoCamera {
+impl Projection for StereoCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -102,12 +102,12 @@ impl Lens for StereoCamera {
         self.eyes.sheet(self.one()).proportions()
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (eye, dir) = self.line(frame, sample)?;
         Some(frame.ray(eye.at, eye.axes * dir))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (one, p) = (self.one(), frame.camera_from_world(world));
         for view in self.eyes.views(one) {
             let eye = self.eye(view.side);
@@ -119,7 +119,7 @@ impl Lens for StereoCamera {
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let Some((_, dir)) = self.line(frame, sample) else { return 0.0 };
         let unit = self.scale(frame) * self.eyes.sheet(self.one()).unit();
         (f64::from(t * t) * unit * unit / (dir.length_squared() * dir.length())) as f32

@@ -80,14 +80,14 @@ fn border_pixels_have_their_centres_on_the_border() {
 #[test]
 fn a_frame_is_right_handed_unless_up_is_used_as_written() {
     let pose = Pose { center: Vec3::X, direction: Vec3::NEG_Z * 3.0, up: Vec3::new(0.0, 2.0, -2.0) };
-    let frame = Frame::new(pose, &rules(&[]));
+    let frame = CameraBasis::new(pose, &rules(&[]));
     assert_eq!((frame.eye, frame.forward), (Vec3::X, Vec3::NEG_Z));
     close(frame.right, Vec3::X);
     close(frame.up, Vec3::Y);
-    assert_eq!(Frame::new(pose, &rules(&[Compat::RawUp])).up, pose.up);
-    close(Frame::new(pose, &rules(&[Compat::SkewUp])).up, pose.up.normalize());
+    assert_eq!(CameraBasis::new(pose, &rules(&[Compat::RawUp])).up, pose.up);
+    close(CameraBasis::new(pose, &rules(&[Compat::SkewUp])).up, pose.up.normalize());
     // Looking along `up`, the axes are arbitrary but perpendicular.
-    let frame = Frame::new(Pose { up: Vec3::Z, ..pose }, &rules(&[]));
+    let frame = CameraBasis::new(Pose { up: Vec3::Z, ..pose }, &rules(&[]));
     assert!(frame.right.is_normalized() && frame.up.is_normalized());
     assert!(frame.right.dot(frame.up).abs() + frame.right.dot(frame.forward).abs() < 1e-6);
 }
@@ -95,7 +95,7 @@ fn a_frame_is_right_handed_unless_up_is_used_as_written() {
 #[test]
 fn the_pinhole_sees_its_angle_across_the_square() {
     let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
-    let frame = Frame::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, &rules(&[]));
     let ray = |x, y| camera.ray(&frame, &CameraSample::at(Vec2::new(x, y))).unwrap();
     close(ray(0.0, 0.0).dir, Vec3::NEG_Z);
     close(ray(1.0, 0.0).dir, Vec3::new(1.0, 0.0, -1.0).normalize());
@@ -103,7 +103,7 @@ fn the_pinhole_sees_its_angle_across_the_square() {
     assert_eq!((ray(0.3, 0.4).origin, ray(0.3, 0.4).t_min), (Vec3::Y, 0.0));
     for angle in [1.0f32, 30.0, 120.0, 179.0] {
         let camera = PerspectiveCamera { angle, ..camera.clone() };
-        let frame = Frame::of(&camera, &rules(&[]));
+        let frame = CameraBasis::of(&camera, &rules(&[]));
         let dir = |x| camera.ray(&frame, &CameraSample::at(x)).unwrap().dir;
         let cosine = dir(Vec2::X).dot(dir(Vec2::NEG_X));
         assert!((f64::from(cosine) - libm::cos(f64::from(angle).to_radians())).abs() < 1e-6, "{angle}");
@@ -119,7 +119,7 @@ fn parallel_rays_start_on_the_picture_and_run_both_ways() {
         size: 5.0,
         ..OrthographicCamera::default()
     };
-    let frame = Frame::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, &rules(&[]));
     // right = x cross y = z; up = y.
     let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));

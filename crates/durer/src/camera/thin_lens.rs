@@ -15,7 +15,7 @@
 //! for the circle of confusion.
 
 use super::perspective::half_width;
-use super::{CameraSample, Frame, Handedness, Lens, Pose, aperture};
+use super::{CameraBasis, CameraSample, Handedness, Pose, Projection, aperture};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
@@ -37,7 +37,7 @@ described! {
         /// Distance of the plane that is sharp, along the axis.
         focus_distance: f32 = 1.0, optional, Rule::Positive, ["focusDistance" in set::DURER];
         /// Straight blades around the opening; 0 makes it round.
-        blades: u32 = 0, optional, Rule::AtMost(aperture::MOST_BLADES), ["blades" in set::DURER];
+        blades: u32 = 0, optional, Rule::AtMost(aperture::MAX_BLADES), ["blades" in set::DURER];
         /// Turn of the opening about the axis, in degrees.
         blade_angle: f32 = 0.0, optional, Rule::Any, ["bladeAngle" in set::DURER];
         /// What is seen moves to the right by this part of half the larger side.
@@ -56,21 +56,21 @@ impl ThinLensCamera {
     }
 
     /// The point of the lens, the distance of focus, and half the width of what is seen there.
-    fn parts(&self, frame: &Frame, lens: Vec2) -> (DVec2, f64, f64) {
+    fn parts(&self, frame: &CameraBasis, lens: Vec2) -> (DVec2, f64, f64) {
         let focus = f64::from(self.focus_distance);
         let opening = aperture::sample(lens, self.blades, self.blade_angle);
         (0.5 * f64::from(self.aperture) * opening, focus, focus * frame.half_width)
     }
 
     /// Origin and direction in the camera's space.
-    fn line(&self, frame: &Frame, sample: &CameraSample) -> (DVec3, DVec3) {
+    fn line(&self, frame: &CameraBasis, sample: &CameraSample) -> (DVec3, DVec3) {
         let (lens, focus, width) = self.parts(frame, sample.lens);
         let target = width * (sample.point.as_dvec2() + self.shift());
         (lens.extend(0.0), (target - lens).extend(focus))
     }
 }
 
-impl Lens for ThinLensCamera {
+impl Projection for ThinLensCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
@@ -87,12 +87,12 @@ impl Lens for ThinLensCamera {
         aperture::problem(self.blades)
     }
 
-    fn ray(&self, frame: &Frame, sample: &CameraSample) -> Option<Ray> {
+    fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (origin, dir) = self.line(frame, sample);
         Some(frame.ray(self.handedness.turned(origin), self.handedness.turned(dir)))
     }
 
-    fn project(&self, frame: &Frame, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
+    fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
         let (lens, focus, width) = self.parts(frame, lens);
         let p = self.handedness.turned(frame.camera_from_world(world));
         if p.z > 0.0 {
@@ -101,7 +101,7 @@ impl Lens for ThinLensCamera {
         }
     }
 
-    fn footprint(&self, frame: &Frame, sample: &CameraSample, t: f32) -> f32 {
+    fn footprint(&self, frame: &CameraBasis, sample: &CameraSample, t: f32) -> f32 {
         let (_, focus, width) = self.parts(frame, sample.lens);
         let (_, dir) = self.line(frame, sample);
         (f64::from(t * t) * focus * width * width / (dir.length_squared() * dir.length())) as f32

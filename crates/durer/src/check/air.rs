@@ -1,7 +1,7 @@
 //! Fog: that lets nothing through, or has no end.
 
 use super::finding::{Finding, number, percent};
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::light::Light;
 use crate::math::{Color, fp};
@@ -10,7 +10,7 @@ use crate::math::{Color, fp};
 const WALL: f32 = 0.01;
 
 /// Fog that keeps light off.
-pub(super) fn thick_fog(scout: &Scout) -> Vec<Finding> {
+pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
     if !scout.is_physical() {

@@ -1,16 +1,16 @@
 //! Lights with a beam: spotlights and measured lamps that shine past all that is seen.
 
 use super::aim::{Aim, places, within};
-use super::finding::{Finding, MOST_SOUGHT, number, percent, vector};
+use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
 use super::lights::{all_fail, useless, written};
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::light::{Emitter as _, Light};
 use crate::math::{Vec3, fp};
 use crate::scene::Spanned;
 
 /// Beams that miss what is seen.
-pub(super) fn away(scout: &Scout) -> Vec<Finding> {
+pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
         // Of a plane the horizon is seen as well: things tell where to shine.
@@ -40,7 +40,7 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Cones that hold next to nothing of what is seen.
-pub(super) fn narrow(scout: &Scout) -> Vec<Finding> {
+pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Narrow, |diagnostic, light| {
         let Light::Spot(spot) = &light.value else { return diagnostic };
         let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
@@ -56,8 +56,8 @@ pub(super) fn narrow(scout: &Scout) -> Vec<Finding> {
     })
 }
 
-fn missing(scout: &Scout, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
-    let lights = scout.world().lights().len().min(MOST_SOUGHT);
+fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
+    let lights = scout.world().lights().len().min(MAX_SOUGHT);
     let mut found = Vec::new();
     for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
         let (Some(light), Some((diagnostic, span))) = (written(scout, number), useless(scout, number, String::new()))
@@ -75,7 +75,7 @@ fn missing(scout: &Scout, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>)
 }
 
 /// Spotlights whose inner cone is wider than the outer one.
-pub(super) fn inner_angle(scout: &Scout) -> Vec<Finding> {
+pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.iter().flatten();
     let say = |light: &Spanned<Light>| {
         let Light::Spot(spot) = &light.value else { return None };
@@ -92,11 +92,11 @@ pub(super) fn inner_angle(scout: &Scout) -> Vec<Finding> {
             _ => diagnostic.at(light.span),
         }))
     };
-    lights.filter_map(say).take(MOST_SOUGHT).collect()
+    lights.filter_map(say).take(MAX_SOUGHT).collect()
 }
 
 /// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
-fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
+fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let Light::Point(point) = &scout.world().lights()[light] else { return None };
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
     let world = scout.world();
@@ -113,10 +113,10 @@ fn touching(scout: &Scout, light: usize) -> Option<(f32, u32)> {
 }
 
 /// Fading lights just above a surface.
-pub(super) fn near(scout: &Scout) -> Vec<Finding> {
+pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
     let places = places(scout);
     let mut found = Vec::new();
-    for light in 0..scout.world().lights().len().min(super::finding::MOST_ALIKE) {
+    for light in 0..scout.world().lights().len().min(super::finding::MAX_ALIKE) {
         let Some((near, object)) = touching(scout, light) else { continue };
         let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
         let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();

@@ -7,7 +7,7 @@ use crate::sampler::SampleId;
 use rayon::prelude::*;
 
 /// Of a path tracer's picture, so many pixels are looked at, by so many samples each.
-const MOST_PIXELS: usize = 300;
+const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
 /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them, each
@@ -19,7 +19,7 @@ pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
     };
     let job = grid.subject.job;
     let path = Path::new(grid.world(), job.settings, transport);
-    let step = grid.probes.len().div_ceil(MOST_PIXELS).max(1);
+    let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
     // Not one in each row: that would be the same column each time.
     let chosen: Vec<&Probe> =
         grid.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();

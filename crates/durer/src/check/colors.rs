@@ -1,7 +1,7 @@
 //! Colours: of materials that show nothing, and numbers that are none of a colour's.
 
-use super::finding::{Finding, MOST_SOUGHT, counted, percent, vector};
-use super::scout::Scout;
+use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::dialect::{Compat, Dialect, Secondary};
 use crate::light::{Emitter as _, Light};
@@ -19,7 +19,7 @@ const ALIKE: f32 = 2.0 / 255.0;
 const FEWEST_LOST: usize = 6;
 
 /// The Phong materials as written and as they are used, with their numbers.
-fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
+fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
     let compiled = scout.world().materials().iter();
     let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
     both.filter_map(|(i, (written, compiled))| match compiled {
@@ -29,12 +29,12 @@ fn phongs<'s>(scout: &'s Scout) -> impl Iterator<Item = (u32, &'s Spanned<Writte
 }
 
 /// How many rays see a material, or one that is mixed of it.
-fn rays(scout: &Scout, material: u32) -> usize {
+fn rays(scout: &SceneProbe, material: u32) -> usize {
     scout.material_rays()[material as usize]
 }
 
 /// Whether nothing that is seen gives back any light.
-pub(super) fn all_black(scout: &Scout) -> bool {
+pub(super) fn all_black(scout: &SceneProbe) -> bool {
     let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
     scout.seen().next().is_some() && !phongs(scout).any(shows)
 }
@@ -48,7 +48,7 @@ fn is_black(phong: &Phong) -> bool {
 }
 
 /// Materials that give back no light at all.
-pub(super) fn black(scout: &Scout) -> Vec<Finding> {
+pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return super::layers::black(scout);
     }
@@ -65,11 +65,11 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
         let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
         Finding::from(diagnostic).whole(whole)
     };
-    black.iter().take(MOST_SOUGHT).map(say).collect()
+    black.iter().take(MAX_SOUGHT).map(say).collect()
 }
 
 /// Mirrors and glass in a picture without secondary rays.
-pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
+pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let old = scout.world().rules().is_official();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
@@ -117,7 +117,7 @@ pub(super) fn no_bounces(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Mirrors and glass whose rays the options leave out, or let end inside.
-fn switched_off(scout: &Scout, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
+fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
     let is_glass = |phong: &Phong| phong.transparent != Color::ZERO;
@@ -146,10 +146,10 @@ fn switched_off(scout: &Scout, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<
 }
 
 /// Glass of an index that no glass has.
-pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
+pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = super::layers::odd_index(scout);
     let fields = ["indexOfRefraction", "refractionIndex"];
-    for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MOST_SOUGHT) {
+    for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MAX_SOUGHT) {
         let Written::Phong(own, _) = &written.value else { continue };
         let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
         if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
@@ -208,7 +208,7 @@ struct Named {
     most: f32,
 }
 
-fn all_colors(scout: &Scout) -> Vec<Named> {
+fn all_colors(scout: &SceneProbe) -> Vec<Named> {
     let mut colors = Vec::new();
     for (i, written, used) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
@@ -247,7 +247,7 @@ fn all_colors(scout: &Scout) -> Vec<Named> {
 }
 
 /// Colours from 0 to 255.
-pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
+pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
         // Only whole numbers of which some are large are meant as 255ths.
@@ -281,7 +281,7 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
         found.push(Finding::from(diagnostic).whole(far));
     };
     let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
-    for Named { color, block, fields, .. } in beyond.take(MOST_SOUGHT) {
+    for Named { color, block, fields, .. } in beyond.take(MAX_SOUGHT) {
         say(color, scout.value(block, &fields), Some(block));
     }
     let background = &scout.subject.scene.background;
@@ -298,7 +298,7 @@ pub(super) fn too_large(scout: &Scout) -> Vec<Finding> {
 
 /// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more
 /// than all light.
-pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
+pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     let bounces = scout.subject.job.settings.bounces > 0;
     let sum = |phong: &Phong| {
         let glass = if phong.fresnel { Color::ZERO } else { phong.transparent };
@@ -322,7 +322,7 @@ pub(super) fn gives_too_much(scout: &Scout) -> Option<Diagnostic> {
 
 /// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets
 /// through.
-pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return super::layers::dull_glass(scout);
     }
@@ -343,11 +343,11 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
             .help("write `specularColor 1 1 1` for clear glass");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
     };
-    phongs(scout).filter(dull).take(MOST_SOUGHT).map(say).collect()
+    phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
 }
 
 /// Glass with an index and no colour of what goes through.
-fn dull_by_color(scout: &Scout) -> Vec<Finding> {
+fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
     let dull = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| match &written.value {
         Written::Phong(own, _) => {
             let index = own.index_of_refraction.or(own.refraction_index).unwrap_or(1.0);
@@ -367,17 +367,17 @@ fn dull_by_color(scout: &Scout) -> Vec<Finding> {
             .help("`transparentColor` is the share of light that goes through: `0.9 0.9 0.9` is clear");
         Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
     };
-    phongs(scout).filter(dull).take(MOST_SOUGHT).map(say).collect()
+    phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
 }
 
 /// Where the background is written: the scene does not keep it.
-pub(super) fn background_span(scout: &Scout) -> Option<Span> {
+pub(super) fn background_span(scout: &SceneProbe) -> Option<Span> {
     let file = scout.subject.scene.camera_span.file;
     crate::format::course::place::section(scout.subject.files.bytes(file)?, file, "Background")
 }
 
 /// Colours below zero.
-pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
+pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     let below = |named: &Named| named.color.min_element() < 0.0;
     let say = |Named { color, block, fields, .. }: Named| {
         let mended = color.abs();
@@ -396,11 +396,11 @@ pub(super) fn negative(scout: &Scout) -> Vec<Finding> {
     };
     let own = [own(background.color, "color", "color"), own(background.ambient_light, "ambientLight", "ambient_light")];
     let all = all_colors(scout).into_iter().chain(own.into_iter().flatten());
-    all.filter(below).take(MOST_SOUGHT).map(say).collect()
+    all.filter(below).take(MAX_SOUGHT).map(say).collect()
 }
 
 /// Things that have the colour of what is behind them.
-pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
+pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if world.cube_map().is_some() {
         return Vec::new();
@@ -427,7 +427,7 @@ pub(super) fn camouflaged(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Things of which all that is seen has the background's colour, exactly: others are seen.
-fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
+fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scout.world();
     if world.background().max_element() < 0.02 || scout.is_physical() {
         return Vec::new();
@@ -451,11 +451,11 @@ fn lost_in_background(scout: &Scout, alike: &dyn Fn(Color) -> bool) -> Vec<Findi
                 .help("take another `color` for the background, or for the material");
         Some(Finding::from(diagnostic))
     };
-    world.objects().iter().enumerate().filter_map(say).take(super::finding::MOST_ALIKE).collect()
+    world.objects().iter().enumerate().filter_map(say).take(super::finding::MAX_ALIKE).collect()
 }
 
 /// Textures on things without texture coordinates.
-pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
+pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
     let meshes_only = scout.world().rules().has(Compat::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
     let mut found = Vec::new();
@@ -481,7 +481,7 @@ pub(super) fn no_coordinates(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Materials that nothing is made of.
-pub(super) fn unused(scout: &Scout) -> Vec<Finding> {
+pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut used = vec![false; world.materials().len()];
     for object in world.objects() {

@@ -5,7 +5,7 @@ use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
 use super::lights::place;
 use super::probes::Seen;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
 use crate::diag::{Diagnostic, Severity};
 use crate::light::Emitter as _;
@@ -15,11 +15,11 @@ use crate::math::{Color, fp};
 const BEYOND: f32 = 1.0 + VISIBLE;
 const FAR_BEYOND: f32 = 1.25;
 /// Where so large a share of what is seen is cut, or far beyond, it is more than highlights.
-const MOST_CUT: f32 = 0.4;
-const MOST_FAR: f32 = 0.2;
+const MAX_CUT: f32 = 0.4;
+const MAX_FAR: f32 = 0.2;
 
 /// Where more than this share is white, nothing is seen for light.
-const MOST_WHITE: f32 = 0.5;
+const MAX_WHITE: f32 = 0.5;
 
 /// A factor of light in stops.
 fn stops_of(factor: f32) -> f32 {
@@ -28,10 +28,10 @@ fn stops_of(factor: f32) -> f32 {
 
 /// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in
 /// cd/m^2.
-fn white(scout: &Scout) -> Vec<Finding> {
+fn white(scout: &SceneProbe) -> Vec<Finding> {
     let shown = scout.light();
     let white = shown.iter().filter(|color| color.min_element() > 1.1).count();
-    if white as f32 <= MOST_WHITE * shown.len() as f32 {
+    if white as f32 <= MAX_WHITE * shown.len() as f32 {
         return Vec::new();
     }
     let mut values: Vec<f32> = shown.iter().map(|color| color.max_element()).collect();
@@ -61,7 +61,7 @@ fn white(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Values beyond 1 in a picture of eight bits.
-pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
+pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() || scout.world().environment().is_some() {
         return white(scout);
     }
@@ -70,7 +70,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     let cut = lit.iter().filter(|color| color.max_element() > BEYOND).count();
     let white = lit.iter().filter(|color| color.min_element() > BEYOND).count();
     let over = |count: usize, share: f32| count as f32 > share * lit.len() as f32;
-    if !over(cut, MOST_CUT) && !over(far, MOST_FAR) {
+    if !over(cut, MAX_CUT) && !over(far, MAX_FAR) {
         return Vec::new();
     }
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
@@ -94,7 +94,7 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
     let local = |seen: &Seen| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
     let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
     if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
-        let severity = if over(far, MOST_FAR) { Severity::Warning } else { Severity::Note };
+        let severity = if over(far, MAX_FAR) { Severity::Warning } else { Severity::Note };
         let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
         return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
     }
@@ -114,14 +114,14 @@ pub(super) fn too_bright(scout: &Scout) -> Vec<Finding> {
         diagnostic = diagnostic.fix_at(value, vector(light.color() * factor));
         diagnostic.span = diagnostic.span.or(value).or(Some(span));
     }
-    if !over(far, MOST_FAR) {
+    if !over(far, MAX_FAR) {
         diagnostic.severity = Severity::Note;
     }
     vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
 }
 
 /// A picture of one colour.
-pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
+pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
     let mut colors = scout.light().iter().map(|color| shown(*color));
     let Some(first) = colors.next().filter(|_| scout.light().len() > 4) else { return Vec::new() };
@@ -135,7 +135,7 @@ pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
     };
     let empty = scout.seen().next().is_none();
     // What is too small for the grid of rays is there all the same.
-    if empty && scout.sights().contains(&super::sight::Sight::Seen) {
+    if empty && scout.visibilities().contains(&super::visibility::Visibility::Seen) {
         return Vec::new();
     }
     let diagnostic = Diagnostic::warning(format!("the whole picture is {name}"));
@@ -147,7 +147,7 @@ pub(super) fn one_color(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A picture that is nearly black where it is not background.
-pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
+pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return dark_paths(scout);
     }
@@ -167,7 +167,7 @@ pub(super) fn too_dark(scout: &Scout) -> Vec<Finding> {
 }
 
 /// The same of a path tracer's picture.
-fn dark_paths(scout: &Scout) -> Vec<Finding> {
+fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_dark() {
         return Vec::new();
     }
@@ -194,7 +194,7 @@ fn dark_paths(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A range of depths beside all depths.
-pub(super) fn depth_range(scout: &Scout) -> Vec<Finding> {
+pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
     let Some((min, max)) = scout.subject.job.depth_range else { return Vec::new() };
     let depths: Vec<f32> = scout.seen().map(|(_, seen)| seen.t).collect();
     let least = depths.iter().copied().fold(f32::INFINITY, f32::min);

@@ -1,10 +1,10 @@
 //! Sizes: things too small or too large to be seen, and fields of view to match.
 
-use super::finding::{Finding, MOST_SOUGHT, number};
-use super::scout::Scout;
-use super::sight::{Sight, pixels};
+use super::finding::{Finding, MAX_SOUGHT, number};
+use super::scene_probe::SceneProbe;
 use super::verdict::Verdict;
-use crate::camera::{Camera, Lens};
+use super::visibility::{Visibility, pixels};
+use crate::camera::{Camera, Projection};
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Aabb, fp};
 use crate::scene::{MatrixOp, Node, Object};
@@ -24,7 +24,7 @@ const SWALLOWING: f32 = 20.0;
 const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
 
 /// All that has an end spans but a few pixels.
-pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
+pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     let bounds = scout.world().bounds();
     let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
         return Vec::new();
@@ -38,7 +38,7 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
         _ => 0.0,
     };
     let fewest = (share * scout.larger()).max(FEWEST_PIXELS);
-    if size >= fewest || !empty && !scout.sights().contains(&Sight::Seen) {
+    if size >= fewest || !empty && !scout.visibilities().contains(&Visibility::Seen) {
         return Vec::new();
     }
     let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
@@ -69,10 +69,11 @@ pub(super) fn too_small(scout: &Scout) -> Vec<Finding> {
 }
 
 /// The picture shows a tiny part of things: an angle in radians, say.
-pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
+pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
     // What is seen whole is not seen too near.
-    let seen = scout.world().objects().iter().zip(scout.sights()).filter(|(_, sight)| **sight == Sight::Seen);
+    let seen =
+        scout.world().objects().iter().zip(scout.visibilities()).filter(|(_, sight)| **sight == Visibility::Seen);
     let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
     if bounds.is_empty() {
         return Vec::new();
@@ -118,10 +119,11 @@ pub(super) fn too_narrow(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A narrow field of view that one thing fills, and most others are beside it.
-fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
+fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let Camera::Perspective(camera) = scout.world().camera() else { return None };
-    let sights = scout.sights().iter().zip(scout.world().objects());
-    let out = sights.filter(|(sight, object)| **sight == Sight::Outside && object.bounds().is_some()).count();
+    let visibilities = scout.visibilities().iter().zip(scout.world().objects());
+    let out =
+        visibilities.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
     let filled = sizes.iter().all(|size| *size > 0.9 * scout.larger());
     if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
         return None;
@@ -137,7 +139,7 @@ fn one_fills(scout: &Scout, sizes: &[f32]) -> Option<Finding> {
 }
 
 /// How many times larger an object is than the largest other one, if that is far.
-pub(super) fn times_larger(scout: &Scout, object: u32) -> Option<f32> {
+pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     let size = |i: usize| Some(scout.world().objects()[i].bounds()?.size().max_element());
     let others = (0..scout.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
     let times = size(object as usize)? / others.fold(0.0, f32::max);
@@ -146,32 +148,32 @@ pub(super) fn times_larger(scout: &Scout, object: u32) -> Option<f32> {
 
 /// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others
 /// are not seen for it.
-fn is_harm(scout: &Scout, object: u32) -> bool {
-    let sights = scout.sights();
-    let hides = sights.contains(&Sight::Hidden(object));
+fn is_harm(scout: &SceneProbe, object: u32) -> bool {
+    let visibilities = scout.visibilities();
+    let hides = visibilities.contains(&Visibility::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
     let ball = matches!(&scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
     // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
     if swallows(scout, object) {
         return true;
     }
-    match sights[object as usize] {
+    match visibilities[object as usize] {
         // What of a ball is too high or too large, its place tells.
-        Sight::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
+        Visibility::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
         _ => true,
     }
 }
 
 /// Whether the camera is in an object that keeps light off or hides others.
-fn swallows(scout: &Scout, object: u32) -> bool {
+fn swallows(scout: &SceneProbe, object: u32) -> bool {
     let eye = scout.world().camera().pose().center;
     let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
-    let harms = keeps_light || scout.sights().contains(&Sight::Hidden(object));
+    let harms = keeps_light || scout.visibilities().contains(&Visibility::Hidden(object));
     harms && super::within::around(scout.world(), eye).contains(&object)
 }
 
 /// Objects far larger or smaller than most.
-pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
+pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let sized = |(i, object): (usize, &crate::world::Object)| {
         let bounds: Aabb = object.bounds().filter(|bounds| !bounds.is_empty())?;
@@ -181,7 +183,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
     sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
     let absurd = sizes.iter().filter(|(_, size)| !ABSURD.contains(size));
     let lost: Vec<Finding> = absurd
-        .take(MOST_SOUGHT)
+        .take(MAX_SOUGHT)
         .map(|&(object, size)| {
             let diagnostic = Diagnostic::warning(format!("the {} is {} wide", scout.object(object), number(size)))
                 .at(scout.object_span(object))
@@ -212,7 +214,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
         let ratio = if size > middle { size / middle } else { middle / size };
         // Of two, either may be wrong: the small one is not seen, the large one hides.
         let spoils = size > middle && is_harm(scout, object);
-        if found.len() >= MOST_SOUGHT
+        if found.len() >= MAX_SOUGHT
             || ratio
                 < if !spoils {
                     OUT_OF_SCALE
@@ -235,9 +237,9 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
             number(ratio)
         ))
         .at(scout.object_span(object))
-        .effect(match scout.sights()[object as usize] {
-            Sight::Seen if size > middle => "it hides or holds the others",
-            Sight::Seen => "hardly a pixel shows it",
+        .effect(match scout.visibilities()[object as usize] {
+            Visibility::Seen if size > middle => "it hides or holds the others",
+            Visibility::Seen => "hardly a pixel shows it",
             _ if size > middle => "it reaches over all, and what of it would be seen is not in the picture",
             _ => "it is not seen",
         })
@@ -255,7 +257,7 @@ pub(super) fn out_of_scale(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Rotations by less than a turn in radians, which are fractions of pi.
-pub(super) fn radians(scout: &Scout) -> Vec<Finding> {
+pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
     let mut angles = Vec::new();
     if let Some(root) = &scout.subject.scene.root {
         root.objects.iter().for_each(|object| rotations(object, &mut angles));

@@ -1,13 +1,13 @@
 //! Flat faces that lie in one another: of two, one is seen at random.
 
-use super::scout::Scout;
-use crate::camera::Lens;
+use super::scene_probe::SceneProbe;
+use crate::camera::Projection;
 use crate::math::Vec3;
 use crate::shape::Primitive;
 use crate::world::{Geometry, Object};
 
 /// Of more things, none are looked at.
-const MOST_THINGS: usize = 300;
+const MAX_THINGS: usize = 300;
 
 /// A flat face: its corners in order, and its normal if only one side is ever seen.
 struct Face {
@@ -78,9 +78,9 @@ fn meet(a: &Face, b: &Face) -> bool {
 
 /// The objects, boxes and rectangles, whose faces lie in one another on the side that the camera
 /// sees.
-pub(super) fn overlapping(scout: &Scout) -> Vec<(usize, usize)> {
+pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
     let objects = scout.world().objects();
-    if objects.len() > MOST_THINGS {
+    if objects.len() > MAX_THINGS {
         return Vec::new();
     }
     let eye = scout.world().camera().pose().center;

@@ -1,15 +1,15 @@
 //! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
 
-use super::finding::{Finding, MOST_SOUGHT, counted};
+use super::finding::{Finding, MAX_SOUGHT, counted};
 use super::mesh::topology::Topology;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Severity};
 use crate::math::{Affine, Vec3};
 use crate::shape::Primitive;
 use crate::world::Geometry;
 
 /// The text change that turns a flat shape round.
-fn turned(scout: &Scout, diagnostic: Diagnostic, object: u32) -> Diagnostic {
+fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
     let span = scout.object_span(object);
     let Geometry::Primitive(shape) = &scout.world().objects()[object as usize].geometry else { return diagnostic };
     match shape {
@@ -32,7 +32,7 @@ fn turned(scout: &Scout, diagnostic: Diagnostic, object: u32) -> Diagnostic {
 
 /// Objects of which only backs are seen: a warning where backs are not shaded as fronts are, else a
 /// note on flat shapes, which have a front that was meant to be seen.
-pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
+pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     let shaded = scout.subject.job.settings.shade_back;
     let is_flat = |i: usize| {
         let shape = &scout.world().objects()[i].geometry;
@@ -74,11 +74,11 @@ pub(super) fn from_behind(scout: &Scout) -> Vec<Finding> {
             .help("ask for `--shade-back` (in the course's programs `-shade_back`)");
         Finding::from(turned(scout, diagnostic, i as u32)).whole(backs[i] * 10 > all * 9)
     };
-    turned_away.take(MOST_SOUGHT).map(say).collect()
+    turned_away.take(MAX_SOUGHT).map(say).collect()
 }
 
 /// Triangles written one by one that hang together, some of which go round the other way.
-pub(super) fn turned_triangles(scout: &Scout) -> Vec<Finding> {
+pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
     for (i, object) in scout.world().objects().iter().enumerate() {
         if matches!(&object.geometry, Geometry::Primitive(Primitive::Triangle(_))) {
@@ -91,7 +91,7 @@ pub(super) fn turned_triangles(scout: &Scout) -> Vec<Finding> {
     soups.iter().filter(|soup| soup.1.len() > 3).flat_map(|soup| turned_of(scout, &soup.1)).collect()
 }
 
-fn turned_of(scout: &Scout, soup: &[u32]) -> Vec<Finding> {
+fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
     let corners = |&i: &u32| match &scout.world().objects()[i as usize].geometry {
         Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
         _ => [Vec3::ZERO; 3],

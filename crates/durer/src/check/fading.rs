@@ -2,14 +2,14 @@
 
 use super::finding::{Finding, number, vector};
 use super::lights::{each, place, useless, written};
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use super::verdict::{Verdict, divisor};
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::Dialect;
 use crate::light::{Emitter as _, Light};
 use crate::math::Vec3;
 
-pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
+pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
         let message = match written(scout, light)?.value {
@@ -59,7 +59,7 @@ pub(super) fn faint(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Whether a light that is divided by other factors would arrive as bright as lights do.
-fn fits(scout: &Scout, light: usize, factors: Vec3) -> bool {
+fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
     let Light::Point(point) = &scout.world().lights()[light] else { return false };
     let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
     let left = faces.map(|(probe, seen)| {
@@ -70,7 +70,7 @@ fn fits(scout: &Scout, light: usize, factors: Vec3) -> bool {
 }
 
 /// The word before a value.
-fn before(scout: &Scout, value: Span) -> Span {
+fn before(scout: &SceneProbe, value: Span) -> Span {
     let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
     let head = &bytes[..value.start as usize];
     let end = head.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(0, |at| at + 1);
@@ -78,7 +78,7 @@ fn before(scout: &Scout, value: Span) -> Span {
     Span { file: value.file, start: start as u32, end: end as u32 }
 }
 
-pub(super) fn divides(scout: &Scout) -> Vec<Finding> {
+pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
     let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
     found
         .filter_map(|(light, _)| {

@@ -4,9 +4,9 @@ use crate::diag::{Diagnostic, Edit, Severity};
 use crate::math::Vec3;
 
 /// At most so many findings of one kind are told one by one.
-pub(super) const MOST_ALIKE: usize = 3;
+pub(super) const MAX_ALIKE: usize = 3;
 /// After so many of one kind, no more are looked for.
-pub(super) const MOST_SOUGHT: usize = 50;
+pub(super) const MAX_SOUGHT: usize = 50;
 
 /// What a check has found.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,9 +2,9 @@
 
 use super::finding::{Finding, counted, number, percent, vector};
 use super::objects::empty_solids;
-use super::scout::Scout;
-use super::sight::{Sight, has_eye, points, rays_to};
-use crate::camera::{Camera, Lens};
+use super::scene_probe::SceneProbe;
+use super::visibility::{Visibility, has_eye, points, rays_to};
+use crate::camera::{Camera, Projection};
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Ray, Vec3};
 use crate::shape::Primitive;
@@ -14,22 +14,22 @@ use crate::world::{Geometry, Object};
 const FEW_OBJECTS: usize = 8;
 
 /// One thing is in front of all others, or of nearly all.
-pub(super) fn hidden_behind(scout: &Scout) -> Vec<Finding> {
+pub(super) fn hidden_behind(scout: &SceneProbe) -> Vec<Finding> {
     let found = hidden(scout);
     if found.is_empty() { in_the_way(scout) } else { found }
 }
 
 /// One thing is in front of all others.
-pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
+pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     let mut hits = scout.seen().map(|(_, seen)| seen.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
     let (mut hidden, mut others) = (0, 0);
     let empty = empty_solids(scout);
-    let there = |(i, _): &(usize, &Sight)| *i as u32 != front && !empty.contains(&(*i as u32));
-    for (number, sight) in scout.sights().iter().enumerate().filter(there) {
+    let there = |(i, _): &(usize, &Visibility)| *i as u32 != front && !empty.contains(&(*i as u32));
+    for (number, sight) in scout.visibilities().iter().enumerate().filter(there) {
         match sight {
-            Sight::Hidden(_) => hidden += 1,
-            Sight::Unknown if scout.world().objects()[number].bounds().is_none() => {}
+            Visibility::Hidden(_) => hidden += 1,
+            Visibility::Unknown if scout.world().objects()[number].bounds().is_none() => {}
             _ => others += 1,
         }
     }
@@ -74,7 +74,7 @@ pub(super) fn hidden(scout: &Scout) -> Vec<Finding> {
 }
 
 /// One thing just before the camera that covers most of the picture and others with it.
-fn in_the_way(scout: &Scout) -> Vec<Finding> {
+fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut counts = vec![0; objects.len()];
     let mut nearest = vec![f32::INFINITY; objects.len()];
@@ -120,18 +120,18 @@ fn in_the_way(scout: &Scout) -> Vec<Finding> {
 
 /// A plane between the camera and all things that have an end, though something else, the sky say,
 /// is seen beside it.
-pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
+pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut front = None;
     let empty = empty_solids(scout);
     let there =
-        |(i, (object, _)): &(usize, (&Object, &Sight))| object.bounds().is_some() && !empty.contains(&(*i as u32));
-    for (_, (object, sight)) in objects.iter().zip(scout.sights()).enumerate().filter(there) {
+        |(i, (object, _)): &(usize, (&Object, &Visibility))| object.bounds().is_some() && !empty.contains(&(*i as u32));
+    for (_, (object, sight)) in objects.iter().zip(scout.visibilities()).enumerate().filter(there) {
         let by = match sight {
-            Sight::Hidden(by) => {
+            Visibility::Hidden(by) => {
                 Some(*by).filter(|by| objects[*by as usize].bounds().is_none() && !scout.is_glass(*by))
             }
-            Sight::Outside if has_eye(scout) => plane_before(scout, object),
+            Visibility::Outside if has_eye(scout) => plane_before(scout, object),
             _ => None,
         };
         if by.is_none() || front.is_some_and(|known| Some(known) != by) {
@@ -175,7 +175,7 @@ pub(super) fn below_plane(scout: &Scout) -> Vec<Finding> {
 
 /// The plane between the camera and an object, if there is one: no camera that turns sees the
 /// object.
-pub(super) fn plane_before(scout: &Scout, object: &Object) -> Option<u32> {
+pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     let world = scout.world();
     let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
     let way = Ray { t_max: 1.0, ..Ray::new(eye, place - eye) };
@@ -183,7 +183,7 @@ pub(super) fn plane_before(scout: &Scout, object: &Object) -> Option<u32> {
 }
 
 /// Where the camera would be as far above a plane as it is below, if all things stand on it.
-fn raised(scout: &Scout, object: u32) -> Option<Vec3> {
+fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;
     let height = |p: Vec3| p.dot(n) - d;
@@ -194,7 +194,7 @@ fn raised(scout: &Scout, object: u32) -> Option<Vec3> {
 }
 
 /// The normal and offset of a plane in the world.
-pub(super) fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
+pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
     let object = &scout.world().objects()[object as usize];
     let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
     let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
@@ -203,7 +203,7 @@ pub(super) fn ground(scout: &Scout, object: u32) -> Option<(Vec3, f32)> {
 }
 
 /// The only plane, if it faces up and all things and the camera are below it.
-fn ceiling(scout: &Scout) -> Option<u32> {
+fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let world = scout.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
     let mut planes = planes.filter_map(|(i, object)| match &object.geometry {
@@ -222,7 +222,7 @@ fn ceiling(scout: &Scout) -> Option<u32> {
 
 /// The other sign of a plane's offset and where it is written, if the camera and the things are on
 /// one side of it then.
-fn offset_turned(scout: &Scout, object: u32) -> Option<(Span, String)> {
+fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
     let plane_object = &scout.world().objects()[object as usize];
     let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
     if plane_object.to_world.is_some() || plane.offset == 0.0 {

@@ -1,7 +1,7 @@
 //! Under a path tracer: surfaces that shine, and why their light is not seen.
 
-use super::finding::{Finding, MOST_SOUGHT};
-use super::scout::Scout;
+use super::finding::{Finding, MAX_SOUGHT};
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::integrator::Method;
 use crate::math::{Ray, Vec2, Vec3};
@@ -11,7 +11,7 @@ use crate::world::emitters::Form;
 use crate::world::{Geometry, Material, Object};
 
 /// So many places are asked how much of a lamp's light they get.
-const MOST_PLACES: usize = 200;
+const MAX_PLACES: usize = 200;
 /// Places on a lamp.
 const ON_LAMP: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
 /// A lamp that gives a smaller share of what it might gives nothing.
@@ -34,18 +34,18 @@ struct Given {
 }
 
 /// The surfaces that shine, of which points can be chosen: their number, and whether both sides do.
-fn shining(scout: &Scout) -> Vec<(u32, bool)> {
+fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scout.world();
     let shines = |(number, object): (usize, &Object)| {
         let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };
         let emission = phong.emission.as_ref().filter(|emission| emission.radiance.max_element() > 0.0)?;
         Some((number as u32, emission.two_sided))
     };
-    world.objects().iter().enumerate().filter_map(shines).take(MOST_SOUGHT).collect()
+    world.objects().iter().enumerate().filter_map(shines).take(MAX_SOUGHT).collect()
 }
 
 /// Where the strongest lamp's strength is written, and how much that is.
-pub(super) fn brightest(scout: &Scout) -> Option<(Span, f32)> {
+pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
     let materials = &scout.subject.scene.materials;
     let lamps = shining(scout).into_iter().filter_map(|(number, _)| {
         let written = materials.get(scout.world().objects()[number as usize].material as usize)?;
@@ -56,7 +56,7 @@ pub(super) fn brightest(scout: &Scout) -> Option<(Span, f32)> {
 }
 
 /// Whether light may go through an object.
-fn is_clear(scout: &Scout, object: u32) -> bool {
+fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
             phong.transparent.max_element() > 0.0
@@ -67,7 +67,7 @@ fn is_clear(scout: &Scout, object: u32) -> bool {
 }
 
 /// The first thing that keeps light off between two places, and whether glass was passed.
-fn between(scout: &Scout, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
+fn between(scout: &SceneProbe, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
     let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
     let mut glass = false;
     for hit in scout.world().all_hits(&ray).take(16).filter(|hit| hit.object != lamp) {
@@ -80,11 +80,11 @@ fn between(scout: &Scout, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool
 }
 
 /// What a lamp of one part does; `None` for what has no points that can be chosen.
-fn given(scout: &Scout, lamp: u32) -> Option<(Given, bool)> {
+fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
     let object = &scout.world().objects()[lamp as usize];
     let all: Vec<Vec3> =
         scout.seen().filter(|(_, seen)| seen.object != lamp).map(|(probe, seen)| probe.ray.at(seen.t)).collect();
-    let places = all.iter().step_by(all.len().div_ceil(MOST_PLACES).max(1));
+    let places = all.iter().step_by(all.len().div_ceil(MAX_PLACES).max(1));
     let mut given = Given::default();
     let mut flat = true;
     for place in places {
@@ -124,7 +124,7 @@ fn given(scout: &Scout, lamp: u32) -> Option<(Given, bool)> {
 }
 
 /// How far a lamp's light goes from its middle, as a share of the scene; `None`: on and on.
-fn reach(scout: &Scout, object: &Object) -> Option<f32> {
+fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
     let (form, normal) = Form::of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
     let ray = Ray { t_min: 1e-5, ..Ray::new(point.as_vec3(), n) };
@@ -133,7 +133,7 @@ fn reach(scout: &Scout, object: &Object) -> Option<f32> {
 }
 
 /// Lamps that shine away from what is seen.
-pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
+pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && scout.is_physical());
     let say = |(number, _): (u32, bool)| {
         let object = &scout.world().objects()[number as usize];
@@ -164,7 +164,7 @@ pub(super) fn turned(scout: &Scout) -> Vec<Finding> {
 }
 
 /// The edit that turns a flat thing round.
-fn turned_round(scout: &Scout, diagnostic: Diagnostic, number: u32) -> Diagnostic {
+fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     let span = scout.object_span(number);
     let value = |field: &str| scout.value(span, &[field]);
     match &scout.world().objects()[number as usize].geometry {
@@ -186,7 +186,7 @@ fn turned_round(scout: &Scout, diagnostic: Diagnostic, number: u32) -> Diagnosti
 }
 
 /// Lamps whose light something keeps in.
-pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
+pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() {
         return Vec::new();
     }
@@ -217,7 +217,7 @@ pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Lamps inside of glass: paths come upon them by chance, or not at all.
-pub(super) fn in_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, Method::Path(_)) {
         return Vec::new();

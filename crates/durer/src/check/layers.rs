@@ -1,8 +1,8 @@
 //! Materials of layers that show nothing, or not what they are meant to: black metals, glass that
 //! swallows all light, surfaces that are not there.
 
-use super::finding::{Finding, MOST_SOUGHT, number as number_word, vector};
-use super::scout::Scout;
+use super::finding::{Finding, MAX_SOUGHT, number as number_word, vector};
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
@@ -13,25 +13,25 @@ use crate::scene::{Material as Written, Spanned};
 const BLACK: f32 = 0.002;
 
 /// The materials of layers that something is made of, with their numbers.
-fn layers<'s>(scout: &Scout<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
+fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
     let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
     let all = scout.subject.scene.materials.iter().enumerate();
     let own = all.filter_map(|(number, written)| match &written.value {
         Written::Principled(layers) if used(number) => Some((number, written, &**layers)),
         _ => None,
     });
-    own.take(MOST_SOUGHT).collect()
+    own.take(MAX_SOUGHT).collect()
 }
 
 /// The least side of the largest thing that is made of a material.
-fn thickness(scout: &Scout, material: usize) -> Option<f32> {
+fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
     let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
     sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)
 }
 
 /// Materials of layers that give back no light, whatever falls on them.
-pub(super) fn black(scout: &Scout) -> Vec<Finding> {
+pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         if scout.material_rays()[number] == 0 {
             return None;
@@ -66,7 +66,7 @@ pub(super) fn black(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Glass that lets nothing through.
-pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         let color = m.transmission_color.max_element();
         if m.transmission_weight < 0.5 || m.transmission_scatter.max_element() > 0.0 || color >= 1.0 {
@@ -107,7 +107,7 @@ pub(super) fn dull_glass(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Bodies of glass that bend no light, or as nothing does.
-pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
+pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
         let plain =
@@ -134,7 +134,7 @@ pub(super) fn odd_index(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Surfaces of which nothing is there.
-pub(super) fn not_there(scout: &Scout) -> Vec<Finding> {
+pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         if m.opacity > 0.01 {
             return None;

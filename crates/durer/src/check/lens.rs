@@ -2,16 +2,16 @@
 
 use super::finding::{Finding, number};
 use super::probes::{Probe, Seen};
-use super::scout::Scout;
-use super::sight::Sight;
-use crate::camera::{Camera, Lens, ThinLensCamera};
+use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
+use crate::camera::{Camera, Projection, ThinLensCamera};
 use crate::diag::Diagnostic;
 use crate::math::{Aabb, Vec3, fp};
 use crate::shape::Primitive;
 use crate::world::Geometry;
 
 /// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
-const MOST_BLUR: f32 = 0.08;
+const MAX_BLUR: f32 = 0.08;
 /// What becomes a smaller disc looks sharp.
 const SHARP: f32 = 0.02;
 /// No lens is wider than this share of the distance at which it is sharp.
@@ -22,7 +22,7 @@ const FITTING: f32 = 0.12;
 const FURTHEST: f32 = 0.5;
 
 /// The discs that what is seen becomes, as shares of the picture's larger side, and its depths.
-fn blurs(scout: &Scout, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
+fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scout.world().camera_frame().forward;
     let depth = |(probe, seen): (&Probe, &Seen)| seen.t * probe.ray.dir.dot(forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
@@ -32,12 +32,12 @@ fn blurs(scout: &Scout, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
 }
 
 /// A lens that blurs all that is seen.
-pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
+pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     let least = all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
-    if !wide_aperture(scout).is_empty() || depths.is_empty() || least < MOST_BLUR {
+    if !wide_aperture(scout).is_empty() || depths.is_empty() || least < MAX_BLUR {
         return Vec::new();
     }
     let mut sorted = depths;
@@ -56,7 +56,7 @@ pub(super) fn out_of_focus(scout: &Scout) -> Vec<Finding> {
 }
 
 /// An opening that no lens has: everything but one plane is blurred away.
-pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
+pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
@@ -90,7 +90,7 @@ pub(super) fn wide_aperture(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A film that is shifted so far that all is beside the picture.
-pub(super) fn shifted(scout: &Scout, middle: Vec3) -> Option<Diagnostic> {
+pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return None };
     let span = scout.subject.scene.camera_span;
     let fields = [("shiftRight", camera.shift_right), ("shiftUp", camera.shift_up)];
@@ -113,7 +113,7 @@ pub(super) fn shifted(scout: &Scout, middle: Vec3) -> Option<Diagnostic> {
 }
 
 /// Eyes too far from each other.
-pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
+pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (separation, target) = match world.camera() {
         Camera::Stereo(camera) => (camera.separation, Some(camera.convergence)),
@@ -152,24 +152,24 @@ pub(super) fn eyes_apart(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Planes that are seen from their edge, which is to say not at all.
-pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
+pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
     let orthographic = matches!(world.camera(), Camera::Orthographic(_));
-    if !orthographic && !super::sight::has_eye(scout) {
+    if !orthographic && !super::visibility::has_eye(scout) {
         return Vec::new();
     }
     let things = world.bounds();
     let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
     let mut found = Vec::new();
-    for (number, object) in world.objects().iter().enumerate().take(super::finding::MOST_SOUGHT) {
+    for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_SOUGHT) {
         let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
         let on =
             object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
         let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
         let off = (eye - on).dot(n);
         let edge = if orthographic { forward.dot(n).abs() < 1e-5 } else { off.abs() < 1e-5 * size };
-        if !edge || scout.sights()[number] == Sight::Seen {
+        if !edge || scout.visibilities()[number] == Visibility::Seen {
             continue;
         }
         let name = scout.object(number as u32);
@@ -194,7 +194,7 @@ pub(super) fn edge_on(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A scene so far from the origin that numbers have no digits left for its shapes.
-pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
+pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let sized = |b: Aabb| {
         (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()))
@@ -228,7 +228,7 @@ pub(super) fn far_origin(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A scene smaller than the distance at which an old program lets shadow rays begin.
-pub(super) fn below_epsilon(scout: &Scout) -> Vec<Finding> {
+pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let Some(epsilon) = world.rules().epsilon else { return Vec::new() };
     let settings = &scout.subject.job.settings;

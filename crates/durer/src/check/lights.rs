@@ -2,10 +2,10 @@
 
 use super::finding::{Finding, percent, vector};
 use super::probes::Lit;
-use super::scout::Scout;
-use super::verdict::{GRAZING, MOST_JUDGED, VISIBLE, Verdict, most_common};
+use super::scene_probe::SceneProbe;
+use super::verdict::{GRAZING, MAX_JUDGED, VISIBLE, Verdict, most_common};
 use super::within::around;
-use crate::camera::Lens;
+use crate::camera::Projection;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::format::course::place::{block, section};
 use crate::light::{Emitter as _, Light};
@@ -13,23 +13,23 @@ use crate::math::Vec3;
 use crate::scene::Spanned;
 
 /// A light as it is written.
-pub(super) fn written<'s>(scout: &Scout<'s>, light: usize) -> Option<&'s Spanned<Light>> {
+pub(super) fn written<'s>(scout: &SceneProbe<'s>, light: usize) -> Option<&'s Spanned<Light>> {
     scout.subject.scene.lights.as_ref()?.get(light)
 }
 
 /// Where a light is written.
-pub(super) fn place(scout: &Scout, light: usize) -> Option<Span> {
+pub(super) fn place(scout: &SceneProbe, light: usize) -> Option<Span> {
     Some(written(scout, light)?.span)
 }
 
 /// Whether no light adds anything to what is seen.
-pub(super) fn all_fail(scout: &Scout) -> bool {
+pub(super) fn all_fail(scout: &SceneProbe) -> bool {
     let verdicts = scout.verdicts();
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != Verdict::Works)
 }
 
 /// A warning about a light that adds nothing.
-pub(super) fn useless(scout: &Scout, light: usize, message: String) -> Option<(Diagnostic, Span)> {
+pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
     let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
         (true, false) => "no light reaches what is seen: all surfaces are black",
@@ -40,16 +40,16 @@ pub(super) fn useless(scout: &Scout, light: usize, message: String) -> Option<(D
 }
 
 /// The findings of one kind, each made of a light's number and its verdict.
-pub(super) fn each(scout: &Scout, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
+pub(super) fn each(scout: &SceneProbe, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
     let whole = all_fail(scout);
     let verdicts = scout.verdicts().iter().enumerate();
     verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
 }
 
 /// Lights that do something only because nothing casts shadows: an object is around them.
-fn enclosed(scout: &Scout) -> Vec<Finding> {
+fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
-    let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MOST_JUDGED);
+    let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
     let say = |(light, lamp): (usize, &Light)| {
         let Light::Point(point) = lamp else { return None };
         if scout.verdicts()[light] != Verdict::Works {
@@ -66,7 +66,7 @@ fn enclosed(scout: &Scout) -> Vec<Finding> {
     lights.filter_map(say).collect()
 }
 
-pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
+pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = enclosed(scout);
     found.extend(each(scout, |light, verdict| {
         let Verdict::Inside(object) = verdict else { return None };
@@ -81,7 +81,7 @@ pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-pub(super) fn blocked(scout: &Scout) -> Vec<Finding> {
+pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Blocked(object) = verdict else { return None };
         let name = scout.object(object);
@@ -111,19 +111,19 @@ const RIM: f32 = 0.2;
 const NEARLY_ALL_DARK: f32 = 0.25;
 
 /// The lights that work, without those of which far less arrives than of the strongest.
-fn main_lights(scout: &Scout) -> Vec<usize> {
+fn main_lights(scout: &SceneProbe) -> Vec<usize> {
     let strength = |light: usize| {
         let arrives = scout.seen().filter_map(|(_, seen)| Some(seen.by(light)?.arrives.max_element()));
         arrives.filter(|light| light.is_finite()).fold(0.0, f32::max)
     };
     let working = (0..scout.verdicts().len()).filter(|&light| scout.verdicts()[light] == Verdict::Works);
-    let all: Vec<(usize, f32)> = working.take(MOST_JUDGED).map(|light| (light, strength(light))).collect();
+    let all: Vec<(usize, f32)> = working.take(MAX_JUDGED).map(|light| (light, strength(light))).collect();
     let most = all.iter().map(|(_, strength)| *strength).fold(0.0, f32::max);
     all.into_iter().filter(|(_, strength)| *strength >= WEAK * most).map(|(light, _)| light).collect()
 }
 
 /// Lights that do reach something, but little, since most of what is seen faces away from them.
-fn mostly_dark(scout: &Scout) -> Vec<Finding> {
+fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scout);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
     let is_main = |lit: &&Lit| working.contains(&lit.light);
@@ -181,7 +181,7 @@ fn is_grazing(lit: &Lit) -> bool {
 }
 
 /// The first of some lights, which only goes along what is seen.
-fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
+fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     let light = *lights.iter().find(|light| {
         let all = scout.seen().filter_map(|(_, seen)| seen.by(**light));
         let (grazed, count) =
@@ -219,7 +219,7 @@ fn grazing(scout: &Scout, lights: &[usize]) -> Option<Diagnostic> {
 }
 
 /// Lights that lie in a plane that is seen, or go exactly along it: it gets nothing of them.
-fn along_plane(scout: &Scout) -> Vec<Finding> {
+fn along_plane(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
         let all = scout.seen().filter(|(_, seen)| flat(seen.object)).filter_map(|(_, seen)| seen.by(*light));
@@ -234,7 +234,7 @@ fn along_plane(scout: &Scout) -> Vec<Finding> {
         .collect()
 }
 
-pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
+pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = mostly_dark(scout);
     if found.is_empty() {
         found = along_plane(scout);
@@ -272,7 +272,7 @@ pub(super) fn behind(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
+pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
             return None;
@@ -291,7 +291,7 @@ pub(super) fn cancelled(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Lights that are written twice.
-pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
+pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
     let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
         let first = lights[..i].iter().find(|first| first.value == light.value)?;
@@ -305,7 +305,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Takes the light that a finding is about out of the file, and out of the count of lights.
-fn without(scout: &Scout, diagnostic: Diagnostic) -> Diagnostic {
+fn without(scout: &SceneProbe, diagnostic: Diagnostic) -> Diagnostic {
     let Some(own) = diagnostic.span else { return diagnostic };
     let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };
     let Some(whole) = block(bytes, own) else { return diagnostic };

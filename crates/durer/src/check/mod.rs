@@ -1,9 +1,9 @@
 //! What is wrong with a scene whose picture is black, white, empty or odd, and how to mend it.
 //!
-//! A [`Scout`] sends a coarse grid of camera rays into the world and keeps what each found. The
-//! checks of the table [`CHECKS`] look at that, at the meshes and at the description. Every finding
-//! has a code that does not change, a place, an effect on the picture, a proposed change and, where
-//! that is mechanical, the edit of the scene's text.
+//! A [`SceneProbe`] sends a coarse grid of camera rays into the world and keeps what each found.
+//! The checks of the table [`CHECKS`] look at that, at the meshes and at the description. Every
+//! finding has a code that does not change, a place, an effect on the picture, a proposed change
+//! and, where that is mechanical, the edit of the scene's text.
 
 mod aim;
 mod air;
@@ -31,8 +31,7 @@ pub mod picture;
 mod places;
 mod probes;
 mod repair;
-mod scout;
-mod sight;
+mod scene_probe;
 mod solid;
 mod table;
 #[cfg(test)]
@@ -40,16 +39,17 @@ mod tests;
 mod unseen;
 mod verdict;
 mod view;
+mod visibility;
 mod within;
 mod words;
 mod year;
 
 use crate::diag::{Diagnostics, Severity};
 pub use finding::Finding;
-use finding::MOST_ALIKE;
+use finding::MAX_ALIKE;
 pub use probes::Subject;
 pub use repair::{Repaired, apply};
-pub use scout::Scout;
+pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
 /// Because of these nothing, or one thing alone, is seen.
@@ -108,7 +108,7 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
 /// All findings about a scene that was read and compiled, those of its reader among them; the
 /// causes first.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
-    let scout = Scout::new(subject);
+    let scout = SceneProbe::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
     found.iter_mut().for_each(|finding| words::complete(&scout, finding));
     for check in CHECKS.iter().filter(|check| !physical::is_beside_the_point(&scout, check.code)) {
@@ -177,7 +177,7 @@ fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
             a.code == b.code && a.severity == b.severity && a.severity != Severity::Error
         };
         let known = kept.iter().rev().take_while(alike).count();
-        if known >= MOST_ALIKE && !finding.diagnostic.code.is_empty() {
+        if known >= MAX_ALIKE && !finding.diagnostic.code.is_empty() {
             more += 1;
             finding::count_more(kept.last_mut(), more, &finding);
         } else {

@@ -1,12 +1,12 @@
 //! Names in the scene file that nothing comes of.
 
 use super::finding::Finding;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::format::course::place::values;
 
 /// Things that are defined and never used.
-pub(super) fn unused_define(scout: &Scout) -> Vec<Finding> {
+pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
     // What other files define is a library.
     let file = scout.subject.scene.camera_span.file;
     let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };

@@ -1,15 +1,15 @@
 //! Samples that are no finite numbers, and where that begins.
 
 use super::finding::Finding;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Span};
-use crate::integrator::Node;
-use crate::integrator::account::{TermValue, What};
+use crate::integrator::TraceNode;
+use crate::integrator::trace::{TermKind, TermValue};
 use crate::render::explain::{explain, explain_ray};
 use crate::sampler::SampleId;
 
 /// The first sample that is not finite, and the terms that make it so.
-pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
+pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
     let (world, job) = (scout.world(), scout.subject.job);
     let (name, tree) = match scout.subject.rejected {
         Some((x, y, sample)) => {
@@ -46,26 +46,30 @@ pub(super) fn not_finite(scout: &Scout) -> Vec<Finding> {
 }
 
 /// From a term down to the one that is not finite first.
-fn path(scout: &Scout, node: &Node, steps: &mut Vec<String>, place: &mut Option<Span>) {
+fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
     let names = scout.names();
     match &node.what {
-        What::Ray { hit: Some(hit), .. } => {
+        TermKind::Ray { hit: Some(hit), .. } => {
             steps.push(format!("a ray that hits {}", names.object(hit.object)));
             *place = Some(scout.object_span(hit.object));
         }
-        What::Ray { hit: None, .. } => steps.push("a ray that hits nothing".into()),
-        What::Light { light, distance, .. } => {
+        TermKind::Ray { hit: None, .. } => steps.push("a ray that hits nothing".into()),
+        TermKind::Light { light, distance, .. } => {
             *place = super::lights::place(scout, *light).or(*place);
             let arrives =
                 if finite(node.scale) { String::new() } else { format!(", of which {} arrives", shown(node.scale)) };
             steps.push(format!("{}, {distance} away{arrives}", names.light(*light)));
         }
-        What::Ambient { .. } => {
+        TermKind::Ambient { .. } => {
             steps.push(format!("ambient light {} times colour {}", shown(node.factor), shown(node.value)))
         }
-        What::Highlight { base, exponent, .. } => steps.push(format!("highlight {base} to the power of {exponent}")),
-        What::Diffuse { cosine } => steps.push(format!("diffuse light, N·L = {cosine}, colour {}", shown(node.value))),
-        What::Secondary { here, there, .. } => {
+        TermKind::Highlight { base, exponent, .. } => {
+            steps.push(format!("highlight {base} to the power of {exponent}"))
+        }
+        TermKind::Diffuse { cosine } => {
+            steps.push(format!("diffuse light, N·L = {cosine}, colour {}", shown(node.value)))
+        }
+        TermKind::Secondary { here, there, .. } => {
             steps.push(format!("mirrored or transmitted light, from index {here} to {there}"))
         }
         _ => {}

@@ -1,9 +1,9 @@
 //! Objects: flat ones, squashed ones, and those at the same place.
 
 use super::faces::overlapping;
-use super::finding::{Finding, MOST_SOUGHT, number};
-use super::scout::Scout;
-use super::sight::Sight;
+use super::finding::{Finding, MAX_SOUGHT, number};
+use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
 use crate::diag::{Diagnostic, Span};
 use crate::math::{Ray, Vec3};
 use crate::scene::{MatrixOp, Node, Object as Written};
@@ -16,7 +16,7 @@ use std::sync::Arc;
 const SQUASHED: f32 = 1e-4;
 
 /// Triangles of the scene file without area.
-pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
+pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: &&Object| match &object.geometry {
         Geometry::Primitive(Primitive::Triangle(triangle)) => {
             let [a, b, c] = triangle.corners().map(|corner| corner.as_dvec3());
@@ -35,11 +35,13 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Solids that no ray meets, as far as a few hundred tell.
-pub(super) fn empty_solids(scout: &Scout) -> Vec<u32> {
+pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     let world = scout.world();
     let empty = |&(i, object): &(usize, &Object)| {
         let Geometry::Solid(_) = &object.geometry else { return false };
-        let Some(bounds) = object.bounds().filter(|_| scout.sights()[i] != Sight::Seen) else { return false };
+        let Some(bounds) = object.bounds().filter(|_| scout.visibilities()[i] != Visibility::Seen) else {
+            return false;
+        };
         let size = bounds.size();
         let met = |axis: usize, a: u32, b: u32| {
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -53,11 +55,11 @@ pub(super) fn empty_solids(scout: &Scout) -> Vec<u32> {
         !(0..3).any(|axis| (0..144).any(|cell| met(axis, cell % 12, cell / 12)))
     };
     let few = world.objects().len() <= 100;
-    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MOST_SOUGHT).collect()
+    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
 }
 
 /// Solids of which nothing is left.
-pub(super) fn empty_solid(scout: &Scout) -> Vec<Finding> {
+pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
         let diagnostic = Diagnostic::warning(format!("nothing is left of the {}", scout.object(object)))
             .at(scout.object_span(object))
@@ -69,7 +71,7 @@ pub(super) fn empty_solid(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Objects that a transform has made flat, or nearly so.
-pub(super) fn squashed(scout: &Scout) -> Vec<Finding> {
+pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in scout.world().objects() {
         let (Some(to_world), Some(bounds)) = (&object.to_world, object.bounds()) else { continue };
@@ -140,7 +142,7 @@ pub(super) fn same(a: &Object, b: &Object) -> bool {
 }
 
 /// Objects that are at the same place twice.
-pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
+pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
@@ -149,7 +151,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
     // seen.
     let differ =
         |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
-    let faces = overlapping(scout).into_iter().filter(differ).take(MOST_SOUGHT);
+    let faces = overlapping(scout).into_iter().filter(differ).take(MAX_SOUGHT);
     found.extend(faces.map(|(a, b)| pair(scout, a, b)));
     for (i, object) in objects.iter().enumerate() {
         // What has no end is at one place with all others that have none.
@@ -160,7 +162,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
         });
         let there = places.entry(key).or_default();
         // Many at one place are told of as pairs with the first ones only.
-        if found.len() >= MOST_SOUGHT {
+        if found.len() >= MAX_SOUGHT {
             break;
         }
         if let Some(&first) = there.iter().take(16).find(|&&first| same(&objects[first], object)) {
@@ -172,7 +174,7 @@ pub(super) fn twice(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Flat things that lie in a plane, where the two cannot be told apart.
-fn in_plane(scout: &Scout) -> Vec<Finding> {
+fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects
         .iter()
@@ -196,17 +198,17 @@ fn in_plane(scout: &Scout) -> Vec<Finding> {
             let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
             corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
         };
-        if found.len() >= MOST_SOUGHT {
+        if found.len() >= MAX_SOUGHT {
             break;
         }
-        if let Some((plane, _)) = planes.iter().take(MOST_SOUGHT).find(|(_, plane)| lies_in(plane)) {
+        if let Some((plane, _)) = planes.iter().take(MAX_SOUGHT).find(|(_, plane)| lies_in(plane)) {
             found.push(pair(scout, *plane, i));
         }
     }
     found
 }
 
-fn pair(scout: &Scout, first: usize, second: usize) -> Finding {
+fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
     let objects = scout.world().objects();
     let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
     let alike = objects[first].material == objects[second].material;

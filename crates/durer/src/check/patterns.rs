@@ -1,7 +1,7 @@
 //! Patterns of which nothing is seen: of one part, or finer than a pixel.
 
-use super::finding::{Finding, MOST_SOUGHT, number, percent};
-use super::scout::Scout;
+use super::finding::{Finding, MAX_SOUGHT, number, percent};
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::material::{ColorNoise, Pattern, Solid};
 use crate::math::Vec3;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 /// Steps within a pixel in which a pattern is looked at.
 const STEPS: u32 = 24;
 /// So many changes within a pixel are noise.
-const MOST_CHANGES: usize = 3;
+const MAX_CHANGES: usize = 3;
 /// Cells this many times wider than all things together make no pattern.
 const COARSEST: f32 = 3.0;
 /// Fewer places tell nothing.
@@ -45,10 +45,10 @@ impl Look<'_> {
 }
 
 /// Patterns of which the picture shows one part, or only noise.
-pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
+pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
-    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MOST_SOUGHT) {
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
         let Some(look) = Look::of(world, number as u32) else { continue };
         // Its own hits alone: a pattern inside of another is seen in part.
         let places: Vec<(Vec3, f32)> = scout
@@ -66,7 +66,7 @@ pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
         let noisy = |&(place, away): &(Vec3, f32)| {
             across.iter().all(|way| {
                 let step = |i: u32| look.at(place + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
-                (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MOST_CHANGES
+                (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MAX_CHANGES
             })
         };
         let fine = places.iter().filter(|place| noisy(place)).count();
@@ -102,7 +102,7 @@ pub(super) fn scale(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Why a pattern cannot be seen as one, if what is written tells.
-fn without_change(scout: &Scout, look: &Look, written: &Written) -> Option<(String, &'static str)> {
+fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<(String, &'static str)> {
     let Look::Solid(solid, to_pattern) = look else { return None };
     if let Solid::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
@@ -127,10 +127,10 @@ fn without_change(scout: &Scout, look: &Look, written: &Written) -> Option<(Stri
 
 /// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh
 /// lie at one place of it.
-pub(super) fn flat_texture(scout: &Scout) -> Vec<Finding> {
+pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
-    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MOST_SOUGHT) {
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
         let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
         let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
         let own = || world.objects().iter().filter(|object| object.material as usize == number);
@@ -157,7 +157,7 @@ pub(super) fn flat_texture(scout: &Scout) -> Vec<Finding> {
 }
 
 /// About how wide a pixel is at distance 1.
-fn pixel(scout: &Scout) -> f32 {
+fn pixel(scout: &SceneProbe) -> f32 {
     let [a, b] = [0, scout.probes.len() - 1].map(|i| &scout.probes[i]);
     let (p, q) = (a.pixel, b.pixel);
     let apart = (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32;

@@ -2,7 +2,7 @@
 //! are enclosed in glass, and words of media without effect.
 
 use super::finding::Finding;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::integrator::Method;
 use crate::light::Emitter as _;
@@ -30,12 +30,12 @@ const OF_LOCAL_LIGHT: &[&str] = &[
 const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
 
 /// Whether a finding means nothing here, since it is about local light.
-pub(super) fn is_beside_the_point(scout: &Scout, code: &str) -> bool {
+pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
     let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
     scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
 }
 
-pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
+pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let dark_sky = world.environment().is_none() && world.cube_map().is_none() && world.background() == Color::ZERO;
     let radiance = |material: &Compiled| match material {
@@ -81,7 +81,7 @@ pub(super) fn no_emitter(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Lamps without extent inside of glass: no path finds their light outside.
-pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, Method::Path(_)) {
         return Vec::new();
@@ -103,7 +103,7 @@ pub(super) fn lamp_in_glass(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Words of scattering inside of a body that change nothing.
-pub(super) fn without_effect(scout: &Scout) -> Vec<Finding> {
+pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() {
         return Vec::new();
     }

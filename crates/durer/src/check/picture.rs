@@ -5,9 +5,9 @@ use crate::math::Color;
 use crate::render::Statistics;
 
 /// Where so large a share of the pixels is cut at 1 in all channels, the picture is mostly white.
-const MOST_WHITE: f32 = 0.5;
+const MAX_WHITE: f32 = 0.5;
 /// Where so large a share of the samples is left out, more is wrong than a speck.
-const MOST_REJECTED: f64 = 0.001;
+const MAX_REJECTED: f64 = 0.001;
 
 /// What is wrong with a picture as it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,11 +44,11 @@ pub fn oddity(picture: &Image, exposure: f32, statistics: &Statistics) -> Option
     if picture.pixels.len() > 1 && picture.pixels.iter().find(differs).is_none() {
         return Some(if first.max_element() < 0.5 / 255.0 { Oddity::Black } else { Oddity::OneColor });
     }
-    if statistics.rejected as f64 > MOST_REJECTED * (statistics.samples + statistics.rejected) as f64 {
+    if statistics.rejected as f64 > MAX_REJECTED * (statistics.samples + statistics.rejected) as f64 {
         return Some(Oddity::NotFinite);
     }
     let cut = picture.pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
-    (cut as f32 > MOST_WHITE * picture.pixels.len() as f32).then_some(Oddity::White)
+    (cut as f32 > MAX_WHITE * picture.pixels.len() as f32).then_some(Oddity::White)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::camera::Raster;
 use crate::diag::{Diagnostic, Files, Span};
 use crate::dialect::Dialect;
 use crate::format::course::place;
-use crate::integrator::account::What;
+use crate::integrator::trace::TermKind;
 use crate::integrator::{Method, Settings, Tree};
 use crate::material::Pattern as _;
 use crate::math::{Color, Ray};
@@ -19,10 +19,10 @@ use rayon::prelude::*;
 /// each ray asks.
 const RAYS: u32 = 48;
 const FEWEST_RAYS: u32 = 6;
-const MOST_QUESTIONS: u32 = 1 << 20;
+const MAX_QUESTIONS: u32 = 1 << 20;
 /// Levels of mirrored and transmitted rays that are looked at, and the least weight of a ray.
 const BOUNCES: u32 = 4;
-const LEAST_WEIGHT: f32 = 1.0 / 64.0;
+const MIN_WEIGHT: f32 = 1.0 / 64.0;
 
 /// What is checked.
 #[derive(Clone, Copy, Debug)]
@@ -96,7 +96,7 @@ impl<'a> ProbeGrid<'a> {
         let larger = width.max(height);
         let lights = subject.world.lights().len().max(1) as u32;
         let rays =
-            (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MOST_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
+            (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MAX_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
                 + 1;
         let [columns, rows] =
             [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
@@ -104,7 +104,7 @@ impl<'a> ProbeGrid<'a> {
         let job = Job {
             settings: Settings {
                 bounces: settings.bounces.min(BOUNCES),
-                least_weight: settings.least_weight.max(LEAST_WEIGHT),
+                least_weight: settings.least_weight.max(MIN_WEIGHT),
                 ..settings
             },
             // Its terms are what the checks ask for.
@@ -220,7 +220,7 @@ impl Seen {
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
         let mut probe = Probe { pixel, ray, color: tree.color(tree.root.value), seen: None };
-        let What::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
+        let TermKind::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
         let mut seen = Seen {
             object: hit.object,
             material: hit.material,
@@ -233,9 +233,9 @@ impl Probe {
         };
         for term in &tree.root.terms {
             match &term.what {
-                What::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
+                TermKind::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
                 // A surface of several materials has a term for each.
-                What::Light { light, to_light, shadow, .. } => {
+                TermKind::Light { light, to_light, shadow, .. } => {
                     let adds = tree.color(term.contribution());
                     match seen.lit.last_mut().filter(|lit| lit.light == *light) {
                         Some(lit) => lit.adds += adds,

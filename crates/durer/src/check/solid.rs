@@ -1,17 +1,17 @@
 //! Solids: parts that change nothing.
 
-use super::finding::{Finding, MOST_SOUGHT};
-use super::scout::Scout;
+use super::finding::{Finding, MAX_SOUGHT};
+use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
 use crate::math::Aabb;
 use crate::scene::{Node, Operation, extent};
 
 /// Parts that are cut away where the first is not, as far as boxes tell.
-pub(super) fn idle_part(scout: &Scout) -> Vec<Finding> {
+pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
     let scene = scout.subject.scene;
     let mut found = Vec::new();
     let mut all: Vec<&crate::scene::Object> = scene.root.iter().flat_map(|root| &root.objects).collect();
-    while let Some(object) = all.pop().filter(|_| found.len() < MOST_SOUGHT) {
+    while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
         match &object.node {
             Node::Group(group) => all.extend(&group.objects),
             Node::Transform(_, inner) => all.push(inner),

@@ -1,7 +1,7 @@
 //! The table of checks, in the order in which findings are told: causes before what comes of them.
 
 use super::finding::Finding;
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use super::{
     air, beams, colors, exposure, extent, facing, fading, hidden, lamps, layers, lens, lights, mesh, names, numbers,
     objects, patterns, physical, solid, unseen, view, year,
@@ -15,10 +15,10 @@ pub struct Check {
     /// What it means.
     pub about: &'static str,
     /// Looks for it; what the reader or the compiler reports, nobody looks for again.
-    pub(super) find: fn(&Scout) -> Vec<Finding>,
+    pub(super) find: fn(&SceneProbe) -> Vec<Finding>,
 }
 
-fn reported(_: &Scout) -> Vec<Finding> {
+fn reported(_: &SceneProbe) -> Vec<Finding> {
     Vec::new()
 }
 

@@ -1,8 +1,8 @@
 //! What is not in the picture: beside it, hidden, far away, too small, or flat.
 
-use super::finding::{Finding, MOST_SOUGHT, counted, number, vector};
-use super::scout::Scout;
-use super::sight::{Sight, pixels};
+use super::finding::{Finding, MAX_SOUGHT, counted, number, vector};
+use super::scene_probe::SceneProbe;
+use super::visibility::{Visibility, pixels};
 use crate::diag::{Diagnostic, Severity, Span};
 use crate::math::{Aabb, Vec3};
 use crate::scene::Node;
@@ -13,21 +13,22 @@ use crate::world::{Geometry, Object};
 const FEW_OBJECTS: usize = 8;
 
 /// Objects of which nothing is in the picture.
-pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
-    let sights = scout.sights();
+pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
+    let visibilities = scout.visibilities();
     let nothing: Vec<u32> = nothing_of(scout);
     // In a large scene something is always beside the picture or behind something.
     let mut found = far_away(scout);
-    let missing = sights.iter().filter(|sight| matches!(sight, Sight::Outside | Sight::Hidden(_))).count();
-    if sights.len() > FEW_OBJECTS && missing * 3 < sights.len() {
+    let missing =
+        visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
+    if visibilities.len() > FEW_OBJECTS && missing * 3 < visibilities.len() {
         return found;
     }
-    let all = (0..sights.len() as u32).filter(|i| !nothing.contains(i));
-    let out: Vec<u32> = all.clone().filter(|&i| sights[i as usize] == Sight::Outside).collect();
+    let all = (0..visibilities.len() as u32).filter(|i| !nothing.contains(i));
+    let out: Vec<u32> = all.clone().filter(|&i| visibilities[i as usize] == Visibility::Outside).collect();
     let hidden: Vec<(u32, u32)> = all
-        .filter_map(|i| match sights[i as usize] {
+        .filter_map(|i| match visibilities[i as usize] {
             // What is behind glass, or in a mirror's sight, is seen.
-            Sight::Hidden(by) if !scout.is_glass(by) && found.is_empty() => Some((i, by)),
+            Visibility::Hidden(by) if !scout.is_glass(by) && found.is_empty() => Some((i, by)),
             _ => None,
         })
         // A triangle behind another is the far side of what they are parts of.
@@ -39,7 +40,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
         .collect();
     // Where most of a small scene is lost, that is no chance.
     let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
-    let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && sights.len() <= FEW_OBJECTS;
+    let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
     if let Some(&first) = out.first().filter(|_| found.is_empty()) {
         let message = match out.len() {
@@ -103,7 +104,7 @@ pub(super) fn unseen(scout: &Scout) -> Vec<Finding> {
 }
 
 /// The number of a scale below zero around a thing, and where it is written.
-fn mirrored(scout: &Scout, number: u32) -> Option<(Span, String)> {
+fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
     let object = &scout.world().objects()[number as usize];
     object.to_world.as_ref().filter(|to_world| {
         to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) < 0.0
@@ -125,11 +126,11 @@ fn mirrored(scout: &Scout, number: u32) -> Option<(Span, String)> {
 }
 
 /// Things of which there is nothing: solids that are empty, triangles and meshes without area.
-fn nothing_of(scout: &Scout) -> Vec<u32> {
+fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     let mut nothing = super::objects::empty_solids(scout);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
     let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
-        scout.sights()[*i] != Sight::Seen
+        scout.visibilities()[*i] != Visibility::Seen
             && match &object.geometry {
                 Geometry::Primitive(Primitive::Triangle(triangle)) => flat(triangle.corners()),
                 Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
@@ -141,23 +142,27 @@ fn nothing_of(scout: &Scout) -> Vec<u32> {
 }
 
 /// Whether one object is wholly inside another, as far as its middle tells.
-fn holds(scout: &Scout, outer: u32, inner: u32) -> bool {
+fn holds(scout: &SceneProbe, outer: u32, inner: u32) -> bool {
     let middle = scout.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
     middle.is_some_and(|middle| super::within::around(scout.world(), middle).contains(&outer))
 }
 
 /// Things smaller than a pixel.
-pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
+pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
         // Nobody makes a mesh of many triangles to be a dot.
         let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
         let size = pixels(scout, bounds).filter(|size| *size < least)?;
-        let looked = super::sight::rays_to(scout, bounds.center());
-        (!looked.is_empty() && scout.sights()[index] != Sight::Outside).then_some((index as u32, size, bounds))
+        let looked = super::visibility::rays_to(scout, bounds.center());
+        (!looked.is_empty() && scout.visibilities()[index] != Visibility::Outside).then_some((
+            index as u32,
+            size,
+            bounds,
+        ))
     };
-    let all: Vec<_> = objects.iter().enumerate().take(MOST_SOUGHT).filter_map(small).collect();
+    let all: Vec<_> = objects.iter().enumerate().take(MAX_SOUGHT).filter_map(small).collect();
     // A swarm of tiny things is one; and all that is tiny together is told of together.
     let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
     if objects.len() > FEW_OBJECTS || all.len() == bounded || scout.seen().next().is_none() {
@@ -178,10 +183,10 @@ pub(super) fn tiny(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Landscapes without heights.
-pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
+pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut all: Vec<&crate::scene::Object> = scout.subject.scene.root.iter().flat_map(|root| &root.objects).collect();
-    while let Some(object) = all.pop().filter(|_| found.len() < MOST_SOUGHT) {
+    while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
         match &object.node {
             Node::Group(group) => all.extend(&group.objects),
             Node::Transform(_, inner) => all.push(inner),
@@ -206,17 +211,18 @@ pub(super) fn flat_field(scout: &Scout) -> Vec<Finding> {
     found
 }
 
-fn is_triangle(scout: &Scout, object: u32) -> bool {
+fn is_triangle(scout: &SceneProbe, object: u32) -> bool {
     matches!(scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
 }
 
 /// Objects far from all that is seen: thrown away by a transform, say.
-fn far_away(scout: &Scout) -> Vec<Finding> {
-    let both = || scout.world().objects().iter().zip(scout.sights()).enumerate();
-    let seen = both().filter(|(_, (_, sight))| **sight == Sight::Seen).filter_map(|(_, (object, _))| object.bounds());
+fn far_away(scout: &SceneProbe) -> Vec<Finding> {
+    let both = || scout.world().objects().iter().zip(scout.visibilities()).enumerate();
+    let seen =
+        both().filter(|(_, (_, sight))| **sight == Visibility::Seen).filter_map(|(_, (object, _))| object.bounds());
     let core = seen.fold(Aabb::EMPTY, Aabb::union);
     let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
-    let out = |sight: &Sight| matches!(sight, Sight::Outside | Sight::Hidden(_));
+    let out = |sight: &Visibility| matches!(sight, Visibility::Outside | Visibility::Hidden(_));
     let lost = both().find(|(_, (object, sight))| out(sight) && object.bounds().is_some_and(far));
     let Some((index, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
     let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));

@@ -3,7 +3,7 @@
 use super::aim::Aim;
 use super::probes::{Lit, ProbeGrid, Seen};
 use super::within::around;
-use crate::camera::Lens;
+use crate::camera::Projection;
 use crate::light::{Emitter as _, Light, PointLight};
 use crate::math::{Color, Ray, Vec3};
 use crate::world::Material;
@@ -11,15 +11,15 @@ use crate::world::Material;
 /// What adds less than this to a colour is not seen in eight bits.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
 /// Of more lights, the rest is taken to work.
-pub(super) const MOST_JUDGED: usize = 500;
+pub(super) const MAX_JUDGED: usize = 500;
 /// A light that adds something to a smaller share of what is seen might as well add nothing.
 const SHARE: f32 = 0.002;
 /// Where more of what faces a light than this is in shadow, the light is kept off.
-const MOST_BLOCKED: f32 = 0.95;
+const MAX_BLOCKED: f32 = 0.95;
 /// A roof over all things keeps light off so large a share of what faces it.
 const ROOFED: f32 = 0.6;
 /// Where all that arrives of all lights is less than this, nobody sees that there are any.
-const MOST_WEAK: f32 = 0.06;
+const MAX_WEAK: f32 = 0.06;
 /// Below this cosine light hardly falls on a surface, but goes along it.
 pub(super) const GRAZING: f32 = 0.08;
 
@@ -48,7 +48,7 @@ pub(super) enum Verdict {
 
 /// The verdict on each light of the world.
 pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
-    let judged = |light| if light < MOST_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
+    let judged = |light| if light < MAX_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
     let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
     if let Some(most) = weak_together(grid, &verdicts) {
         verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
@@ -69,7 +69,7 @@ fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
         sums.fold(0.0, f32::max)
     };
     let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
-    (arrives > 0.0 && arrives < MOST_WEAK && adds < MOST_WEAK).then_some(arrives)
+    (arrives > 0.0 && arrives < MAX_WEAK && adds < MAX_WEAK).then_some(arrives)
 }
 
 /// Whether what all lights together shine on has none of their colours, on nearly all that they
@@ -161,7 +161,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
 fn nearly_blocked(all: &[&Lit]) -> bool {
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
-    blocked as f32 > MOST_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
+    blocked as f32 > MAX_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
 
 /// Whether one thing keeps a light off all others that have an end and face it, and off most of the
@@ -178,7 +178,7 @@ fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     let things = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
     let (count, covered) = (things().count(), things().filter(under).count());
     let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
-    count > 20 && covered as f32 > MOST_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
+    count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
 }
 
 /// Of some objects the one that is in the way of a light at the most places; each may be in the way

@@ -3,11 +3,11 @@
 use super::finding::{Finding, number, vector};
 use super::hidden::{ground, plane_before};
 use super::lights::all_fail;
-use super::scout::Scout;
-use super::sight::{Sight, aims, has_eye, pixels};
+use super::scene_probe::SceneProbe;
 use super::verdict::Verdict;
+use super::visibility::{Visibility, aims, has_eye, pixels};
 use super::within::around;
-use crate::camera::{Camera, Lens};
+use crate::camera::{Camera, Projection};
 use crate::diag::{Diagnostic, Severity};
 use crate::math::{Aabb, Color, Vec3, fp};
 use crate::scene::{Group, Node};
@@ -15,7 +15,7 @@ use crate::shape::Primitive;
 use crate::world::{Geometry, Material, Object};
 
 /// A scene in which nothing is.
-pub(super) fn no_objects(scout: &Scout) -> Vec<Finding> {
+pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     // Solids of which nothing is left are told of as that.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
@@ -27,7 +27,7 @@ pub(super) fn no_objects(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Objects that are no room for others, but around the eye.
-pub(super) fn inside(scout: &Scout) -> Vec<Finding> {
+pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     if !has_eye(scout) {
         return Vec::new();
     }
@@ -81,7 +81,7 @@ fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
 
 /// What the camera should see: the box around all that has an end, else the nearest place of a
 /// plane.
-pub(super) fn target(scout: &Scout) -> Option<Aabb> {
+pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera().pose().center);
     let bounds = world.bounds();
     if !bounds.is_empty() {
@@ -100,20 +100,24 @@ pub(super) fn target(scout: &Scout) -> Option<Aabb> {
 }
 
 /// Whether there are things with an end and none of them is in the picture, or nothing is at all.
-fn all_outside(scout: &Scout) -> bool {
+fn all_outside(scout: &SceneProbe) -> bool {
     let world = scout.world();
     let bounded = || {
-        world.objects().iter().zip(scout.sights()).filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
+        world
+            .objects()
+            .iter()
+            .zip(scout.visibilities())
+            .filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
     };
     let none = scout.seen().next().is_none();
     match bounded().next() {
-        Some(_) => bounded().all(|(_, sight)| *sight == Sight::Outside),
+        Some(_) => bounded().all(|(_, sight)| *sight == Visibility::Outside),
         None => none && !world.objects().is_empty(),
     }
 }
 
 /// The camera looks past everything, and the middle of things is not in the picture.
-pub(super) fn away(scout: &Scout) -> Vec<Finding> {
+pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
     let (world, span) = (scout.world(), scout.subject.scene.camera_span);
     let (pose, center) = (world.camera().pose(), bounds.center());
@@ -171,7 +175,7 @@ pub(super) fn away(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Whether a camera of usual width would see a place.
-fn aims_widely(scout: &Scout, place: Vec3) -> bool {
+fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
     let world = scout.world();
     let to = place - world.camera().pose().center;
     match world.camera() {
@@ -185,7 +189,7 @@ fn aims_widely(scout: &Scout, place: Vec3) -> bool {
 }
 
 /// A vector of the camera is to be another.
-fn mended(scout: &Scout, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
+fn mended(scout: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
     let span = scout.subject.scene.camera_span;
     match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
         Some(place) => diagnostic.at(place).fix(place, vector(value)),
@@ -199,7 +203,7 @@ fn degrees(a: Vec3, b: Vec3) -> f32 {
 }
 
 /// The names of what is seen instead.
-fn only_seen(scout: &Scout) -> String {
+fn only_seen(scout: &SceneProbe) -> String {
     let mut objects: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
     objects.sort_unstable();
     objects.dedup();
@@ -210,7 +214,7 @@ fn only_seen(scout: &Scout) -> String {
 }
 
 /// By how much the ray that comes nearest misses the ball around an object.
-fn nearest(scout: &Scout) -> String {
+fn nearest(scout: &SceneProbe) -> String {
     let world = scout.world();
     let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
@@ -233,13 +237,13 @@ fn nearest(scout: &Scout) -> String {
 
 /// The picture is empty although the camera looks at things: they are too small, or there is
 /// nothing of them.
-pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
+pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if scout.seen().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
     // What is too small for the grid of rays is no hole.
-    let hit = scout.sights().contains(&Sight::Seen);
+    let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
         .effect("the whole picture is background")
@@ -254,10 +258,10 @@ pub(super) fn missed(scout: &Scout) -> Vec<Finding> {
 
 /// Planes that pass through the middle of most things: a floor with another axis for its normal,
 /// say.
-pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
+pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let boxes: Vec<[Vec3; 8]> =
-        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::finding::MOST_SOUGHT).collect();
+        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::finding::MAX_SOUGHT).collect();
     let through = |&number: &u32| {
         let Some((n, d)) = ground(scout, number) else { return false };
         let clear = match world.materials().get(world.objects()[number as usize].material as usize) {
@@ -287,7 +291,7 @@ pub(super) fn plane_through(scout: &Scout) -> Vec<Finding> {
 }
 
 /// A camera whose `up` points into the ground on which all things stand.
-pub(super) fn upside_down(scout: &Scout) -> Vec<Finding> {
+pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (eye, things) = (world.camera().pose().center, world.bounds());
     let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));

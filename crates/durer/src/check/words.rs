@@ -2,8 +2,8 @@
 //! that only the whole scene tells.
 
 use super::finding::{Finding, vector};
-use super::scout::Scout;
-use crate::camera::Lens;
+use super::scene_probe::SceneProbe;
+use crate::camera::Projection;
 use crate::diag::{Severity, Span};
 use crate::dialect::Dialect;
 use crate::format::course::place;
@@ -11,7 +11,7 @@ use crate::math::Vec3;
 use crate::scene::Material;
 
 /// Adds what is known of a finding when the scene is compiled.
-pub(super) fn complete(scout: &Scout, finding: &mut Finding) {
+pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scout, finding),
         "black-light" => {
@@ -43,7 +43,7 @@ pub(super) fn complete(scout: &Scout, finding: &mut Finding) {
 }
 
 /// What other years write in a thing, the year of nodes writes around it.
-fn foreign_in_nodes(scout: &Scout, finding: &mut Finding) {
+fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
     if scout.subject.dialect == Dialect::F23
@@ -57,7 +57,7 @@ fn foreign_in_nodes(scout: &Scout, finding: &mut Finding) {
 
 /// A scene may do without lights if it has no use for them: flat colours, and no other light that
 /// they would go with.
-fn no_light(scout: &Scout, finding: &mut Finding) {
+fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
         Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
@@ -83,7 +83,7 @@ fn no_light(scout: &Scout, finding: &mut Finding) {
     );
 }
 
-fn up_parallel(scout: &Scout, finding: &mut Finding) {
+fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = Some("the picture is turned as chance has it".into());
     let direction = scout.world().camera().pose().direction.normalize_or_zero();
     let up = if direction.y.abs() < 0.9 { Vec3::Y } else { Vec3::Z };
@@ -96,7 +96,7 @@ fn up_parallel(scout: &Scout, finding: &mut Finding) {
 
 /// One too many means that materials were counted from 1; with one material alone, it can only be
 /// that.
-fn material_index(scout: &Scout, finding: &mut Finding) {
+fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scout.subject.scene.materials.len();
     let Some(span) = finding.diagnostic.span else { return };
@@ -121,7 +121,7 @@ fn material_index(scout: &Scout, finding: &mut Finding) {
 }
 
 /// Where no object has material 0 and one has the material after the last, all were counted from 1.
-fn from_one(scout: &Scout, finding: &mut Finding, count: usize) -> bool {
+fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
     let uses: Vec<(Span, usize)> =
@@ -137,7 +137,7 @@ fn from_one(scout: &Scout, finding: &mut Finding, count: usize) -> bool {
     true
 }
 
-fn no_material(scout: &Scout, finding: &mut Finding) {
+fn no_material(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = Some("it has not the colour that was meant".into());
     let scene = scout.subject.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();

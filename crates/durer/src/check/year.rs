@@ -1,9 +1,9 @@
-//! What a year's program makes of a scene that others would show as it was meant: its habits, where
+//! What a year's program makes of a scene that others would show as it was meant: its quirks, where
 //! they are on.
 
-use super::finding::{Finding, MOST_SOUGHT, number, percent, vector};
-use super::scout::Scout;
-use crate::camera::Lens;
+use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
+use super::scene_probe::SceneProbe;
+use crate::camera::Projection;
 use crate::diag::Diagnostic;
 use crate::dialect::{Compat, Highlight};
 use crate::light::Emitter as _;
@@ -19,7 +19,7 @@ const SKEW: f32 = 0.6;
 const SQUARE: f32 = 1.05;
 
 /// The Phong materials that are seen, as they are written.
-fn seen<'s>(scout: &Scout<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
+fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
     let rays = scout.material_rays().to_vec();
     let all = scout.subject.scene.materials.iter().enumerate();
     all.filter_map(move |(i, written)| match &written.value {
@@ -29,7 +29,7 @@ fn seen<'s>(scout: &Scout<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Writt
 }
 
 /// A highlight without sharpness: 0 to the power of 0 is 1.
-pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
+pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
         return blunt(scout);
@@ -57,7 +57,7 @@ pub(super) fn pow_zero(scout: &Scout) -> Vec<Finding> {
         };
         Finding::from(diagnostic).whole(count * 2 > all)
     };
-    let found: Vec<Finding> = seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MOST_SOUGHT).collect();
+    let found: Vec<Finding> = seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MAX_SOUGHT).collect();
     if found.is_empty() { blunt(scout) } else { found }
 }
 
@@ -71,7 +71,7 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
 
 /// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
 /// meant.
-fn blunt(scout: &Scout) -> Vec<Finding> {
+fn blunt(scout: &SceneProbe) -> Vec<Finding> {
     if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
     }
@@ -86,7 +86,7 @@ fn blunt(scout: &Scout) -> Vec<Finding> {
         let value = scout.value(written.span, &[word]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
     };
-    seen(scout).filter_map(say).take(MOST_SOUGHT).collect()
+    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
 /// Exponents beyond this make highlights smaller than a pixel.
@@ -95,7 +95,7 @@ const SHARPEST: f32 = 2e4;
 const BLUNT: f32 = 0.7;
 
 /// Highlights smaller than a pixel.
-pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
+pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
     if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
     }
@@ -110,11 +110,11 @@ pub(super) fn tiny_highlight(scout: &Scout) -> Vec<Finding> {
         let value = scout.value(written.span, &[word]);
         Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "100"), written.span, &[word])))
     };
-    seen(scout).filter_map(say).take(MOST_SOUGHT).collect()
+    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
 /// A highlight's colour without its exponent, which is 1 then.
-pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
+pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     if !matches!(scout.world().rules().highlight, Highlight::Blinn | Highlight::ByKeyword) {
         return Vec::new();
     }
@@ -131,11 +131,11 @@ pub(super) fn no_exponent(scout: &Scout) -> Vec<Finding> {
                 .help("write an `exponent`, 20 say; the higher, the sharper");
         Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
     };
-    seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MOST_SOUGHT).collect()
+    seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
 }
 
 /// A camera's `up` that is used as it is written, and has not the length 1.
-pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
+pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     let up = scout.world().camera().pose().up;
     let length = up.length();
     let rules = scout.world().rules();
@@ -160,7 +160,7 @@ pub(super) fn long_up(scout: &Scout) -> Vec<Finding> {
 }
 
 /// The same with an `up` far from being at right angles to `direction`.
-fn skew_up(scout: &Scout) -> Option<Finding> {
+fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     let pose = scout.world().camera().pose();
     let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
     let off = up.dot(forward);
@@ -179,7 +179,7 @@ fn skew_up(scout: &Scout) -> Option<Finding> {
 }
 
 /// A picture that is not square, under a program that stretches it.
-pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
+pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     let job = scout.subject.job;
     let (width, height) = (job.width as f32, job.height as f32);
     let ratio = width.max(height) / width.min(height);
@@ -198,7 +198,7 @@ pub(super) fn stretched(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Faces of more than three corners, of which the year's program reads three.
-pub(super) fn quads(scout: &Scout) -> Vec<Finding> {
+pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.world().rules().is_official() {
         return Vec::new();
     }
@@ -215,7 +215,7 @@ pub(super) fn quads(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Patterns of which both parts are the same.
-pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
+pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     use crate::material::Pattern;
     let materials = &scout.subject.scene.materials;
     let say = |(i, material): (usize, &Spanned<Written>)| {
@@ -244,11 +244,11 @@ pub(super) fn same_parts(scout: &Scout) -> Vec<Finding> {
             .help("give its two `materialIndex` two different materials before it");
         Some(Finding::from(diagnostic))
     };
-    materials.iter().enumerate().filter_map(say).take(MOST_SOUGHT).collect()
+    materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
 /// Ambient light that leaves nothing to the lamps.
-pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
+pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();
     let lamps: Color = world.lights().iter().map(|light| light.color()).sum();
@@ -268,7 +268,7 @@ pub(super) fn full_ambient(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Planes whose normal has not the length 1, where that moves them.
-pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
+pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
     use crate::shape::Primitive;
     use crate::world::{Geometry, Object};
     let say = |object: &Object| {
@@ -301,5 +301,5 @@ pub(super) fn plane_normal(scout: &Scout) -> Vec<Finding> {
         };
         Some(Finding::from(diagnostic))
     };
-    scout.world().objects().iter().filter_map(say).take(MOST_SOUGHT).collect()
+    scout.world().objects().iter().filter_map(say).take(MAX_SOUGHT).collect()
 }

@@ -128,9 +128,9 @@ impl<'r> Loader<'r> {
 
     /// What a mesh file holds.
     fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-        let habits = self.rules.compat;
+        let quirks = self.rules.compat;
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| {
-            format::read_mesh_as(bytes, file, &name.path, habits, own)
+            format::read_mesh_as(bytes, file, &name.path, quirks, own)
         })
     }
 
@@ -163,8 +163,8 @@ impl<'r> Loader<'r> {
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let (width, height) = encoded.size();
         let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
-        if width < 2 || height < 2 || width * height > HeightField::MOST_PIXELS {
-            let most = HeightField::MOST_PIXELS;
+        if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
+            let most = HeightField::MAX_PIXELS;
             refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
             return None;
         }

@@ -11,7 +11,7 @@ mod solids;
 pub(crate) mod testing;
 
 use crate::bvh::{Bvh, Grid, PrimitivePacks};
-use crate::camera::{Frame, Lens};
+use crate::camera::{CameraBasis, Projection};
 use crate::diag::{Diagnostic, Diagnostics, Files, Span};
 use crate::dialect::{Compat, Dialect, MeshNormals, Rules};
 use crate::light::{DirectionalLight, Emitter, Light};
@@ -81,7 +81,7 @@ pub fn compile(
         None => check_camera(scene, camera.pose(), &mut own),
     }
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
-    let mut flattening = Flattening {
+    let mut flattener = SceneFlattener {
         objects: Vec::new(),
         loader: &mut loader,
         rules,
@@ -93,14 +93,14 @@ pub fn compile(
         open_edges: HashMap::new(),
     };
     match &scene.root {
-        Some(root) => flattening.group(root, DAffine3::IDENTITY),
+        Some(root) => flattener.group(root, DAffine3::IDENTITY),
         None => {
             let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
-            flattening.diagnostics.push(warning.code("no-objects"));
+            flattener.diagnostics.push(warning.code("no-objects"));
         }
     }
-    flattening.warn_of_bare();
-    let Flattening { objects, plain_needed, .. } = flattening;
+    flattener.warn_of_bare();
+    let SceneFlattener { objects, plain_needed, .. } = flattener;
     let mut compiled = materials;
     if plain_needed {
         compiled.push(crate::world::Material::Phong(Phong::default()));
@@ -129,7 +129,7 @@ pub fn compile(
         kept.finish();
     }
     let contents = Contents {
-        frame: Frame::of(&camera, rules),
+        frame: CameraBasis::of(&camera, rules),
         camera,
         background: scene.background.color,
         ambient,
@@ -267,11 +267,11 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
             diagnostics.push(warning.help("the picture will be black; write `falloff 1`, say"));
         }
     }
-    (written.iter().map(|light| light.value.resolved(rules)).collect(), scene.background.ambient_light)
+    (written.iter().map(|light| light.value.with_rules(rules)).collect(), scene.background.ambient_light)
 }
 
 /// Nested groups and transforms on their way to a flat list.
-struct Flattening<'a, 'r> {
+struct SceneFlattener<'a, 'r> {
     objects: Vec<Object>,
     loader: &'a mut files::Loader<'r>,
     rules: &'a Rules,
@@ -292,7 +292,7 @@ fn is_nodes(rules: &Rules) -> bool {
     rules.name == Dialect::F23.name()
 }
 
-impl Flattening<'_, '_> {
+impl SceneFlattener<'_, '_> {
     /// Says once that objects have no material.
     fn warn_of_bare(&mut self) {
         let Some((span, count)) = self.bare else { return };

@@ -1,6 +1,6 @@
 //! Solids: what is combined must be closed.
 
-use super::Flattening;
+use super::SceneFlattener;
 use crate::diag::{Diagnostic, Span};
 use crate::math::Vec3;
 use crate::scene::{self, Group, Node, Operation};
@@ -11,7 +11,7 @@ use crate::world::{Geometry, Object};
 use glam::DAffine3;
 use std::sync::Arc;
 
-impl Flattening<'_, '_> {
+impl SceneFlattener<'_, '_> {
     /// A solid with nothing but groups and transforms around it.
     pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
         let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
@@ -55,8 +55,8 @@ impl Flattening<'_, '_> {
             let parts = piece.parts();
             (parts.iter().map(|part| u64::from(part.parts())).sum::<u64>(), parts[0].material)
         };
-        if count > Csg::MOST_PARTS {
-            let message = format!("the parts of this solid have more than {} triangles", Csg::MOST_PARTS);
+        if count > Csg::MAX_PARTS {
+            let message = format!("the parts of this solid have more than {} triangles", Csg::MAX_PARTS);
             self.diagnostics.push(Diagnostic::error(message).at(span));
             return;
         }

@@ -74,7 +74,7 @@ pub struct Look {
     pub normals: NormalsPicture,
     /// Depth as grey.
     pub depth: DepthPicture,
-    /// Habits of the official program.
+    /// Quirks of the official program.
     pub compat: CompatSet,
 }
 
@@ -169,7 +169,7 @@ pub static AOVS: &[Aov] = &[
         doc: "the shading normal in world space",
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
         picture: normal_picture,
-        // Where nothing is hit, one habit shows the normal hit last.
+        // Where nothing is hit, one quirk shows the normal hit last.
         relative: true,
         unit: None,
     },

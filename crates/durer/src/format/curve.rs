@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span};
 use std::ops::Range;
 
 /// Rows at most.
-const MOST_ROWS: usize = 100_000;
+const MAX_ROWS: usize = 100_000;
 
 /// Reads wavelengths, ascending, and the values of a column: the first, or that of a name.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
@@ -51,8 +51,8 @@ fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
         if !(nm > 0.0 && nm.is_finite()) || rows.last().is_some_and(|last| last[0] >= nm) {
             return Err((place, "wavelengths are to be more than 0 and to ascend".into()));
         }
-        if rows.len() == MOST_ROWS {
-            return Err((place, format!("more than {MOST_ROWS} rows are no spectrum")));
+        if rows.len() == MAX_ROWS {
+            return Err((place, format!("more than {MAX_ROWS} rows are no spectrum")));
         }
         rows.push([nm, value]);
     }

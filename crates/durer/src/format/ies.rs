@@ -6,7 +6,7 @@ use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::light::photometric::{Profile, ProfileKind};
 
 /// More angles than any photometer has.
-const MOST_ANGLES: f64 = 4_000.0;
+const MAX_ANGLES: f64 = 4_000.0;
 
 struct Numbers<'t> {
     text: &'t str,
@@ -39,10 +39,10 @@ impl Numbers<'_> {
 
     fn count(&mut self, what: &str) -> Result<usize, Box<Diagnostic>> {
         let (number, start) = self.next(what)?;
-        match (1.0..=MOST_ANGLES).contains(&number) && number.fract() == 0.0 {
+        match (1.0..=MAX_ANGLES).contains(&number) && number.fract() == 0.0 {
             true => Ok(number as usize),
             false => {
-                Err(self.error(start, self.at, format!("the {what} must be a whole number from 1 to {MOST_ANGLES}")))
+                Err(self.error(start, self.at, format!("the {what} must be a whole number from 1 to {MAX_ANGLES}")))
             }
         }
     }

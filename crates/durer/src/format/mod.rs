@@ -50,7 +50,7 @@ pub struct MeshFormat {
     /// Reads a file; the number goes into the spans. Errors go into the collection, and then there
     /// is no mesh.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
-    /// The same file as programs with some habits know it.
+    /// The same file as programs with some quirks know it.
     pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
@@ -87,12 +87,12 @@ pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnost
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }
 
-/// The same, with some habits of old programs.
+/// The same, with some quirks of old programs.
 pub fn read_mesh_as(
     bytes: &[u8],
     file: u32,
     name: &str,
-    habits: CompatSet,
+    quirks: CompatSet,
     diagnostics: &mut Diagnostics,
 ) -> Option<MeshData> {
     if let Some(error) = too_large(bytes.len() as u64, name) {
@@ -100,7 +100,7 @@ pub fn read_mesh_as(
         return None;
     }
     match find_format(bytes, name) {
-        Some(format) => (format.read)(&(format.known)(bytes, habits), file, diagnostics),
+        Some(format) => (format.read)(&(format.known)(bytes, quirks), file, diagnostics),
         None => {
             diagnostics.push(unknown_format(name));
             None

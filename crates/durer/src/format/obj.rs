@@ -6,8 +6,8 @@
 //! are read side by side.
 
 mod faces;
-pub mod habits;
 mod materials;
+pub mod quirks;
 pub(super) mod scene;
 mod wires;
 mod words;
@@ -85,7 +85,7 @@ pub(super) const FORMAT: MeshFormat = MeshFormat {
     extensions: &["obj"],
     recognise,
     read,
-    known: habits::known,
+    known: quirks::known,
     write,
     up: Axis::Y,
 };

@@ -40,7 +40,7 @@ const fn alone(format: &MeshFormat) -> SceneFormat {
 
 /// Bytes that decoding a picture may take, and rows of one that is turned.
 const MEMORY: u64 = 1 << 31;
-const MOST_ROWS: u32 = 2048;
+const MAX_ROWS: u32 = 2048;
 
 /// The format of scenes that the ending of a name says.
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
@@ -119,7 +119,7 @@ impl Scene {
         // What cannot be read is told when the scene is compiled.
         if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
             let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
-            if panorama::surround(self, (name, Span::default()), picture.height.min(MOST_ROWS), light) {
+            if panorama::surround(self, (name, Span::default()), picture.height.min(MAX_ROWS), light) {
                 return;
             }
         }

@@ -7,10 +7,10 @@ use std::collections::BTreeMap;
 use std::io::Read;
 
 /// Parts of an archive.
-const MOST_PARTS: usize = 1 << 16;
+const MAX_PARTS: usize = 1 << 16;
 /// Bytes that may come of one byte of the archive, and of the smallest archive. Text of models is
 /// packed to a tenth, and seldom to a fiftieth.
-const MOST_TIMES: u64 = 200;
+const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
 /// An archive in memory.
@@ -35,15 +35,15 @@ impl<'a> Zip<'a> {
         let mut entries = archive.entries();
         while let Some(entry) = entries.next_entry().map_err(|error| error.to_string())? {
             let Ok(name) = std::str::from_utf8(entry.file_path().as_bytes()).map(str::to_string) else { continue };
-            if parts.len() >= MOST_PARTS {
-                return Err(format!("more than {MOST_PARTS} parts are too many"));
+            if parts.len() >= MAX_PARTS {
+                return Err(format!("more than {MAX_PARTS} parts are too many"));
             }
             let part = (entry.wayfinder(), entry.compression_method(), entry.uncompressed_size_hint());
             if parts.insert(name.clone(), part).is_some() {
                 return Err(format!("there are two parts `{name}`"));
             }
         }
-        Ok(Zip { bytes, parts, left: FREE + MOST_TIMES * bytes.len() as u64 })
+        Ok(Zip { bytes, parts, left: FREE + MAX_TIMES * bytes.len() as u64 })
     }
 
     /// The names of all parts.
@@ -65,7 +65,7 @@ impl<'a> Zip<'a> {
     ) -> Result<Vec<u8>, String> {
         if size > self.left {
             return Err(format!(
-                "it unpacks to {size} bytes, and all of an archive to no more than {MOST_TIMES} times its own"
+                "it unpacks to {size} bytes, and all of an archive to no more than {MAX_TIMES} times its own"
             ));
         }
         self.left -= size;

@@ -3,9 +3,9 @@
 //! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each
 //! direction counts by its cosine.
 
-use super::account::{RayKind, What, Witness};
-use super::spawn::from_surface;
-use super::whitted::struck;
+use super::spawn::spawn_ray;
+use super::trace::{RayKind, TermKind, TraceListener};
+use super::whitted::hit_record;
 use super::{Integrate, Parameters, Setup};
 use crate::bsdf::{Frame, warp};
 use crate::describe::{Rule, described};
@@ -44,8 +44,8 @@ pub struct AmbientOcclusion<'w> {
 impl Integrate for AmbientOcclusion<'_> {
     /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
     /// not; white where nothing is hit.
-    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let color = self.trace(&ray.into(), id, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
@@ -53,18 +53,18 @@ impl Integrate for AmbientOcclusion<'_> {
 }
 
 impl AmbientOcclusion<'_> {
-    fn trace<T: Witness>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
+    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
         let mut color = Color::ONE;
         if let Some(at) = self.world.intersect(ray, tally) {
             let (surface, inside) = (&at.surface, at.inside());
             let n = if inside { -surface.n_geo } else { surface.n_geo };
-            tally.hit(|| struck(self.world, &at, n, inside, false));
+            tally.hit(|| hit_record(self.world, &at, n, inside, false));
             let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
-            if self.world.occluded(from_surface(surface, dir, self.radius, None), tally) {
+            if self.world.occluded(spawn_ray(surface, dir, self.radius, None), tally) {
                 color = Color::ZERO;
             }
         }
-        tally.begin(|| What::Sky);
+        tally.begin(|| TermKind::Sky);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }

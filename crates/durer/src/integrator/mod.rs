@@ -1,10 +1,10 @@
 //! Integrators: how much light comes along a ray. One file each; the list is [`Method`].
 
-pub mod account;
 pub mod ao;
 pub mod media;
 pub mod path;
 pub mod spawn;
+pub mod trace;
 pub mod whitted;
 
 use crate::describe::{Describe, DescribedList, described_list};
@@ -13,10 +13,10 @@ use crate::math::{Color, Ray};
 use crate::sampler::SampleId;
 use crate::spectrum::ColorMode;
 use crate::world::World;
-pub use account::{Account, Node, Tree, Witness};
 pub use ao::{AmbientOcclusion, AoParameters};
 pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
 use std::sync::atomic::AtomicBool;
+pub use trace::{TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
 /// What an integrator is told that it alone knows: a name and options, stated in a `described!`
@@ -57,7 +57,7 @@ pub struct Setup<'w> {
 /// What every integrator does.
 pub trait Integrate {
     /// The light that comes along a camera ray, by the random numbers of a sample.
-    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
     /// Makes what the samples of some number need, by all threads, before they are taken.
     fn prepare(&self, _sample: u32) {}
@@ -91,7 +91,7 @@ macro_rules! delegate {
         }
 
         impl Integrate for Integrator<'_> {
-            fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+            fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
                 match self { $(Integrator::$variant(it) => Integrate::radiance(it, ray, id, tally),)+ }
             }
             fn prepare(&self, sample: u32) {

@@ -5,9 +5,9 @@
 //! Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9: the power heuristic). Long
 //! paths end at random, in proportion to what they are worth.
 
-use super::account::{Bounce, RayKind, TermValue, What, Witness};
 use super::media::{Media, Passage};
-use super::whitted::struck;
+use super::trace::{Bounce, RayKind, TermKind, TermValue, TraceListener};
+use super::whitted::hit_record;
 use super::{Integrate, Settings};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
@@ -130,10 +130,10 @@ enum End {
 const MAX_WALK: u32 = 10_000;
 
 impl Integrate for Path<'_> {
-    fn radiance<T: Witness>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
-        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let (sum, scale) = self.trace(&ray.into(), State::default(), &sample, tally);
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
@@ -165,12 +165,18 @@ impl<'w> Path<'w> {
 
     /// The irradiance at a point on the side of a unit normal, by the random numbers of a sample:
     /// pi times what a white matte surface shows there.
-    pub fn irradiance<T: Witness>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
+    pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
     }
 
     /// The same at a point of a surface, on the side of a normal for shading.
-    pub fn irradiance_on<T: Witness>(&self, surface: &Surface, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
+    pub fn irradiance_on<T: TraceListener>(
+        &self,
+        surface: &Surface,
+        normal: Vec3,
+        id: SampleId,
+        tally: &mut T,
+    ) -> Color {
         let mut bsdf = Bsdf::default();
         bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
@@ -188,7 +194,13 @@ impl<'w> Path<'w> {
     }
 
     /// The light along a ray: a sum, and what the way to it leaves of it.
-    fn trace<T: Witness>(&self, ray: &Ray64, mut state: State, sample: &Sample, tally: &mut T) -> (Spectrum, Spectrum) {
+    fn trace<T: TraceListener>(
+        &self,
+        ray: &Ray64,
+        mut state: State,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> (Spectrum, Spectrum) {
         let (end, scale) = self.fly(ray, &mut state, sample, tally);
         let sum = match &end {
             End::Lost => Spectrum::ZERO,
@@ -196,7 +208,7 @@ impl<'w> Path<'w> {
                 let (sky, pdf) = self.world.emitters().sky(self.world, dir);
                 let sky = sample.lanes.light(sky);
                 let weight = self.weight(&state, self.world.environment().is_some(), |_| pdf);
-                tally.begin(|| What::Sky);
+                tally.begin(|| TermKind::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
             }
@@ -211,7 +223,7 @@ impl<'w> Path<'w> {
 
     /// Follows a ray to where something happens to its light, and says what the way there leaves of
     /// it.
-    fn fly<T: Witness>(&self, ray: &Ray64, state: &mut State, sample: &Sample, tally: &mut T) -> (End, Spectrum) {
+    fn fly<T: TraceListener>(&self, ray: &Ray64, state: &mut State, sample: &Sample, tally: &mut T) -> (End, Spectrum) {
         let mut ray = *ray;
         let mut rest = ray;
         let mut scale = Spectrum::ONE;
@@ -296,7 +308,7 @@ impl<'w> Path<'w> {
     }
 
     /// The light that leaves a hit against the ray.
-    fn met<T: Witness>(
+    fn met<T: TraceListener>(
         &self,
         at: &Interaction,
         passage: Option<&Passage>,
@@ -305,14 +317,14 @@ impl<'w> Path<'w> {
         tally: &mut T,
     ) -> Spectrum {
         let shading = self.world.shading(at, passage.map_or(1.0, Passage::eta), &sample.lanes);
-        tally.hit(|| struck(self.world, at, shading.frame.normal, at.inside(), false));
+        tally.hit(|| hit_record(self.world, at, shading.frame.normal, at.inside(), false));
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(at);
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(at.material));
             let carried = self.world.emitters().chooses(&at.hit);
             let weight = self.weight(state, carried, |from| self.pdf_of_hit(at, from));
-            tally.begin(|| What::Emission { mis: weight });
+            tally.begin(|| TermKind::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
             sum += weight * emitted;
         }
@@ -324,7 +336,7 @@ impl<'w> Path<'w> {
         let place = Place::Surface(&at.surface, &shading, passage);
         let vertex = self.vertex(place, state, sample);
         let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
-        tally.begin(|| What::OneWavelength { nm });
+        tally.begin(|| TermKind::OneWavelength { nm });
         let light = self.scattered(Spectrum::ZERO, &vertex, sample, tally);
         tally.end(sample.told(kept), sample.told(Spectrum::ONE), sample.told(light));
         sum + kept * light
@@ -341,7 +353,7 @@ impl<'w> Path<'w> {
 
     /// A sum and the light that a point scatters against the ray, added in the order in which a
     /// witness hears of it.
-    fn scattered<T: Witness>(&self, sum: Spectrum, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn scattered<T: TraceListener>(&self, sum: Spectrum, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         if vertex.state.depth > self.settings.bounces || self.is_cancelled() {
             return sum;
         }
@@ -354,21 +366,21 @@ impl<'w> Path<'w> {
     }
 
     /// The light of lamps that mirrors and glass throw on a surface.
-    fn caustic<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn caustic<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (Some(map), Place::Surface(surface, shading, _)) = (&sample.photons, &vertex.place) else {
             return Spectrum::ZERO;
         };
         let most = self.settings.bounces - vertex.state.depth;
         let (light, photons) = map.light(surface, shading, most);
         if photons > 0 {
-            tally.begin(|| What::Photons { radius: map.radius(), photons });
+            tally.begin(|| TermKind::Photons { radius: map.radius(), photons });
             tally.end(sample.told(Spectrum::ONE), sample.told(Spectrum::ONE), sample.told(light));
         }
         light
     }
 
     /// The light from a direction that is chosen.
-    fn indirect<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn indirect<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let Vertex { place, state, .. } = vertex;
         let id = sample.bounce(state.depth);
         let u = id.pair(Use::Direction as u32);
@@ -397,7 +409,7 @@ impl<'w> Path<'w> {
             alone: state.alone,
         };
         let ray = place.spawn(chosen.wi);
-        tally.begin(|| What::Ray {
+        tally.begin(|| TermKind::Ray {
             from: match (delta, chosen.passes) {
                 (true, false) => RayKind::Reflected,
                 (true, true) => RayKind::Transmitted,

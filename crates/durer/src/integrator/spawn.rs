@@ -17,33 +17,33 @@ use glam::DVec3;
 /// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from
 /// there on. Without: it starts beside the surface, as far away as the point may be off, and every
 /// hit counts.
-pub fn from_surface(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
+pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
     if let Some(epsilon) = epsilon {
         return Ray64::new(surface.point(), dir, epsilon, t_max);
     }
     let side = if dir.dot(surface.n_geo) < 0.0 { -surface.n_geo } else { surface.n_geo };
-    Ray64::new(beside(surface, Vec3::ZERO, side), dir, 0.0, t_max)
+    Ray64::new(offset_ray_origin(surface, Vec3::ZERO, side), dir, 0.0, t_max)
 }
 
-/// A ray from a surface to a light at some distance, as [`from_surface`]; without an `epsilon` it
+/// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
 /// starts on the bent surface that a triangle with normals at its corners stands for.
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     let behind = dir.dot(surface.n_shade) < 0.0;
-    let lift = surface.lifts[usize::from(behind)];
+    let lift = surface.shadow_offsets[usize::from(behind)];
     if epsilon.is_some() || lift == Vec3::ZERO {
-        return from_surface(surface, dir, distance, epsilon);
+        return spawn_ray(surface, dir, distance, epsilon);
     }
     // The bent surface faces the light; so the ray leaves on that side, whatever the triangle's own
     // slope.
     let side = if behind { -surface.n_geo } else { surface.n_geo };
-    Ray64::new(beside(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
+    Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }
 
 /// A ray from a surface to a point of a light that has an extent. From a bent surface it is aimed
 /// anew: a parallel one would end beside that point, and behind the light where that is inclined.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     let ray = to_light(surface, dir, distance, None);
-    if surface.lifts == [Vec3::ZERO; 2] || !distance.is_finite() {
+    if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
         return ray;
     }
     let way = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
@@ -55,7 +55,7 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
 /// off than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
-fn beside(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
+fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
     // Twice the bound: the next intersection rounds as well.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;
     surface.point() + lift.as_dvec3() + offset.as_dvec3()

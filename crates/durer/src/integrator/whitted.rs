@@ -3,9 +3,9 @@
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
 //! with the terms of the course.
 
-use super::account::{RayKind, Shadow, Struck, What, Witness};
 use super::media::{Body, Media, Passage};
-use super::spawn::{from_surface, to_light};
+use super::spawn::{spawn_ray, to_light};
+use super::trace::{HitRecord, RayKind, Shadow, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::describe::described;
 use crate::dialect::{Compat, set};
@@ -40,7 +40,7 @@ pub struct Settings {
 
 impl Settings {
     /// More levels than this overflow the stack.
-    pub const MOST_BOUNCES: u32 = 256;
+    pub const MAX_BOUNCES: u32 = 256;
 }
 
 described! {
@@ -83,22 +83,22 @@ struct Path {
 }
 
 impl Integrate for Whitted<'_> {
-    fn radiance<T: Witness>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
+    fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
     }
 }
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
-    pub fn radiance<T: Witness>(&self, ray: &Ray, tally: &mut T) -> Color {
+    pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
         let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0 };
-        tally.begin(|| What::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let color = self.trace(&ray.into(), path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
-    fn trace<T: Witness>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
+    fn trace<T: TraceListener>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
         let mut rest = *ray;
         while let Some(hit) = self.world.closest(&rest, tally) {
             let at = self.world.interaction(ray, hit);
@@ -108,21 +108,21 @@ impl Whitted<'_> {
             }
         }
         let sky = self.world.sky(ray.dir());
-        tally.begin(|| What::Sky);
+        tally.begin(|| TermKind::Sky);
         tally.end(Color::ONE, Color::ONE, sky);
         sky
     }
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its
     /// share.
-    fn shade<T: Witness>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
+    fn shade<T: TraceListener>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
         let Interaction { ray, surface, .. } = at;
         let from_behind = self.sees_back(at);
         let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
         let parts = self.world.parts(at);
-        tally.hit(|| struck(self.world, at, n, from_behind, black));
+        tally.hit(|| hit_record(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             // A texture or noise is looked up once for all lights.
@@ -131,7 +131,7 @@ impl Whitted<'_> {
             for (part, &diffuse) in parts.iter().zip(&diffuse) {
                 let met = part.phong.ambient.unwrap_or(diffuse);
                 let ambient = part.share * self.world.ambient();
-                tally.begin(|| What::Ambient { share: part.share });
+                tally.begin(|| TermKind::Ambient { share: part.share });
                 tally.end(ambient, Color::ONE, met);
                 color += ambient * met;
             }
@@ -155,7 +155,7 @@ impl Whitted<'_> {
                     tally.begin(|| {
                         let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
                         let (to_light, distance) = (seen.to_light, seen.distance);
-                        What::Light { light: number, to_light, distance, share, shadow }
+                        TermKind::Light { light: number, to_light, distance, share, shadow }
                     });
                     // In the dark nothing is computed.
                     let direct = match visible == Color::ZERO {
@@ -171,7 +171,7 @@ impl Whitted<'_> {
         if path.bounces > 0 && !cancelled {
             color += self.secondary(at, &parts, passage.unwrap_or_default(), path, tally);
         } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
-            tally.begin(|| What::Spent);
+            tally.begin(|| TermKind::Spent);
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
         }
         color
@@ -206,7 +206,7 @@ impl Whitted<'_> {
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let
     /// through.
-    fn visible<T: Witness>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
+    fn visible<T: TraceListener>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
         if !self.settings.shadows || seen.color == Color::ZERO {
             return Color::ONE;
         }
@@ -229,13 +229,13 @@ impl Whitted<'_> {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
-            ray = from_surface(&blocker.surface, seen.to_light, rest, self.world.rules().epsilon);
+            ray = spawn_ray(&blocker.surface, seen.to_light, rest, self.world.rules().epsilon);
         }
         Color::ZERO
     }
 
     /// Mirrored and transmitted light.
-    fn secondary<T: Witness>(
+    fn secondary<T: TraceListener>(
         &self,
         at: &Interaction,
         parts: &[Part],
@@ -275,7 +275,7 @@ impl Whitted<'_> {
             reflective *= r;
             transparent *= 1.0 - r;
         }
-        tally.begin(|| What::Secondary { here, there, fresnel: r, total });
+        tally.begin(|| TermKind::Secondary { here, there, fresnel: r, total });
         let mut color = Color::ZERO;
         if self.settings.reflection {
             color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path.clone(), tally);
@@ -317,7 +317,7 @@ impl Whitted<'_> {
     }
 
     /// One secondary ray, weighed by a colour.
-    fn bounce<T: Witness>(
+    fn bounce<T: TraceListener>(
         &self,
         from: RayKind,
         surface: &Surface,
@@ -334,12 +334,12 @@ impl Whitted<'_> {
         let old = self.world.rules().is_official();
         let total = path.weight * if old { weight.length() } else { weight.max_element() };
         if total < self.settings.least_weight {
-            tally.begin(|| What::Cut { weight: total });
+            tally.begin(|| TermKind::Cut { weight: total });
             tally.end(weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
-        let ray = from_surface(surface, dir, f32::INFINITY, self.world.rules().epsilon);
-        tally.begin(|| What::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
+        let ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
+        tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
         let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
         tally.end(weight, Color::ONE, color);
         weight * color
@@ -347,10 +347,10 @@ impl Whitted<'_> {
 }
 
 /// What a witness is told of a hit.
-pub(super) fn struck(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> Struck {
+pub(super) fn hit_record(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> HitRecord {
     let Interaction { ray, hit, surface, material } = at;
     let object = &world.objects()[hit.object as usize];
-    Struck {
+    HitRecord {
         object: hit.object,
         part: world.triangle(hit),
         t: hit.t,
@@ -406,9 +406,16 @@ pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there)
 }
 
 /// Diffuse term and highlight of one light.
-fn direct<T: Witness>(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination, tally: &mut T) -> Color {
+fn direct<T: TraceListener>(
+    phong: &Phong,
+    diffuse: Color,
+    n: Vec3,
+    view: Vec3,
+    seen: &Illumination,
+    tally: &mut T,
+) -> Color {
     let cosine = n.dot(seen.to_light);
-    tally.begin(|| What::Diffuse { cosine });
+    tally.begin(|| TermKind::Diffuse { cosine });
     tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
     let mut color = cosine.max(0.0) * diffuse;
     if let Some((specular, exponent, model)) = phong.highlight {
@@ -418,7 +425,7 @@ fn direct<T: Witness>(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: 
         };
         if let Some(base) = base {
             let strength = fp::pow(base.max(0.0), exponent);
-            tally.begin(|| What::Highlight { model: What::highlight(model), base, exponent });
+            tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
             tally.end(Color::splat(strength), Color::ONE, specular);
             color += strength * specular;
         }

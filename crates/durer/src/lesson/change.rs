@@ -7,7 +7,7 @@ use crate::math::Vec3;
 /// Differences of this much in a channel, of 255, are rounding.
 const ROUNDING: i32 = 1;
 /// A step is seen if it changes so many of the pixels.
-const LEAST_SHARE: f64 = 0.001;
+const MIN_SHARE: f64 = 0.001;
 
 /// The difference of two pictures.
 #[derive(Clone, Debug)]
@@ -53,7 +53,7 @@ impl Change {
 
     /// Whether there is anything to see.
     pub(super) fn is_seen(&self) -> bool {
-        self.changed as f64 >= LEAST_SHARE * self.pixels as f64 && self.changed > 0
+        self.changed as f64 >= MIN_SHARE * self.pixels as f64 && self.changed > 0
     }
 
     /// It in words.

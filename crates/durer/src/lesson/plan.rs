@@ -8,7 +8,7 @@ use std::fmt::Write;
 /// Rays drawn.
 const RAYS: u32 = 21;
 /// At most so many boxes are drawn: more hide each other.
-const MOST_BOXES: usize = 200;
+const MAX_BOXES: usize = 200;
 /// The drawing's width and height.
 const SIZE: f32 = 400.0;
 
@@ -46,7 +46,7 @@ pub(super) fn plan(stage: &Stage) -> String {
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {SIZE} {SIZE}\" width=\"{SIZE}\" height=\"{SIZE}\">\n\
          <rect width=\"{SIZE}\" height=\"{SIZE}\" fill=\"white\"/>\n"
     );
-    for bounds in world.objects().iter().filter_map(|object| object.bounds()).take(MOST_BOXES) {
+    for bounds in world.objects().iter().filter_map(|object| object.bounds()).take(MAX_BOXES) {
         let corners: Vec<Vec2> = bounds.corners().map(|corner| place(flat(corner))).into_iter().collect();
         for (i, a) in corners.iter().enumerate() {
             for b in (0..3).map(|axis| i | 1 << axis).filter(|&j| j != i).map(|j| corners[j]) {

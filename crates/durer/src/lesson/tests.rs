@@ -126,9 +126,9 @@ fn acne_is_dark_specks_where_light_falls() {
 fn moved_normals_are_those_of_the_matrix_itself() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
         Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
-    for (habit, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
+    for (quirk, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
         let mut rules = Dialect::Durer.rules().clone();
-        rules.compat = if habit { Compat::MovedNormals.bit() } else { 0 };
+        rules.compat = if quirk { Compat::MovedNormals.bit() } else { 0 };
         let folder = Path::new(".");
         let (world, _) = crate::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
         // The sphere's point (0.6, 0.4, z) in its own space is (1.2, 0.2, z) in the world's.
@@ -137,7 +137,7 @@ fn moved_normals_are_those_of_the_matrix_itself() {
         let surface = world.intersect(&ray, &mut ()).unwrap().surface;
         let z = (1.0f32 - 0.36 - 0.16).sqrt();
         let expected = Vec3::new(expected.x, expected.y, z).normalize();
-        assert!((surface.n_shade - expected).length() < 1e-6, "{habit}: {}", surface.n_shade);
+        assert!((surface.n_shade - expected).length() < 1e-6, "{quirk}: {}", surface.n_shade);
         assert!((surface.n_geo - Vec3::new(0.3, 0.8, z).normalize()).length() < 1e-6);
     }
 }

@@ -154,7 +154,7 @@ pub static TOPICS: [Topic; 18] = [
         places: &[
             at("crates/durer-bvh/src/math/ray.rs", "struct Ray"),
             at("crates/durer/src/camera/perspective.rs", "fn ray"),
-            at("crates/durer/src/camera/pose.rs", "struct Frame"),
+            at("crates/durer/src/camera/pose.rs", "struct CameraBasis"),
             at("crates/durer/src/render/eye.rs", "fn center_ray"),
         ],
         shots: &[value("the rays' directions as colours", "rays")],
@@ -274,8 +274,8 @@ pub static TOPICS: [Topic; 18] = [
             "here:   o' = p + 2 |N|·δ N,   |p - true point| ≤ δ in each coordinate, t > 0",
         ],
         places: &[
-            at("crates/durer/src/integrator/spawn.rs", "fn from_surface"),
-            at("crates/durer/src/integrator/spawn.rs", "fn beside"),
+            at("crates/durer/src/integrator/spawn.rs", "fn spawn_ray"),
+            at("crates/durer/src/integrator/spawn.rs", "fn offset_ray_origin"),
             at("crates/durer-bvh/src/math/rounding.rs", "fn gamma"),
             at("crates/durer/src/dialect.rs", "epsilon: Option<f32>"),
         ],

@@ -29,7 +29,7 @@ impl Emitter for DirectionalLight {
         Illumination { to_light, distance: f32::INFINITY, color: self.color }
     }
 
-    fn resolved(&self, _rules: &Rules) -> Self {
+    fn with_rules(&self, _rules: &Rules) -> Self {
         self.clone()
     }
 

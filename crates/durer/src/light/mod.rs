@@ -20,8 +20,8 @@ macro_rules! delegate {
             fn illuminate(&self, point: DVec3) -> Illumination {
                 match self { $(Light::$variant(l) => l.illuminate(point),)+ }
             }
-            fn resolved(&self, rules: &Rules) -> Self {
-                match self { $(Light::$variant(l) => l.resolved(rules).into(),)+ }
+            fn with_rules(&self, rules: &Rules) -> Self {
+                match self { $(Light::$variant(l) => l.with_rules(rules).into(),)+ }
             }
             fn color(&self) -> Color {
                 match self { $(Light::$variant(l) => l.color,)+ }
@@ -81,7 +81,7 @@ pub trait Emitter {
     fn illuminate(&self, point: DVec3) -> Illumination;
 
     /// The same light with the rules of a dialect worked in.
-    fn resolved(&self, rules: &Rules) -> Self;
+    fn with_rules(&self, rules: &Rules) -> Self;
 
     /// Its colour, as written.
     fn color(&self) -> Color;

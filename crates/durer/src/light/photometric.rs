@@ -37,7 +37,7 @@ impl Emitter for PhotometricLight {
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
     }
 
-    fn resolved(&self, _rules: &Rules) -> Self {
+    fn with_rules(&self, _rules: &Rules) -> Self {
         self.clone()
     }
 

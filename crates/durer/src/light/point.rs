@@ -39,7 +39,7 @@ impl Emitter for PointLight {
         Illumination { to_light, distance, color: self.color / divisor }
     }
 
-    fn resolved(&self, rules: &Rules) -> Self {
+    fn with_rules(&self, rules: &Rules) -> Self {
         let attenuation = match (rules.falloff, self.falloff) {
             (Falloff::None, _) => None,
             (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),

@@ -58,7 +58,7 @@ impl Emitter for SpotLight {
         Illumination { to_light, distance, color: self.color * (share / (distance * distance)) }
     }
 
-    fn resolved(&self, _rules: &Rules) -> Self {
+    fn with_rules(&self, _rules: &Rules) -> Self {
         self.clone()
     }
 

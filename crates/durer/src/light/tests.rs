@@ -7,7 +7,7 @@ use crate::dialect::Dialect;
 /// only.
 fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -> f32 {
     let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff, spectrum: None };
-    let seen = Light::from(light).resolved(dialect.rules()).illuminate((Vec3::ZERO).as_dvec3());
+    let seen = Light::from(light).with_rules(dialect.rules()).illuminate((Vec3::ZERO).as_dvec3());
     assert_eq!((seen.to_light, seen.distance), (Vec3::Z, 2.0));
     seen.color.x
 }
@@ -30,7 +30,7 @@ fn point_lights_fade_as_their_dialect_says() {
     assert_eq!(arriving(Dialect::F23, None, None), 1.0 / 80.0);
     // The official program of 2016 divides by zero; sane rules do not fade.
     assert!(!arriving(Dialect::F16, None, None).is_finite());
-    let light = PointLight::default().resolved(&Dialect::F16.rules().sane());
+    let light = PointLight::default().with_rules(&Dialect::F16.rules().sane());
     assert_eq!(light.illuminate((Vec3::X * 7.0).as_dvec3()).color, Vec3::ONE);
 }
 

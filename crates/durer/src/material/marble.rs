@@ -1,6 +1,6 @@
 //! Veins: the first material weighs (sin(frequency x + amplitude N) + 1) / 2.
 
-use super::{MOST_OCTAVES, Pattern};
+use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
@@ -13,7 +13,7 @@ described! {
         /// The material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// How many frequencies of noise are summed, each twice the one before.
-        octaves: u32 = 0, required, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Veins per 2 pi along x.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
         /// How much noise bends the veins.

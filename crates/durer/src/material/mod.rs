@@ -51,7 +51,7 @@ pub trait Pattern {
 }
 
 /// The most octaves that noise may have: beyond, they are finer than numbers can tell.
-pub const MOST_OCTAVES: u32 = 32;
+pub const MAX_OCTAVES: u32 = 32;
 
 /// Whether a field holds the number of another material.
 pub fn is_material_index(field: &Field) -> bool {

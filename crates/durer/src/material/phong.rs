@@ -1,7 +1,7 @@
 //! The course's material: diffuse colour, a highlight, and weights for mirrored and transmitted
 //! rays.
 
-use super::MOST_OCTAVES;
+use super::MAX_OCTAVES;
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::{Color, Vec3, noise};
@@ -42,7 +42,7 @@ described! {
         /// The colour where the sine is -1.
         color2: Vec3 = Vec3::ZERO, required, Rule::Any, ["color" in set::ALL];
         /// How many frequencies of noise are summed, each twice the one before.
-        octaves: u32 = 0, optional, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, optional, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Veins per 2 pi along x.
         frequency: f32 = 1.0, optional, Rule::Any, ["frequency" in set::ALL];
         /// How much noise bends the veins.

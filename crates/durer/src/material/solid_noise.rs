@@ -1,6 +1,6 @@
 //! Two materials mixed by noise: the first weighs N + 1/2, kept between 0 and 1.
 
-use super::{MOST_OCTAVES, Pattern};
+use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
@@ -13,7 +13,7 @@ described! {
         /// The material where noise is low.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// How many frequencies are summed, each twice the one before.
-        octaves: u32 = 0, required, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! The course left the profile of the rings free; the official program's is steeper, and not known.
 
-use super::{MOST_OCTAVES, Pattern};
+use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Vec3, noise};
@@ -16,7 +16,7 @@ described! {
         /// The material where the sine is -1.
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// How many frequencies of noise are summed, each twice the one before.
-        octaves: u32 = 0, required, Rule::AtMost(MOST_OCTAVES), ["octaves" in set::ALL];
+        octaves: u32 = 0, required, Rule::AtMost(MAX_OCTAVES), ["octaves" in set::ALL];
         /// Rings per 2 pi along the radius.
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
         /// How much noise bends the rings.

@@ -23,7 +23,7 @@ const FULL: usize = 16_000;
 const FEWEST: usize = 72;
 const KEPT: [usize; 3] = [200, 30, 8];
 /// So many mistakes are tried at more pixels than a few.
-const MOST_SINGLES: usize = 60;
+const MAX_SINGLES: usize = 60;
 /// Larger pictures are not looked at as a whole.
 const WHOLE: usize = 160_000;
 /// So many of the best are looked at closely, and paired with all others.
@@ -34,12 +34,12 @@ const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
 /// Where the scene's own picture differs from the reference at a larger share of the pixels,
 /// nothing is said.
-const MOST_OFF: f64 = 0.25;
+const MAX_OFF: f64 = 0.25;
 /// Half a step of eight bits, and how many pixels must be rounded otherwise.
 const HALF: f32 = 0.5 / 255.0;
 const FEWEST_ROUNDED: usize = 30;
 /// The largest number of pairs that are tried.
-const MOST_PAIRS: usize = 3000;
+const MAX_PAIRS: usize = 3000;
 
 /// Two pictures, and the scene of which the reference was made.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,7 @@ pub struct Diagnosis {
 impl Diagnosis {
     /// Whether the scene and the options make the reference at all.
     pub fn is_of_scene(&self) -> bool {
-        self.off <= MOST_OFF
+        self.off <= MAX_OFF
     }
 }
 
@@ -188,7 +188,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     full.keep(&steady);
     let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
     told(0.1);
-    if off > MOST_OFF {
+    if off > MAX_OFF {
         return Diagnosis { off, ..Diagnosis::default() };
     }
     if difference(&full.reference, &full.test) == 0.0 {
@@ -205,7 +205,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     // What changes nothing in this scene explains nothing.
     singles.retain(|trial| differing(&trial.made, &some.base) > 0);
     told(0.2);
-    let mut better = search.trials(best(&mut singles, MOST_SINGLES), &coarse);
+    let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
     sort(&mut better);
     told(0.3);
     let refined = better.iter().take(BEST).map(|trial| search.refined(trial, &some, &coarse));
@@ -348,7 +348,7 @@ impl<'a> Search<'a> {
                 }
             }
         }
-        pairs.truncate(MOST_PAIRS);
+        pairs.truncate(MAX_PAIRS);
         let full = rounds[3];
         for (pixels, kept) in rounds.into_iter().zip(KEPT) {
             pairs = best(&mut self.trials(pairs, pixels), kept);

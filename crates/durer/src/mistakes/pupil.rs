@@ -9,7 +9,7 @@ use super::habits::{
 use crate::dialect::Compat;
 use crate::integrator::media::Media;
 use crate::integrator::media::Passage;
-use crate::integrator::spawn::{from_surface, to_light};
+use crate::integrator::spawn::{spawn_ray, to_light};
 use crate::integrator::whitted::{Blend, fresnel_share};
 use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
@@ -411,7 +411,7 @@ impl<'w> Pupil<'w> {
             if share == Color::ZERO {
                 break;
             }
-            ray = from_surface(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+            ray = spawn_ray(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
         }
         Color::ZERO
     }
@@ -425,7 +425,7 @@ impl<'w> Pupil<'w> {
             if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
                 return Color::ZERO;
             }
-            ray = from_surface(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
+            ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
         }
         Color::ZERO
     }
@@ -522,7 +522,7 @@ impl<'w> Pupil<'w> {
             return Color::ZERO;
         }
         let epsilon = self.habits.bounces.epsilon.or(self.world.rules().epsilon);
-        let ray = from_surface(surface, dir, f32::INFINITY, epsilon);
+        let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
     }
 }

@@ -1,7 +1,7 @@
 //! A scene with its rules, and what a pupil does otherwise with it.
 
 use super::habits::{Aim, Habits, Output, Turn};
-use crate::camera::{Camera, CameraSample, Frame, Lens, Raster};
+use crate::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
 use crate::compile::{self, AccelKind};
 use crate::dialect::{Compat, CompatSet, Highlight};
 use crate::integrator::Settings;
@@ -75,7 +75,7 @@ impl<'s> Variant<'s> {
 
     /// Makes the camera's axes anew, by the rules.
     pub fn reframe(&mut self) {
-        self.world.edit().frame = Frame::of(self.world.camera(), self.world.rules());
+        self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.rules());
     }
 
     /// The field of view of a perspective camera, in degrees.

@@ -1,6 +1,6 @@
 //! Pictures larger than memory: made in bands of rows, which are written and forgotten.
 
-use super::{BLOCK, Control, Crop, Job, Part, RenderError, Shard, Statistics, Stop};
+use super::{BLOCK, Control, Crop, Job, Part, RenderError, RenderOutcome, Shard, Statistics};
 use crate::image::{Format, ImageError, Strip, WriteOptions};
 use crate::source::Digest;
 use crate::world::World;
@@ -109,9 +109,9 @@ impl Bands {
             for crop in crops {
                 let part = Part::new(world, &self.band(crop), Shard::WHOLE)?;
                 match part.render(world, control, &mut |_, _| {})? {
-                    Stop::Finished => {}
-                    Stop::Cancelled | Stop::OutOfTime => return Err(RenderError::Cancelled.into()),
-                    Stop::Panicked(panicked) => return Err(RenderError::from(panicked).into()),
+                    RenderOutcome::Finished => {}
+                    RenderOutcome::Cancelled | RenderOutcome::OutOfTime => return Err(RenderError::Cancelled.into()),
+                    RenderOutcome::Panicked(panicked) => return Err(RenderError::from(panicked).into()),
                 }
                 part.hash_into(&mut hasher);
                 statistics.add(part.statistics());

@@ -5,7 +5,7 @@ use crate::image::ImageError;
 use crate::math::Vec2;
 
 /// The most samples that are kept at once, for a diagram of them.
-pub(super) const MOST_KEPT: u64 = 1 << 27;
+pub(super) const MAX_KEPT: u64 = 1 << 27;
 
 /// Why there is no picture.
 #[derive(Debug, thiserror::Error)]
@@ -20,7 +20,7 @@ pub enum RenderError {
     #[error("the crop does not lie in the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),
     /// A diagram of samples keeps them, and has not the memory for so many.
-    #[error("a diagram keeps all samples, and {0} are too many: at most {MOST_KEPT}")]
+    #[error("a diagram keeps all samples, and {0} are too many: at most {MAX_KEPT}")]
     TooManySamples(u64),
     /// A diagram cannot be made as asked for.
     #[error("{0}")]

@@ -6,20 +6,20 @@ mod firefly;
 mod text;
 
 use super::confidence::{ErrorBound, corrected};
-use super::samples::{Aim, Samples};
+use super::samples::{PixelSample, Samples};
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::{Aov, Sums};
-use crate::integrator::{Account, Integrate, Integrator, Tree};
+use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::SampleId;
 use crate::world::{Material, World};
 use serde::Serialize;
 use std::sync::atomic::AtomicBool;
-pub use text::{Line, Names, Telling, number, ray_text};
+pub use text::{Names, Telling, TextLine, number, ray_text};
 
 /// A pixel and all that made it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -36,7 +36,7 @@ pub struct Explanation {
     pub mean: Mean,
     /// Its samples, in the order in which they are summed.
     pub samples: Vec<SampleAccount>,
-    /// What an old program's habit `stale-texels` adds to the colour.
+    /// What an old program's quirk `stale-texels` adds to the colour.
     pub stale_texels: Option<Color>,
     /// How far it may be from the truth, where paths make it of more samples than one.
     pub error: Option<ErrorBound>,
@@ -104,7 +104,7 @@ pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<
 }
 
 fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
-    let mut account = Account::default();
+    let mut account = TraceRecorder::default();
     integrator.radiance(ray, id, &mut account);
     account.into_tree()
 }
@@ -122,7 +122,7 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
     let source = Samples::without_habits(world, job, &stop);
     let integrator = job.integrator(world, None);
-    let account = |of, sample, aim: Aim| {
+    let account = |of, sample, aim: PixelSample| {
         let id = SampleId::new(job.seed, of, sample);
         let light = aim.ray.and_then(|ray| told(&integrator, &ray, id));
         SampleAccount { of, sample, place: aim.place, lens: aim.lens, weight: aim.weight, light }

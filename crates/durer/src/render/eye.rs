@@ -1,7 +1,7 @@
 //! From places in the picture to rays.
 
 use super::error::center;
-use crate::camera::{CameraSample, Lens, Raster};
+use crate::camera::{CameraSample, Projection, Raster};
 use crate::math::{Ray, Vec2};
 use crate::world::World;
 

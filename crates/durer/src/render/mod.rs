@@ -41,6 +41,6 @@ pub use part::{Part, Statistics};
 pub use pictures::Rendered;
 pub use profile::{Profile, profile};
 pub use replay::replay;
-pub use run::{Moment, Stop, render};
+pub use run::{RenderEvent, RenderOutcome, render};
 pub use samples::{sample_diagram, sample_places};
 pub use saved::PartError;

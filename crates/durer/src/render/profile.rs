@@ -4,8 +4,8 @@
 use super::samples::Samples;
 use super::{Job, RenderError};
 use crate::bvh::{RayCount, TraversalCounter};
-use crate::integrator::account::{Line, RayKind, What};
-use crate::integrator::{Integrate, Witness};
+use crate::integrator::trace::{RayKind, RayRecord, TermKind};
+use crate::integrator::{Integrate, TraceListener};
 use crate::math::Ray;
 use crate::sampler::SampleId;
 use crate::world::World;
@@ -28,17 +28,17 @@ pub struct Profile {
 
 /// Remembers the rays that an integrator tells of.
 #[derive(Default)]
-struct RayLog(Vec<(Option<RayKind>, Line)>);
+struct RayLog(Vec<(Option<RayKind>, RayRecord)>);
 
 impl TraversalCounter for RayLog {
     const COUNTS_WORK: bool = false;
 }
 
-impl Witness for RayLog {
-    fn begin(&mut self, what: impl FnOnce() -> What) {
+impl TraceListener for RayLog {
+    fn begin(&mut self, what: impl FnOnce() -> TermKind) {
         match what() {
-            What::Ray { from, ray, .. } => self.0.push((Some(from), ray)),
-            What::Light { shadow: Some(shadow), .. } | What::Direct { shadow: Some(shadow), .. } => {
+            TermKind::Ray { from, ray, .. } => self.0.push((Some(from), ray)),
+            TermKind::Light { shadow: Some(shadow), .. } | TermKind::Direct { shadow: Some(shadow), .. } => {
                 self.0.push((None, shadow.ray));
             }
             _ => {}
@@ -71,7 +71,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     let rays: Vec<(bool, Ray)> = log
         .0
         .iter()
-        .map(|&(from, Line { origin, dir, t_min, t_max })| (from.is_none(), Ray { origin, dir, t_min, t_max }))
+        .map(|&(from, RayRecord { origin, dir, t_min, t_max })| (from.is_none(), Ray { origin, dir, t_min, t_max }))
         .collect();
     let whole = || {
         let mut count = RayCount::default();

@@ -21,14 +21,14 @@ use std::time::{Duration, Instant};
 /// larger, as long as what is kept for one takes at most so many bytes.
 const TILE: u32 = 16;
 const TILE_WITH_BORDER: u32 = 64;
-const MOST_BYTES: u64 = 64 << 20;
+const MAX_BYTES: u64 = 64 << 20;
 
 fn usual_tile(job: &Job) -> u32 {
     if job.sampling.is_local() {
         return TILE;
     }
     let sides = std::iter::successors(Some(TILE_WITH_BORDER), |side| Some(side / 2)).take_while(|&side| side > BLOCK);
-    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MOST_BYTES).unwrap_or(BLOCK)
+    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
 }
 
 /// How often it is looked whether to stop.
@@ -36,7 +36,7 @@ const LOOK: Duration = Duration::from_millis(5);
 
 /// Why the work ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
+pub enum RenderOutcome {
     /// All is made.
     Finished,
     /// The caller wanted it.
@@ -49,7 +49,7 @@ pub enum Stop {
 
 /// What the caller may want to do with the part that is being made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Moment {
+pub enum RenderEvent {
     /// Every pixel has the samples of a pass.
     PassDone,
     /// It was not saved for as long as [`Control::save_every`] says.
@@ -68,9 +68,9 @@ pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, R
 pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Part, RenderError> {
     let part = Part::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
-        Stop::Finished | Stop::OutOfTime => Ok(part),
-        Stop::Cancelled => Err(RenderError::Cancelled),
-        Stop::Panicked(panicked) => Err(panicked.into()),
+        RenderOutcome::Finished | RenderOutcome::OutOfTime => Ok(part),
+        RenderOutcome::Cancelled => Err(RenderError::Cancelled),
+        RenderOutcome::Panicked(panicked) => Err(panicked.into()),
     }
 }
 
@@ -87,8 +87,8 @@ impl Part {
         &self,
         world: &World,
         control: &Control,
-        watch: &mut dyn FnMut(&Part, Moment),
-    ) -> Result<Stop, RenderError> {
+        watch: &mut dyn FnMut(&Part, RenderEvent),
+    ) -> Result<RenderOutcome, RenderError> {
         if self.scene != world.digest() || self.look != Look::new(world.rules()) {
             return Err(RenderError::OtherScene);
         }
@@ -152,10 +152,10 @@ impl Part {
         }
         let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
         Ok(match panicked {
-            Some(panicked) => Stop::Panicked(panicked),
-            None if !stop.load(Relaxed) => Stop::Finished,
-            None if clock.out_of_time => Stop::OutOfTime,
-            None => Stop::Cancelled,
+            Some(panicked) => RenderOutcome::Panicked(panicked),
+            None if !stop.load(Relaxed) => RenderOutcome::Finished,
+            None if clock.out_of_time => RenderOutcome::OutOfTime,
+            None => RenderOutcome::Cancelled,
         })
     }
 }
@@ -175,7 +175,7 @@ struct Clock<'a> {
 }
 
 impl Clock<'_> {
-    fn look(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment)) {
+    fn look(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
         }
@@ -184,19 +184,19 @@ impl Clock<'_> {
             self.out_of_time = true;
         }
         if self.control.save_every.is_some_and(|every| self.last.elapsed() >= every) {
-            self.call(part, watch, Moment::SaveDue);
+            self.call(part, watch, RenderEvent::SaveDue);
         }
     }
 
-    fn passed(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment)) {
+    fn passed(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent)) {
         self.whole = true;
         self.look(part, watch);
         if self.last.elapsed() >= self.pause {
-            self.call(part, watch, Moment::PassDone);
+            self.call(part, watch, RenderEvent::PassDone);
         }
     }
 
-    fn call(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, Moment), moment: Moment) {
+    fn call(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent), moment: RenderEvent) {
         // Who wants to stop does not want to wait for this; all is saved in the end.
         if self.stop.load(Relaxed) {
             return;

@@ -1,10 +1,10 @@
 //! How the samples of a block are taken, for each way of sampling.
 
-use super::error::{MOST_KEPT, center};
+use super::error::{MAX_KEPT, center};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster};
 use crate::bvh::RayCount;
-use crate::camera::{CameraSample, Lens, Raster};
+use crate::camera::{CameraSample, Projection, Raster};
 use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::{Film, FilterSampler};
@@ -36,7 +36,7 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
     };
     let samples = sampler.round_up(samples);
     let count = job.whole().pixels().saturating_mul(samples.into());
-    if count > MOST_KEPT {
+    if count > MAX_KEPT {
         return Err(RenderError::TooManySamples(count));
     }
     let work = || {
@@ -109,7 +109,7 @@ pub(super) fn share(white: Color) -> f32 {
 }
 
 /// Where a sample goes.
-pub(super) struct Aim {
+pub(super) struct PixelSample {
     /// In the picture, in pixels from the upper left corner.
     pub(super) place: Vec2,
     /// In the lens, from 0 to 1.
@@ -205,7 +205,7 @@ impl<'a> Samples<'a> {
     }
 
     fn sample_of(&self, pixel: &Pixel, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
-        let Aim { ray, weight, .. } = self.aim_in(pixel, sample);
+        let PixelSample { ray, weight, .. } = self.aim_in(pixel, sample);
         let Pixel { x, y, .. } = *pixel;
         let id = SampleId::new(self.job.seed, (x, y), sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
@@ -229,11 +229,11 @@ impl<'a> Samples<'a> {
     }
 
     /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
-    pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> Aim {
+    pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
         self.aim_in(&self.pixel(x, y), sample)
     }
 
-    fn aim_in(&self, pixel: &Pixel, sample: u32) -> Aim {
+    fn aim_in(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
         let (place, lens, weight) = match (self.job.sampling, &self.warp) {
             (Sampling::Filtered { .. }, Some(warp)) => {
@@ -248,23 +248,29 @@ impl<'a> Samples<'a> {
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
-        Aim { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
+        PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
     /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
     /// more pixels than one, as a filter says.
-    pub(super) fn aim_kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (Aim, Vec2) {
+    pub(super) fn aim_kept(
+        &self,
+        (sampler, samples): (Sampler, u32),
+        x: u32,
+        y: u32,
+        sample: u32,
+    ) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
         let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
-        (Aim { place, lens, weight: 1.0, ray }, position)
+        (PixelSample { place, lens, weight: 1.0, ray }, position)
     }
 
     /// Where the sample of a sub-pixel goes.
-    pub(super) fn aim_sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> Aim {
+    pub(super) fn aim_sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);
-        Aim { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
+        PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
     /// Where in the lens a sample lies. A lens without extent needs no numbers.
@@ -298,7 +304,7 @@ impl<'a> Samples<'a> {
     }
 
     /// The colour of a sample that is kept.
-    fn kept(&self, show: &Show, aim: &Aim, id: SampleId, rays: &mut RayCount) -> Color {
+    fn kept(&self, show: &Show, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
         show.blind.set(show.blind.get() || aim.ray.is_none());
         let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
         aim.ray.map_or(Vec3::ZERO, light)

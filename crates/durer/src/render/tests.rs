@@ -256,7 +256,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
     let part = Part::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
-    let Stop::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
+    let RenderOutcome::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
         panic!("the sphere is seen");
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
@@ -282,19 +282,19 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     let (mut passes, mut saves) = (0, 0);
     let mut watch = |part: &Part, moment| {
         assert!(part.work().1 > 0);
-        *if moment == Moment::PassDone { &mut passes } else { &mut saves } += 1;
+        *if moment == RenderEvent::PassDone { &mut passes } else { &mut saves } += 1;
     };
     let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
     for save_every in [None, Some(Duration::from_millis(20))] {
         let control = Control { time: Some(Duration::from_millis(300)), save_every, ..Control::default() };
-        assert_eq!(part.render(&world, &control, &mut watch).unwrap(), Stop::OutOfTime);
+        assert_eq!(part.render(&world, &control, &mut watch).unwrap(), RenderOutcome::OutOfTime);
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
     // No time at all is enough for a picture without holes, and for no more.
     let hasty = Part::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time: Some(Duration::ZERO), ..Control::default() };
-    assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), Stop::OutOfTime);
+    assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
     assert!(hasty.is_whole() && !hasty.is_finished());
     let control = Control::default();
     let stopped = std::thread::scope(|scope| {
@@ -305,7 +305,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
         let (stop, after) = render.join().unwrap();
         (stop, after.saturating_duration_since(before))
     });
-    assert_eq!(stopped.0, Stop::Cancelled);
+    assert_eq!(stopped.0, RenderOutcome::Cancelled);
     // 100 ms are the promise (`cargo xtask cost` measures it); a busy machine has other work too.
     assert!(stopped.1 < Duration::from_secs(2), "{:?}", stopped.1);
 }

@@ -1,6 +1,6 @@
 //! One picture made in many ways: threads, tiles, shards, interruptions, structures.
 
-use super::{Control, Job, MergeError, Part, PartError, RenderError, Shard, ShardBy, Stop, merge};
+use super::{Control, Job, MergeError, Part, PartError, RenderError, RenderOutcome, Shard, ShardBy, merge};
 use crate::sampler::hash;
 use crate::source::Digest;
 use crate::world::World;
@@ -106,7 +106,7 @@ impl Way {
                 most_tiles: (round > 0).then_some(some),
                 ..Control::default()
             };
-            if let Stop::Panicked(panicked) = part.render(world, &control, &mut |_, _| {})? {
+            if let RenderOutcome::Panicked(panicked) = part.render(world, &control, &mut |_, _| {})? {
                 return Err(RenderError::Panic(panicked).into());
             }
             part = Part::read(&part.write())?;

@@ -58,10 +58,10 @@ impl MatrixOp {
         }
     }
 
-    /// The product of the matrices of one transform, with the habits [`Compat::MatrixOnLeft`] and
+    /// The product of the matrices of one transform, with the quirks [`Compat::MatrixOnLeft`] and
     /// [`Compat::DroppedShear`].
-    pub fn product(ops: &[MatrixOp], habits: CompatSet) -> DAffine3 {
-        let has = |compat: Compat| habits & compat.bit() != 0;
+    pub fn product(ops: &[MatrixOp], quirks: CompatSet) -> DAffine3 {
+        let has = |compat: Compat| quirks & compat.bit() != 0;
         let product = ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
             MatrixOp::Matrix(_) if has(Compat::MatrixOnLeft) => op.matrix() * product,
             _ => product * op.matrix(),

@@ -2,7 +2,7 @@
 
 use super::extent::points;
 use super::{Group, Material, Node, Object, Scene, Spanned};
-use crate::camera::{Camera, Lens, OrthographicCamera, PerspectiveCamera};
+use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, Projection};
 use crate::diag::Span;
 use crate::light::{DirectionalLight, Light};
 use crate::material::PrincipledMaterial;
@@ -122,7 +122,7 @@ impl Staging {
             || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if framed {
             scene.camera = Some(self.camera(scene, &sides, self.view.unwrap_or_default()));
-        } else if let (Some(pose), true) = (scene.camera.as_ref().map(Lens::pose), self.fit) {
+        } else if let (Some(pose), true) = (scene.camera.as_ref().map(Projection::pose), self.fit) {
             let [forward, up] = [pose.direction, pose.up].map(|v| v.as_dvec3().normalize_or(sides.up));
             scene.camera = Some(self.framed(scene, &sides, (-forward, up), true));
         }
@@ -187,7 +187,7 @@ impl Staging {
             scene.lights.get_or_insert_default();
             return;
         }
-        let pose = scene.camera.as_ref().map(crate::camera::Lens::pose);
+        let pose = scene.camera.as_ref().map(crate::camera::Projection::pose);
         let forward = pose.map_or(-sides.front, |pose| pose.direction.as_dvec3().normalize_or(-sides.front));
         // Level, so that light comes from above also where the camera looks down.
         let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);

@@ -2,7 +2,7 @@
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
-use super::{Crossing, Shape, Surface, exactly, inset};
+use super::{Shape, ShapeHit, Surface, exactly, inset};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
@@ -78,7 +78,7 @@ impl Shape for Cone {
         Some((Cone { base, top, ..self.clone() }, self.base))
     }
 
-    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
         let (axis, [base, top]) = (self.axis(), self.radii());
         if crossing.uv.x != SIDE as f32 {
             let face = crossing.uv.x as u32;

@@ -1,7 +1,7 @@
 //! The box whose faces are parallel to the coordinate planes.
 
 use super::chord::Chord;
-use super::{Crossing, Shape, Surface, exactly, inset, padded};
+use super::{Shape, ShapeHit, Surface, exactly, inset, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
@@ -38,7 +38,7 @@ impl Shape for Cuboid {
         Some((Cuboid { min, max }, self.min))
     }
 
-    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
         let face = crossing.uv.x as usize;
         let (axis, high) = (face / 2 % 3, face % 2 == 1);
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());

@@ -1,7 +1,7 @@
 //! The cylinder between two points, with its caps.
 
 use super::chord::Chord;
-use super::{Crossing, INSET, Shape, Surface, Uv, disc_reach, exactly, inset, padded};
+use super::{INSET, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
@@ -114,7 +114,7 @@ impl Shape for Cylinder {
         Some((Cylinder { base, top, ..self.clone() }, self.base))
     }
 
-    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
         let (axis, r) = (self.axis(), f64::from(self.radius));
         if crossing.uv.x != SIDE as f32 {
             return axis.cap(point, crossing.uv.x as u32, r);

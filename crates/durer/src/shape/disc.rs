@@ -1,6 +1,6 @@
 //! The disc, whole or with a hole.
 
-use super::{Crossing, Shape, Surface, Uv, disc_reach, padded};
+use super::{Shape, ShapeHit, Surface, Uv, disc_reach, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3};
@@ -46,7 +46,7 @@ impl Shape for Disc {
         Some((Disc { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let (n, center, radius) = (self.normal(), self.center.as_dvec3(), f64::from(self.radius));
         let q = point - center;
         let q = (q - n.dot(q) * n).clamp_length_max(radius);

@@ -1,6 +1,6 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
-use super::{Crossing, Shape, Surface, padded, turn};
+use super::{Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
@@ -39,7 +39,7 @@ impl Shape for Ellipsoid {
         Some((Ellipsoid { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let (center, radii) = (self.center.as_dvec3(), self.radii.as_dvec3());
         let unit = ((point - center) / radii).normalize_or(DVec3::Z);
         // Longitude and latitude as on a sphere.

@@ -23,7 +23,7 @@ described! {
 
 impl HeightField {
     /// At most this many pixels.
-    pub const MOST_PIXELS: usize = 1 << 22;
+    pub const MAX_PIXELS: usize = 1 << 22;
 
     /// What is wrong with the values of its fields taken together, if anything.
     pub fn flaw(&self) -> Option<&'static str> {

@@ -3,7 +3,7 @@
 pub use super::mesh_data::{MeshData, NO_INDEX, loosened, place_key};
 use super::normals::{Normals, made};
 use super::triangle::{face_normal, interpolate};
-use super::{Crossing, Surface};
+use super::{ShapeHit, Surface};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
@@ -216,14 +216,15 @@ impl Mesh {
     }
 
     /// The surface of a triangle at a crossing.
-    pub fn surface(&self, part: u32, crossing: &Crossing) -> Surface {
+    pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
         let corners = self.corners(part);
         let (position, error, barycentric) = interpolate(corners, crossing.uv);
         let n_geo = face_normal(corners);
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
         let normals = self.corner_normals(part);
         let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
-        let lifts = normals.map_or([Vec3::ZERO; 2], |normals| lifts(position, corners, normals).map(mix));
+        let shadow_offsets =
+            normals.map_or([Vec3::ZERO; 2], |normals| shadow_offsets(position, corners, normals).map(mix));
         let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
             .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
@@ -238,7 +239,7 @@ impl Mesh {
             n_shade,
             uv: uv.into(),
             barycentric,
-            lifts,
+            shadow_offsets,
             color,
         }
     }
@@ -251,14 +252,14 @@ impl Mesh {
 /// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
 /// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
 /// Terminator*, Ray Tracing Gems II (2021), chapter 4.
-fn lifts(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
-    let mut lifts = [[Vec3::ZERO; 3]; 2];
+fn shadow_offsets(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+    let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
     for i in 0..3 {
         let n = normals[i].normalize_or_zero();
         let height = (corners[i] - point).dot(n);
-        lifts[usize::from(height < 0.0)][i] = height * n;
+        shadow_offsets[usize::from(height < 0.0)][i] = height * n;
     }
-    lifts
+    shadow_offsets
 }
 
 /// An attribute's values at the corners of a triangle, if it has them all.

@@ -51,13 +51,13 @@ macro_rules! delegate {
             fn overlaps(&self, cell: &Aabb) -> bool {
                 match self { $(Primitive::$variant(s) => s.overlaps(cell),)+ }
             }
-            fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+            fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
                 match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
             }
             fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
                 match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
             }
-            fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface {
+            fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
                 match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
             }
             fn inside(&self, point: DVec3) -> Option<bool> {
@@ -95,7 +95,7 @@ described_list! {
 
 /// Where a ray meets a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
+pub struct ShapeHit {
     /// Position along the ray.
     pub t: f32,
     /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and
@@ -126,7 +126,7 @@ pub struct Surface {
     /// From the point to the bent surface that a flat triangle stands for: where it is seen from
     /// the side of `n_shade`, and from the other. Zero on what is as it looks. A shadow ray
     /// starts there; after Hanika, *Hacking the Shadow Terminator*.
-    pub lifts: [Vec3; 2],
+    pub shadow_offsets: [Vec3; 2],
     /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they
     /// bring none.
     pub color: [f32; 4],
@@ -148,7 +148,7 @@ impl Surface {
             n_shade: n,
             uv: uv.into(),
             barycentric: Vec3::ZERO,
-            lifts: [Vec3::ZERO; 2],
+            shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
         }
     }
@@ -210,14 +210,14 @@ pub trait Shape {
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
 
     /// The crossing of least `t` inside the ray's open interval.
-    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let line = ray.line();
-        let mut first: Option<Crossing> = None;
+        let mut first: Option<ShapeHit> = None;
         if line.is_sound() {
             self.crossings(&line, &mut |t, uv| {
                 let t = t as f32;
                 if ray.contains(t) && first.is_none_or(|first| t < first.t) {
-                    first = Some(Crossing { t, uv });
+                    first = Some(ShapeHit { t, uv });
                 }
             });
         }
@@ -225,7 +225,7 @@ pub trait Shape {
     }
 
     /// The surface at a crossing, next to a point that is on it but for rounding.
-    fn surface(&self, point: DVec3, crossing: &Crossing) -> Surface;
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
 
     /// Whether a point is inside; `None` for shapes that are surfaces only.
     fn inside(&self, _point: DVec3) -> Option<bool> {

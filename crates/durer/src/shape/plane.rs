@@ -1,6 +1,6 @@
 //! The plane normal · p = offset, without end.
 
-use super::{Crossing, Shape, Surface, Uv};
+use super::{Shape, ShapeHit, Surface, Uv};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -22,12 +22,12 @@ impl Shape for Plane {
         None
     }
 
-    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
         // A parallel ray divides by zero, and an infinite one by infinity: neither hits.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
-        (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(Crossing { t, uv: Vec2::ZERO })
+        (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
@@ -48,7 +48,7 @@ impl Shape for Plane {
         slope > 0.0 || slope == 0.0 && n.dot(line.origin) < f64::from(self.offset)
     }
 
-    fn surface(&self, p: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> Surface {
         let n = self.normal.as_dvec3();
         // Placed back onto the plane: what is left is the rounding of the coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
@@ -63,7 +63,7 @@ impl Shape for Plane {
             n_shade: normal,
             uv: Uv::Sheet(normal, position),
             barycentric: Vec3::ZERO,
-            lifts: [Vec3::ZERO; 2],
+            shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
         }
     }

@@ -1,6 +1,6 @@
 //! The general quadric: where a polynomial of degree two in x, y and z is zero.
 
-use super::{Crossing, Shape, Surface, padded, turn};
+use super::{Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
@@ -73,7 +73,7 @@ impl Shape for Quadric {
         }
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         // Newton's steps along the gradient lead back onto the surface.
         let mut p = point;
         let mut gradient = self.gradient(p);

@@ -1,6 +1,6 @@
 //! The rectangle, or any parallelogram.
 
-use super::{Crossing, Shape, Surface, inset, padded};
+use super::{Shape, ShapeHit, Surface, inset, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
@@ -54,7 +54,7 @@ impl Shape for Rectangle {
         Some((Rectangle { corner: Vec3::ZERO, ..self.clone() }, self.corner))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let ([e, f], corner) = (self.edges(), self.corner.as_dvec3());
         let error = gamma(2) * (self.corner.abs() + self.edge0.abs() + self.edge1.abs()).max_element();
         let [u, v] = self.shares(point);

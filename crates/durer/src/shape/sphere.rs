@@ -1,6 +1,6 @@
 //! The sphere |p - center|^2 = radius^2.
 
-use super::{Crossing, Shape, Surface, Uv};
+use super::{Shape, ShapeHit, Surface, Uv};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -61,10 +61,10 @@ impl Shape for Sphere {
         }
     }
 
-    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let [near, far] = self.roots(&ray.line())?.map(|t| t as f32);
         let t = if ray.contains(near) { near } else { far };
-        ray.contains(t).then_some(Crossing { t, uv: Vec2::ZERO })
+        ray.contains(t).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
@@ -76,7 +76,7 @@ impl Shape for Sphere {
         Some((Sphere { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();
         // Placed back onto the sphere, the point is as exact as its coordinates can be.
@@ -91,7 +91,7 @@ impl Shape for Sphere {
             n_shade: normal,
             uv: Uv::Globe(normal),
             barycentric: Vec3::ZERO,
-            lifts: [Vec3::ZERO; 2],
+            shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
         }
     }

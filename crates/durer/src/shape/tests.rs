@@ -178,7 +178,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
 }
 
 /// A point of the shape and its surface there, found by a ray from outside.
-fn surface_point(shape: &Primitive, random: &mut Random, size: f32, distance: f32) -> Option<(Ray, Crossing)> {
+fn surface_point(shape: &Primitive, random: &mut Random, size: f32, distance: f32) -> Option<(Ray, ShapeHit)> {
     let middle = shape.bounds().map_or(distance * random.direction(), |b| b.center());
     let target = middle + size * random.point();
     let ray = Ray::new(target + 3.0 * size * random.direction(), Vec3::ZERO);

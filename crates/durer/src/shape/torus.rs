@@ -1,6 +1,6 @@
 //! The torus: all points at one distance from a circle.
 
-use super::{Crossing, Shape, Surface, disc_reach, padded, turn};
+use super::{Shape, ShapeHit, Surface, disc_reach, padded, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
@@ -84,7 +84,7 @@ impl Shape for Torus {
         Some((Torus { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    fn surface(&self, point: DVec3, _crossing: &Crossing) -> Surface {
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let ((major, minor), a, center) = (self.radii(), self.axis(), self.center.as_dvec3());
         let q = point - center;
         let ring = self.nearest(q);

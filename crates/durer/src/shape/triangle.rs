@@ -1,7 +1,7 @@
 //! A single triangle.
 
 use super::watertight::{self, WatertightRay};
-use super::{Crossing, INSET, Shape, Surface, Uv, exactly};
+use super::{INSET, Shape, ShapeHit, Surface, Uv, exactly};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
@@ -26,9 +26,9 @@ impl Triangle {
     }
 }
 
-impl From<watertight::Crossing> for Crossing {
+impl From<watertight::Crossing> for ShapeHit {
     fn from(watertight::Crossing { t, uv }: watertight::Crossing) -> Self {
-        Crossing { t, uv }
+        ShapeHit { t, uv }
     }
 }
 
@@ -37,8 +37,8 @@ impl Shape for Triangle {
         Some(Aabb::around(self.corners()))
     }
 
-    fn intersect(&self, ray: &Ray) -> Option<Crossing> {
-        WatertightRay::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(Crossing::from)
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
+        WatertightRay::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(ShapeHit::from)
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
@@ -58,7 +58,7 @@ impl Shape for Triangle {
         Some((Triangle { vertex0, vertex1, vertex2 }, center))
     }
 
-    fn surface(&self, _point: DVec3, crossing: &Crossing) -> Surface {
+    fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> Surface {
         let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
         let n_geo = face_normal(self.corners());
         Surface {
@@ -70,7 +70,7 @@ impl Shape for Triangle {
             n_shade: n_geo,
             uv: Uv::At(crossing.uv),
             barycentric,
-            lifts: [Vec3::ZERO; 2],
+            shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
         }
     }

@@ -1,7 +1,7 @@
 //! What a world is made of, and its identity.
 
 use super::{Geometry, Material, Object, World};
-use crate::camera::{Camera, Frame};
+use crate::camera::{Camera, CameraBasis};
 use crate::dialect::Rules;
 use crate::light::{Light, Profile};
 use crate::math::Color;
@@ -18,7 +18,7 @@ pub struct Contents {
     /// Whence it is seen.
     pub camera: Camera,
     /// The camera's axes.
-    pub frame: Frame,
+    pub frame: CameraBasis,
     /// Colour of rays that hit nothing.
     pub background: Color,
     /// Light that is everywhere.
@@ -85,7 +85,7 @@ impl World {
     }
 
     /// The camera's axes.
-    pub fn camera_frame(&self) -> &Frame {
+    pub fn camera_frame(&self) -> &CameraBasis {
         &self.contents.frame
     }
 

@@ -16,10 +16,10 @@
 //! bits: whether the surface is turned inside out, and whether the ray enters the solid.
 
 use super::solid::{Rule, Solid};
-use super::{Geometry, Object, Placing};
+use super::{Geometry, Object, PlacementQuirks};
 use crate::bvh::{Bvh, TraversalCounter};
 use crate::math::{Aabb, Ray, Ray64, Vec2, Vec3};
-use crate::shape::{Crossing, Shape, Surface};
+use crate::shape::{Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -118,7 +118,7 @@ thread_local! {
 
 impl Csg {
     /// More triangles and shapes than this, in all parts together, cannot be told apart.
-    pub const MOST_PARTS: u64 = ENTERS as u64 - 1;
+    pub const MAX_PARTS: u64 = ENTERS as u64 - 1;
 
     /// Prepares a solid for rays.
     pub fn new(solid: Solid) -> Self {
@@ -208,10 +208,10 @@ impl Csg {
     }
 
     /// The surface at a hit, in world space; its normals point out of the solid.
-    pub fn surface(&self, ray: &Ray64, crossing: &Crossing, part: u32, placing: Placing) -> Surface {
+    pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, quirks: PlacementQuirks) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
-        let surface = leaf.object.surface(ray, point, crossing, number, placing);
+        let surface = leaf.object.surface(ray, point, crossing, number, quirks);
         // A mesh may be inside out by itself: what counts is the ray's way.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
@@ -220,12 +220,12 @@ impl Csg {
         if !turned {
             return surface;
         }
-        let [front, back] = surface.lifts;
-        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, lifts: [back, front], ..surface }
+        let [front, back] = surface.shadow_offsets;
+        Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
     /// The first hit in the ray's interval, and its part.
-    pub(super) fn closest<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> Option<(Crossing, u32)> {
+    pub(super) fn closest<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> Option<(ShapeHit, u32)> {
         if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
@@ -283,7 +283,7 @@ impl Csg {
     }
 
     /// Goes along the sorted crossings to the first in the interval at which the whole changes.
-    fn sweep(&self, ray: &Ray64, scratch: &mut Scratch) -> Option<(Crossing, u32)> {
+    fn sweep(&self, ray: &Ray64, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
             return None;
@@ -317,7 +317,7 @@ impl Csg {
                     let turned = state.inside[chosen.leaf as usize] != whole;
                     let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
                     let part = (self.leaves[chosen.leaf as usize].first + chosen.part) | bits;
-                    return Some((Crossing { t, uv: chosen.uv }, part));
+                    return Some((ShapeHit { t, uv: chosen.uv }, part));
                 }
             }
             from = to;
@@ -372,9 +372,9 @@ impl Csg {
         // A grazing ray runs farther between faces at the same distance.
         let cosine = |event: &Event| {
             let object = &self.leaves[event.leaf as usize].object;
-            let crossing = Crossing { t: event.t as f32, uv: event.uv };
+            let crossing = ShapeHit { t: event.t as f32, uv: event.uv };
             let n = object
-                .surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, Placing::default())
+                .surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, PlacementQuirks::default())
                 .n_geo;
             n.as_dvec3().dot(line.dir).abs() / line.dir.length()
         };

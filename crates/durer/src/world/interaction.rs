@@ -1,10 +1,10 @@
 //! What a ray met, and the surface there.
 
-use super::{Geometry, Hit, Placing, World};
+use super::{Geometry, Hit, PlacementQuirks, World};
 use crate::bvh::TraversalCounter;
 use crate::dialect::Compat;
 use crate::math::Ray64;
-use crate::shape::{Crossing, Surface};
+use crate::shape::{ShapeHit, Surface};
 
 /// What a ray met: made once, by [`World::interaction`], and asked by all that shades it.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,8 @@ impl World {
         let ray = ray.into();
         let object = &self.objects()[hit.object as usize];
         let point = object.local_ray(&ray).line().at(f64::from(hit.t));
-        let crossing = Crossing { t: hit.t, uv: hit.uv };
-        let placing = Placing {
+        let crossing = ShapeHit { t: hit.t, uv: hit.uv };
+        let quirks = PlacementQuirks {
             as_is: self.rules().is_official(),
             moved_normals: self.rules().has(Compat::MovedNormals),
             mesh_textures: self.rules().has(Compat::MeshTextures),
@@ -49,6 +49,6 @@ impl World {
             _ => object.material,
         };
         // Made where it stays, as the last thing: a copy of what was just written takes long.
-        Interaction { surface: object.surface(&ray, point, &crossing, hit.part, placing), ray, hit, material }
+        Interaction { surface: object.surface(&ray, point, &crossing, hit.part, quirks), ray, hit, material }
     }
 }

@@ -15,7 +15,7 @@ use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
-use crate::shape::Crossing;
+use crate::shape::ShapeHit;
 use crate::source::Digest;
 pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
@@ -23,7 +23,7 @@ use glam::DVec3;
 pub use interaction::Interaction;
 pub use maps::{Map, Maps};
 pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
-pub use object::{Geometry, MeshTree, Object, Placing};
+pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
 
 /// A scene ready to be traced.
@@ -135,8 +135,8 @@ impl World {
         }
         let mut best: Option<Hit> = None;
         // A tie is decided by the order of hits, so a later ray may reach just to the present t.
-        let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(Crossing, u32)>| {
-            if let Some((Crossing { t, uv }, part)) = found {
+        let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
+            if let Some((ShapeHit { t, uv }, part)) = found {
                 let hit = Hit { t, uv, object, part };
                 if hit.is_before(best) {
                     *best = Some(hit);
@@ -145,7 +145,7 @@ impl World {
             }
         };
         if let Some(met) = self.packs.closest(&ray.rounded, counter) {
-            offer(&mut best, &mut ray, met.number, Some((Crossing { t: met.t, uv: Vec2::ZERO }, 0)));
+            offer(&mut best, &mut ray, met.number, Some((ShapeHit { t: met.t, uv: Vec2::ZERO }, 0)));
         }
         for &object in &self.loose {
             let found = self.objects()[object as usize].closest(&ray, false, counter);

@@ -4,7 +4,7 @@ use super::csg::Csg;
 use crate::bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
-use crate::shape::{Crossing, Mesh, Primitive, Shape, Surface, Uv};
+use crate::shape::{Mesh, Primitive, Shape, ShapeHit, Surface, Uv};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -26,9 +26,9 @@ pub struct Object {
     pub span: crate::diag::Span,
 }
 
-/// Habits of old programs, and one mistake, in how a surface is placed in the world.
+/// Quirks of old programs, and one mistake, in how a surface is placed in the world.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Placing {
+pub struct PlacementQuirks {
     /// Whether its position is the ray's own, without bounds on its error.
     pub as_is: bool,
     /// Whether [`crate::dialect::Compat::MovedNormals`] holds.
@@ -106,13 +106,13 @@ impl MeshTree {
 
     /// The first hit in the ray's interval; `any` ends at the first found.
     #[inline]
-    fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(Crossing, u32)> {
+    fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(ShapeHit, u32)> {
         if any {
             let found = self.bvh.occluded_counting(ray, counter);
-            return found.then_some((Crossing { t: ray.t_min, uv: Vec2::ZERO }, 0));
+            return found.then_some((ShapeHit { t: ray.t_min, uv: Vec2::ZERO }, 0));
         }
         let hit = self.bvh.closest_counting(ray, counter)?;
-        Some((Crossing { t: hit.t, uv: hit.uv }, hit.triangle))
+        Some((ShapeHit { t: hit.t, uv: hit.uv }, hit.triangle))
     }
 }
 
@@ -161,23 +161,23 @@ impl Object {
         &self,
         ray: &Ray64,
         point: DVec3,
-        crossing: &Crossing,
+        crossing: &ShapeHit,
         part: u32,
-        placing: Placing,
+        quirks: PlacementQuirks,
     ) -> Surface {
         let surface = match &self.geometry {
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
-            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, placing),
+            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, quirks),
         };
-        let shading = |to_world: &Affine, n: Vec3| match placing.moved_normals {
+        let shading = |to_world: &Affine, n: Vec3| match quirks.moved_normals {
             true => to_world.vector(n).normalize_or(n),
             false => to_world.normal(n),
         };
-        if placing.as_is {
+        if quirks.as_is {
             let n_geo = self.to_world.as_ref().map_or(surface.n_geo, |m| m.normal(surface.n_geo));
             let n_shade = self.to_world.as_ref().map_or(surface.n_shade, |m| shading(m, surface.n_shade));
-            let untextured = placing.mesh_textures && matches!(self.geometry, Geometry::Primitive(_));
+            let untextured = quirks.mesh_textures && matches!(self.geometry, Geometry::Primitive(_));
             return Surface {
                 position: ray.rounded.at(crossing.t),
                 n_geo,
@@ -199,7 +199,7 @@ impl Object {
             error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
             n_geo: to_world.normal(surface.n_geo),
             n_shade: shading(to_world, surface.n_shade),
-            lifts: surface.lifts.map(|lift| to_world.vector(lift)),
+            shadow_offsets: surface.shadow_offsets.map(|lift| to_world.vector(lift)),
             ..surface
         }
     }
@@ -210,7 +210,7 @@ impl Object {
         ray: &Ray64,
         any: bool,
         counter: &mut T,
-    ) -> Option<(Crossing, u32)> {
+    ) -> Option<(ShapeHit, u32)> {
         let moved;
         let local = match &self.to_world {
             Some(to_world) => {
@@ -230,7 +230,7 @@ impl Object {
     }
 
     /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
-    pub(super) fn part<T: TraversalCounter>(&self, ray: &Ray64, part: u32, counter: &mut T) -> Option<(Crossing, u32)> {
+    pub(super) fn part<T: TraversalCounter>(&self, ray: &Ray64, part: u32, counter: &mut T) -> Option<(ShapeHit, u32)> {
         counter.work(0, 1);
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
@@ -241,7 +241,7 @@ impl Object {
                 .bvh
                 .watertight_ray(&local)
                 .intersect(tree.mesh.corners(part), local.t_min, local.t_max)
-                .map(Crossing::from),
+                .map(ShapeHit::from),
             Geometry::Solid(solid) => return solid.closest(ray, counter),
         };
         crossing.map(|crossing| (crossing, part))

@@ -37,10 +37,10 @@ pub enum Solid {
 }
 
 /// Where more pairs of pieces than this would have to be looked at, they are left together.
-const MOST_PAIRS: usize = 1 << 22;
+const MAX_PAIRS: usize = 1 << 22;
 
 /// And where more copies of parts than this would be made.
-const MOST_COPIES: usize = 1 << 18;
+const MAX_COPIES: usize = 1 << 18;
 
 /// A solid and the box around it; `None` where it has no end.
 type Piece = (Solid, Option<Aabb>);
@@ -192,7 +192,7 @@ fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
 /// For each piece those of others whose boxes touch its own; `None` where these are too many to be
 /// told apart.
 fn touching(pieces: &[Piece], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
-    if pieces.len() * others.len() > MOST_PAIRS {
+    if pieces.len() * others.len() > MAX_PAIRS {
         return None;
     }
     let sizes: Vec<usize> = others.iter().map(|other| other.0.parts().len()).collect();
@@ -200,7 +200,7 @@ fn touching(pieces: &[Piece], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
     let near = |piece: &Piece| -> Option<Vec<usize>> {
         let near: Vec<usize> = (0..others.len()).filter(|&i| touch(piece.1, others[i].1)).collect();
         copied += near.iter().map(|&i| sizes[i]).sum::<usize>();
-        (copied <= MOST_COPIES).then_some(near)
+        (copied <= MAX_COPIES).then_some(near)
     };
     pieces.iter().map(near).collect()
 }
@@ -238,7 +238,7 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         let pad = |b: &Aabb| 16.0 * f32::EPSILON * b.max.x.abs().max(begun.abs()).max(b.size().max_element());
         active.retain(|&j| boxes[j].is_none_or(|b| b.max.x + pad(&b) >= begun || touch(Some(b), boxes[i])));
         pairs += active.len();
-        if pairs > MOST_PAIRS {
+        if pairs > MAX_PAIRS {
             return vec![0; boxes.len()];
         }
         for &j in &active {

@@ -4,7 +4,7 @@ use super::super::cave::CaveCamera;
 use super::super::cube_map::{CubeMapCamera, Layout};
 use super::super::cylindrical::CylindricalCamera;
 use super::super::equirectangular::EquirectangularCamera;
-use super::super::fisheye::{FisheyeCamera, Projection};
+use super::super::fisheye::{FisheyeCamera, FisheyeProjection};
 use super::super::multiple_center::MultipleCenterCamera;
 use super::super::omnimax::OmnimaxCamera;
 use super::super::parabolic::ParabolicCamera;
@@ -13,19 +13,19 @@ use super::*;
 use std::f64::consts::PI;
 
 /// The ray of a camera in our own dialect.
-pub fn ray(camera: &impl Lens, sample: CameraSample) -> Option<Ray> {
-    camera.ray(&Frame::of(camera, &rules(&[])), &sample)
+pub fn ray(camera: &impl Projection, sample: CameraSample) -> Option<Ray> {
+    camera.ray(&CameraBasis::of(camera, &rules(&[])), &sample)
 }
 
 /// What a point of the picture sees, x to the right, y up, -z ahead where nothing else is said.
-fn dir(camera: &impl Lens, x: f32, y: f32) -> Vec3 {
+fn dir(camera: &impl Projection, x: f32, y: f32) -> Vec3 {
     ray(camera, CameraSample::at(Vec2::new(x, y))).unwrap().dir
 }
 
 /// The solid angle of a whole picture, by the middle of each of 480 x 480 cells.
-fn solid_angle(camera: &impl Lens) -> f64 {
+fn solid_angle(camera: &impl Projection) -> f64 {
     const CELLS: u32 = 480;
-    let frame = Frame::of(camera, &rules(&[]));
+    let frame = CameraBasis::of(camera, &rules(&[]));
     let side = 2.0 / f64::from(CELLS);
     let at = |i: u32| (-1.0 + side * (f64::from(i) + 0.5)) as f32;
     let cells = (0..CELLS * CELLS).map(|i| CameraSample::at(Vec2::new(at(i % CELLS), at(i / CELLS))));
@@ -42,11 +42,11 @@ fn pictures_cover_the_solid_angles_of_their_fields_of_view() {
         assert!((found / expected - 1.0).abs() < 0.004, "{found} for {expected}: {camera:?}");
     };
     for (projection, angle) in [
-        (Projection::Equidistant, 180.0),
-        (Projection::Equidistant, 360.0),
-        (Projection::Equisolid, 360.0),
-        (Projection::Stereographic, 200.0),
-        (Projection::Orthographic, 120.0),
+        (FisheyeProjection::Equidistant, 180.0),
+        (FisheyeProjection::Equidistant, 360.0),
+        (FisheyeProjection::Equisolid, 360.0),
+        (FisheyeProjection::Stereographic, 200.0),
+        (FisheyeProjection::Orthographic, 120.0),
     ] {
         let camera = FisheyeCamera { angle, projection, ..FisheyeCamera::default() };
         check(camera.into(), cap(f64::from(angle)));
@@ -209,7 +209,7 @@ fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
     let mut path: Vec<[f32; 6]> = (0..12).map(row).collect();
     path.push(path[0]);
     let camera = MultipleCenterCamera { path, aspect: 2.0, ..MultipleCenterCamera::default() };
-    let frame = Frame::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, &rules(&[]));
     let at = |x: f32| CameraSample::at(Vec2::new(x, 0.0));
     close(ray(&camera, at(1.0)).unwrap().origin, ray(&camera, at(-1.0)).unwrap().origin);
     // The footprint holds the path's slope.

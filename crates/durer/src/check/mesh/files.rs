@@ -2,7 +2,7 @@
 
 use super::normals::Given;
 use super::topology::Topology;
-use crate::camera::Lens;
+use crate::camera::Projection;
 use crate::check::finding::vector;
 use crate::check::probes::ProbeGrid;
 use crate::describe::FileName;
@@ -14,7 +14,7 @@ use crate::shape::MeshData;
 use crate::world::{Material, Object as Placed};
 
 /// Files of more bytes are not looked into: the check is to take no longer than the eye.
-const MOST_BYTES: usize = 64 << 20;
+const MAX_BYTES: usize = 64 << 20;
 /// A share of turned or odd triangles that modellers leave behind, and nobody sees.
 const NEGLIGIBLE: f32 = 0.002;
 
@@ -62,7 +62,7 @@ fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
 fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
     let files = grid.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
-    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MOST_BYTES)?;
+    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
     // It was read before, and what is wrong with it was said.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     let topology = Topology::of(&data.positions, &data.triangles);

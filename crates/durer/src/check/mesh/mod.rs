@@ -5,7 +5,7 @@ mod normals;
 pub(super) mod topology;
 
 use super::finding::{Finding, counted, percent, vector};
-use super::scout::Scout;
+use super::scene_probe::SceneProbe;
 use crate::diag::{Diagnostic, Span};
 use crate::dialect::Compat;
 use crate::world::{Material, Object as Placed};
@@ -16,7 +16,7 @@ use topology::Topology;
 const MANY_FLAT: f32 = 0.03;
 
 /// Triangles without area.
-pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
+pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {
         let (flat, all) = (&mesh.topology.degenerate, mesh.data.triangles.len());
@@ -36,7 +36,7 @@ pub(super) fn degenerate(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Holes and crowded edges where a mesh must have an inside.
-pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = flat_glass(scout);
     for mesh in scout.meshes() {
         let Some(glass) = mesh.glass(scout) else { continue };
@@ -57,7 +57,7 @@ pub(super) fn open_glass(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Opaque meshes with holes through which their inside is seen.
-pub(super) fn holes(scout: &Scout) -> Vec<Finding> {
+pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
@@ -78,7 +78,7 @@ pub(super) fn holes(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Flat things of glass: what has no inside.
-pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
+pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     use crate::shape::Primitive;
     use crate::world::Geometry;
     let world = scout.world();
@@ -125,7 +125,7 @@ pub(super) fn flat_glass(scout: &Scout) -> Vec<Finding> {
 
 /// Mesh files with faces of more than three corners: name, how many, of how many, and the first of
 /// them.
-pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, Span)> {
+pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scout.subject.files.bytes(mesh.file)?;
         let (mut start, mut all, mut large, mut first) = (0, 0, 0, None);
@@ -147,7 +147,7 @@ pub(super) fn large_faces<'s>(scout: &Scout<'s>) -> Vec<(&'s str, usize, usize, 
 
 /// Mesh files of which the year's program loses the last line, or gives normals to other vertices
 /// than the file says.
-pub(super) fn misread(scout: &Scout) -> Vec<Finding> {
+pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     let mut found = Vec::new();
     for mesh in scout.meshes() {
@@ -203,7 +203,7 @@ fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
 }
 
 /// Triangles that wind the other way than their neighbours.
-pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
+pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.given.is_none()) {
         let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
@@ -223,7 +223,7 @@ pub(super) fn winding(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Closed meshes whose normals point inwards.
-pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
+pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in
         scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
@@ -243,7 +243,7 @@ pub(super) fn inside_out(scout: &Scout) -> Vec<Finding> {
 }
 
 /// Whether an object shows a mesh that is inside out, which is told of as such.
-pub(super) fn shows_inside_out(scout: &Scout, object: u32) -> bool {
+pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
     let span = scout.object_span(object);
     let turned =
         scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
@@ -251,7 +251,7 @@ pub(super) fn shows_inside_out(scout: &Scout, object: u32) -> bool {
 }
 
 /// Normals in a file that contradict its faces, are missing on some, or are no directions.
-pub(super) fn given_normals(scout: &Scout) -> Vec<Finding> {
+pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {
         let Some(given) = &mesh.given else { continue };

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// Files in files, files in all, and words of all files.
 const DEEPEST: usize = 32;
-const MOST_FILES: usize = 4096;
-const MOST_WORDS: usize = 1 << 26;
+const MAX_FILES: usize = 4096;
+const MAX_WORDS: usize = 1 << 26;
 
 /// What became of a file that is included.
 #[derive(Debug)]
@@ -100,13 +100,13 @@ impl Splicer<'_, '_, '_> {
         let refused = match () {
             () if self.stack.contains(&name) => Some(format!("`{name}` includes itself")),
             () if self.stack.len() >= DEEPEST => Some(format!("files include each other more than {DEEPEST} deep")),
-            () if self.files > MOST_FILES => Some(format!("more than {MOST_FILES} files are too many")),
-            () if self.words > MOST_WORDS => Some("all files together have too many words".to_string()),
+            () if self.files > MAX_FILES => Some(format!("more than {MAX_FILES} files are too many")),
+            () if self.words > MAX_WORDS => Some("all files together have too many words".to_string()),
             () => None,
         };
         if let Some(message) = refused {
             // One complaint of many files is enough.
-            if self.files <= MOST_FILES + 1 {
+            if self.files <= MAX_FILES + 1 {
                 self.diagnostics.push(Diagnostic::error(message).code("include").at(keyword.to(at)));
             }
             return Vec::new();

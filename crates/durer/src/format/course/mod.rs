@@ -35,7 +35,7 @@ pub struct ReadOptions {
     /// Whether only the words of that dialect are allowed: no comments, no words of other years,
     /// counts and order as the old programs wanted them.
     pub strict: bool,
-    /// Habits of its program.
+    /// Quirks of its program.
     pub compat: CompatSet,
 }
 

@@ -9,7 +9,7 @@ use crate::dialect::set;
 use crate::scene::{Group, Node, Object};
 
 /// Objects of a scene that uses defined ones, each counted as often as it is there.
-const MOST_OBJECTS: usize = 1 << 20;
+const MAX_OBJECTS: usize = 1 << 20;
 
 impl Reader<'_, '_> {
     /// The name of a material, between its keyword and its block.
@@ -123,9 +123,8 @@ impl Reader<'_, '_> {
             return None;
         };
         self.named.used = self.named.used.saturating_add(*count);
-        if self.named.used > MOST_OBJECTS {
-            let message =
-                format!("more than {MOST_OBJECTS} objects, each counted as often as it is used, are too many");
+        if self.named.used > MAX_OBJECTS {
+            let message = format!("more than {MAX_OBJECTS} objects, each counted as often as it is used, are too many");
             self.error(Diagnostic::error(message).code("limit").at(keyword.to(span)));
             self.stop();
             return None;

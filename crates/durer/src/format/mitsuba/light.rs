@@ -18,7 +18,7 @@ use std::f32::consts::PI;
 use std::rc::Rc;
 
 /// Rows of a picture of all directions that is turned.
-const MOST_ROWS: u32 = 2048;
+const MAX_ROWS: u32 = 2048;
 
 impl Reader<'_> {
     /// The colour of a light.
@@ -142,7 +142,7 @@ impl Reader<'_> {
             Some(Infinite::Even(color, _)) => background.color = color,
             Some(Infinite::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
-                let rows = picture.height.min(MOST_ROWS);
+                let rows = picture.height.min(MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
                 // The middle of Mitsuba's pictures is where its z points, and of ours where -z
                 // does.

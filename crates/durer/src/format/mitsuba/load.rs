@@ -19,8 +19,8 @@ use std::sync::Arc;
 
 /// Files in files, files in all, and elements in all.
 const DEEPEST: usize = 15;
-const MOST_FILES: usize = 4096;
-const MOST_ELEMENTS: usize = 1 << 22;
+const MAX_FILES: usize = 4096;
+const MAX_ELEMENTS: usize = 1 << 22;
 
 /// Tags of plugins. The last ones are those of Mitsuba 0.6.
 const CLASSES: [&str; 14] = [
@@ -141,10 +141,10 @@ impl<'a> Loader<'a> {
     fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
         self.elements += 1;
         match xml.next() {
-            Ok(Piece::Open(tag)) if self.elements <= MOST_ELEMENTS && !self.said.is_full() => Ok(Some(tag)),
+            Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.said.is_full() => Ok(Some(tag)),
             Ok(Piece::Open(tag)) => {
                 if !self.said.is_full() {
-                    self.said.bad(tag.at, format!("more than {MOST_ELEMENTS} elements are too many"));
+                    self.said.bad(tag.at, format!("more than {MAX_ELEMENTS} elements are too many"));
                 }
                 Err(Broken)
             }
@@ -288,8 +288,8 @@ impl<'a> Loader<'a> {
             Some(format!("`{name}` includes itself"))
         } else if self.open.len() > DEEPEST {
             Some(format!("files include each other more than {DEEPEST} deep"))
-        } else if self.files > MOST_FILES {
-            Some(format!("more than {MOST_FILES} files are too many"))
+        } else if self.files > MAX_FILES {
+            Some(format!("more than {MAX_FILES} files are too many"))
         } else {
             None
         };

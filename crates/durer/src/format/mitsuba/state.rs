@@ -15,7 +15,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Objects of a scene, those of instances counted each time.
-const MOST_OBJECTS: usize = 1 << 20;
+const MAX_OBJECTS: usize = 1 << 20;
 /// Plugins in plugins, those counted to which others refer.
 pub(super) const DEEPEST: u32 = 32;
 
@@ -129,10 +129,10 @@ impl<'a> Reader<'a> {
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
-        if before <= MOST_OBJECTS && self.count > MOST_OBJECTS {
-            self.said.bad(at, format!("more than {MOST_OBJECTS} objects, those of instances counted, are too many"));
+        if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
+            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
         }
-        self.count <= MOST_OBJECTS
+        self.count <= MAX_OBJECTS
     }
 
     /// Adds an object to others.

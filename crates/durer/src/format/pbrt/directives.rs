@@ -79,7 +79,7 @@ const BEFORE_WORLD: [&str; 8] =
 const TARGETS: [&str; 5] = ["shape", "light", "material", "medium", "texture"];
 
 /// Files that are included, files in files, and scopes in scopes.
-const MOST_FILES: usize = 1 << 16;
+const MAX_FILES: usize = 1 << 16;
 const DEEPEST_FILES: usize = 64;
 const DEEPEST_SCOPES: usize = 1 << 12;
 
@@ -407,8 +407,8 @@ impl Reader<'_> {
             return self.said.push(if own { error } else { error.related(open.at, "it is asked for here first") });
         }
         self.included += 1;
-        if self.included > MOST_FILES {
-            return self.said.bad(at, format!("more than {MOST_FILES} files are too many"));
+        if self.included > MAX_FILES {
+            return self.said.bad(at, format!("more than {MAX_FILES} files are too many"));
         }
         if self.texts.len() >= DEEPEST_FILES {
             return self.said.bad(at, format!("files include each other more than {DEEPEST_FILES} deep"));

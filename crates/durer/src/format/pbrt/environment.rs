@@ -12,7 +12,7 @@ use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
 /// Bytes that decoding one picture may take, and rows of the picture that is made.
 const MEMORY: u64 = 1 << 31;
-const MOST_ROWS: u32 = 2048;
+const MAX_ROWS: u32 = 2048;
 
 /// A picture with what turns and scales it.
 struct Source {
@@ -40,7 +40,7 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MOST_ROWS);
+        let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
         if !panorama::surround(&mut self.scene, (&name, at), rows, light) {
             self.said.bad(at, "the picture around the scene cannot be made");

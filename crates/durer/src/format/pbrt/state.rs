@@ -16,7 +16,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 /// Objects of a scene, those of instances counted each time.
-const MOST_OBJECTS: usize = 1 << 20;
+const MAX_OBJECTS: usize = 1 << 20;
 
 /// What `Attribute` may be said of: places in [`State::given`].
 pub(super) const SHAPE: usize = 0;
@@ -166,8 +166,8 @@ impl<'a> Reader<'a> {
     /// Whether so many objects more are allowed.
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         self.count = self.count.saturating_add(more);
-        if self.count > MOST_OBJECTS {
-            self.said.bad(at, format!("more than {MOST_OBJECTS} objects, those of instances counted, are too many"));
+        if self.count > MAX_OBJECTS {
+            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
             return false;
         }
         true

@@ -4,7 +4,7 @@ use super::args::Thing;
 use super::body::Body;
 use super::made::{Distant, Made};
 use super::words::{Start, Word, Words};
-use crate::camera::Lens;
+use crate::camera::Projection;
 use crate::diag::{Diagnostic, Span};
 use crate::format::model::Input;
 use crate::format::polygon::Cutter;
@@ -18,9 +18,9 @@ use std::sync::Arc;
 
 /// Files in files, and files in all.
 const DEEPEST: u32 = 32;
-const MOST_FILES: usize = 4096;
+const MAX_FILES: usize = 4096;
 /// Corners and shapes of a scene.
-const MOST_THINGS: usize = 1 << 26;
+const MAX_THINGS: usize = 1 << 26;
 
 /// Where the things of a text go.
 #[derive(Clone, Default)]
@@ -149,10 +149,10 @@ impl<'a> Reader<'a> {
     /// Reads a file that another names.
     pub fn file(&mut self, name: &Word, place: &Place) {
         self.files += 1;
-        if place.depth >= DEEPEST || self.files > MOST_FILES {
+        if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
                 true => format!("files name each other more than {DEEPEST} deep: does one name itself?"),
-                false => format!("more than {MOST_FILES} files are too many"),
+                false => format!("more than {MAX_FILES} files are too many"),
             };
             return self.said.bad(name.at, message);
         }
@@ -249,11 +249,11 @@ impl<'a> Reader<'a> {
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
-        if before <= MOST_THINGS && self.count > MOST_THINGS {
+        if before <= MAX_THINGS && self.count > MAX_THINGS {
             self.said
-                .bad(at, format!("more than {MOST_THINGS} corners and shapes, those of arrays counted, are too many"));
+                .bad(at, format!("more than {MAX_THINGS} corners and shapes, those of arrays counted, are too many"));
         }
-        self.count <= MOST_THINGS
+        self.count <= MAX_THINGS
     }
 
     /// Adds an object.

@@ -2,7 +2,7 @@
 
 use super::words::{Word, Words};
 use crate::camera::cylindrical::CylindricalCamera;
-use crate::camera::fisheye::{FisheyeCamera, Projection};
+use crate::camera::fisheye::{FisheyeCamera, FisheyeProjection};
 use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
 use crate::diag::Span;
 use crate::format::said::Said;
@@ -194,9 +194,9 @@ impl View {
                     said.once(self.at, "a fisheye is seen whole, as a disc: its picture is square");
                 }
                 let projection = match kind {
-                    'h' => Projection::Orthographic,
-                    's' => Projection::Stereographic,
-                    _ => Projection::Equidistant,
+                    'h' => FisheyeProjection::Orthographic,
+                    's' => FisheyeProjection::Stereographic,
+                    _ => FisheyeProjection::Equidistant,
                 };
                 FisheyeCamera { center, direction, up, angle: across.max(upwards) as f32, projection }.into()
             }

@@ -6,7 +6,7 @@ use crate::math::fp;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// Places of all arrays in each other.
-const MOST_PLACES: usize = 1 << 20;
+const MAX_PLACES: usize = 1 << 20;
 
 /// How often a part of a transform is applied.
 #[derive(Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ impl Transform {
             "-my" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)))),
             "-mz" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)))),
             "-i" | "-a" => {
-                let count = rest.first().and_then(|word| word.count(said)).unwrap_or(1).min(MOST_PLACES);
+                let count = rest.first().and_then(|word| word.count(said)).unwrap_or(1).min(MAX_PLACES);
                 if rest.is_empty() {
                     said.bad(option.at, format!("{} needs a number", option.shown()));
                 }
@@ -94,7 +94,7 @@ impl Transform {
                     places.iter_mut().for_each(|place| *place = map * *place);
                 }
                 Times::Array(count) => {
-                    if places.len().saturating_mul(count) > MOST_PLACES {
+                    if places.len().saturating_mul(count) > MAX_PLACES {
                         return None;
                     }
                     let maps: Vec<DAffine3> =

@@ -21,8 +21,8 @@ use std::sync::Arc;
 /// Objects in objects, objects of a scene with those of components counted each time, and parts of
 /// an archive.
 const DEEPEST: u32 = 32;
-const MOST_OBJECTS: usize = 1 << 20;
-const MOST_PARTS: usize = 4096;
+const MAX_OBJECTS: usize = 1 << 20;
+const MAX_PARTS: usize = 4096;
 
 /// Models on their way to a scene.
 struct Show<'a> {
@@ -67,8 +67,8 @@ impl Show<'_> {
         if let Some(known) = self.models.get(part) {
             return known.clone();
         }
-        if self.models.len() >= MOST_PARTS {
-            self.said.bad(at, format!("more than {MOST_PARTS} parts are too many"));
+        if self.models.len() >= MAX_PARTS {
+            self.said.bad(at, format!("more than {MAX_PARTS} parts are too many"));
             return None;
         }
         let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);
@@ -83,8 +83,8 @@ impl Show<'_> {
             let other = place.part.clone().unwrap_or(part.to_string());
             let Some((group, count)) = self.object(&other, place, depth) else { continue };
             self.count = self.count.saturating_add(count);
-            if self.count > MOST_OBJECTS {
-                let message = format!("more than {MOST_OBJECTS} objects, those of components counted, are too many");
+            if self.count > MAX_OBJECTS {
+                let message = format!("more than {MAX_OBJECTS} objects, those of components counted, are too many");
                 self.said.bad(place.at, message);
                 return objects;
             }

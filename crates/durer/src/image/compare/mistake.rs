@@ -37,9 +37,9 @@ pub struct Finding {
 const WELL: f64 = 0.9;
 /// What more of the difference is left than this nobody is told a theory of: a wrong one costs more
 /// than none.
-const MOST_LEFT: f64 = 0.05;
+const MAX_LEFT: f64 = 0.05;
 /// And this, of rules with numbers that were fitted.
-const MOST_LEFT_FITTED: f64 = 0.02;
+const MAX_LEFT_FITTED: f64 = 0.02;
 /// So few pixels that differ are no pattern.
 const FEWEST: usize = 12;
 /// Explained well enough to be said.
@@ -76,7 +76,7 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
         reference = rule.made(&view);
     }
     // A shift leaves what came in over the edge.
-    let most = if fitted { MOST_LEFT_FITTED } else { MOST_LEFT };
+    let most = if fitted { MAX_LEFT_FITTED } else { MAX_LEFT };
     if !findings.is_empty() && (left <= most || moved && left < 0.3) {
         return findings;
     }

@@ -27,7 +27,7 @@ const PACKED_WIDTHS: std::ops::Range<u32> = 8..0x8000;
 const RUN_LIMIT: usize = 127;
 const LITERAL_LIMIT: usize = 128;
 /// A shorter run costs more than it saves.
-const LEAST_RUN: usize = 4;
+const MIN_RUN: usize = 4;
 
 fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
     // The strict decoder knows only one of the two marks; ours was checked before.
@@ -87,14 +87,14 @@ fn pack(bytes: &[u8], out: &mut Vec<u8>) {
     let mut at = 0;
     while at < bytes.len() {
         let run = run_at(at);
-        if run >= LEAST_RUN {
+        if run >= MIN_RUN {
             out.extend([128 + run as u8, bytes[at]]);
             at += run;
             continue;
         }
         // Up to where the next run begins.
         let limit = bytes.len().min(at + LITERAL_LIMIT);
-        let end = (at + 1..limit).find(|&next| run_at(next) >= LEAST_RUN).unwrap_or(limit);
+        let end = (at + 1..limit).find(|&next| run_at(next) >= MIN_RUN).unwrap_or(limit);
         out.push((end - at) as u8);
         out.extend(&bytes[at..end]);
         at = end;

@@ -5,9 +5,9 @@
 
 use super::{Path, Place, Sample, Scattered, State, Use, Vertex};
 use crate::integrator::Direct;
-use crate::integrator::account::{Shadow, TermValue, What, Witness};
 use crate::integrator::media::Media;
-use crate::integrator::spawn::from_surface;
+use crate::integrator::spawn::spawn_ray;
+use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
 use crate::math::{Color, Ray64};
 use crate::medium::Way;
 use crate::spectrum::Spectrum;
@@ -34,7 +34,7 @@ impl Path<'_> {
     }
 
     /// The light of one light that is chosen.
-    pub(super) fn direct<T: Witness>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    pub(super) fn direct<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (world, place) = (self.world, &vertex.place);
         let choice = vertex.choices.y;
         let u = sample.bounce(vertex.state.depth).pair(Use::PlaceOnLight as u32);
@@ -61,7 +61,7 @@ impl Path<'_> {
         }
         let visible = self.visible(vertex, &light, sample, tally);
         let factor = value * (weight / density) * visible;
-        tally.begin(|| What::Direct {
+        tally.begin(|| TermKind::Direct {
             light: light.light,
             to_light: light.wi,
             distance: light.reach,
@@ -77,7 +77,13 @@ impl Path<'_> {
     }
 
     /// The share of a light that arrives.
-    fn visible<T: Witness>(&self, vertex: &Vertex, light: &LightSample, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn visible<T: TraceListener>(
+        &self,
+        vertex: &Vertex,
+        light: &LightSample,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> Spectrum {
         if !self.settings.shadows {
             return Spectrum::ONE;
         }
@@ -118,7 +124,7 @@ impl Path<'_> {
             if share == Spectrum::ZERO {
                 break;
             }
-            ray = from_surface(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
+            ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
         }
         Spectrum::ZERO
     }

@@ -296,11 +296,11 @@ fn what_a_path_tells_sums_to_its_light() {
     for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
         let path = Path::new(&world, settings, Transport { clamp: Some(0.2), color, ..Transport::default() });
         let id = SampleId::new(1, (0, 0), sample);
-        let mut account = super::super::Account::default();
+        let mut account = super::super::TraceRecorder::default();
         let seen = path.radiance(&to_origin(), id, &mut account);
         let tree = account.into_tree().unwrap();
         assert_eq!((tree.sum(), path.radiance(&to_origin(), id, &mut ())), (seen, seen));
-        fn check(node: &super::super::Node) {
+        fn check(node: &super::super::TraceNode) {
             assert_eq!(node.sum(), node.value, "{:?}", node.what);
             node.terms.iter().for_each(check);
         }

@@ -3,7 +3,7 @@
 use super::State;
 use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
-use crate::integrator::spawn::{from_surface, to_point};
+use crate::integrator::spawn::{spawn_ray, to_point};
 use crate::math::{Ray64, Vec2, Vec3, gamma};
 use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
@@ -127,7 +127,7 @@ impl Place<'_> {
     /// A ray from there.
     pub(super) fn spawn(&self, wi: Vec3) -> Ray64 {
         match self {
-            Place::Surface(surface, ..) => from_surface(surface, wi, f32::INFINITY, None),
+            Place::Surface(surface, ..) => spawn_ray(surface, wi, f32::INFINITY, None),
             Place::Medium(point, ..) => Ray64::new(*point, wi, 0.0, f32::INFINITY),
         }
     }

@@ -129,7 +129,7 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
 #[test]
 fn shadow_rays_of_bent_surfaces_end_at_the_light() {
     let mut surface = Surface::new(glam::DVec3::new(0.1, 0.2, 0.3), glam::DVec3::Y, 1e-7, crate::math::Vec2::ZERO);
-    surface.lifts = [Vec3::new(0.01, 0.05, -0.02), Vec3::ZERO];
+    surface.shadow_offsets = [Vec3::new(0.01, 0.05, -0.02), Vec3::ZERO];
     let to = Vec3::new(2.0, 3.0, 1.0);
     let ray = to_point(&surface, to.normalize(), to.length());
     let end = ray.origin() + f64::from(ray.rounded.t_max) * ray.dir().as_dvec3();

@@ -5,7 +5,7 @@ mod nested;
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
-use crate::integrator::{Account, Node};
+use crate::integrator::{TraceNode, TraceRecorder};
 use crate::math::random::Random;
 use std::path::Path;
 
@@ -265,7 +265,7 @@ fn black_backs_are_black_only_where_that_is_asked_for() {
 
 /// Every node below is the sum of its terms, to the bit.
 #[track_caller]
-fn adds_up(node: &Node) {
+fn adds_up(node: &TraceNode) {
     assert_eq!(node.sum(), node.value, "{node:?}");
     node.terms.iter().for_each(adds_up);
 }
@@ -286,7 +286,7 @@ fn an_account_adds_up_to_the_light_that_is_found_without_it() {
             for _ in 0..60 {
                 let forward = world.camera_frame().forward + 0.3 * random.direction();
                 let ray = Ray::new(world.camera_frame().eye, forward.normalize());
-                let (mut account, mut counts) = (Account::default(), crate::bvh::TraversalStats::default());
+                let (mut account, mut counts) = (TraceRecorder::default(), crate::bvh::TraversalStats::default());
                 let color = whitted.radiance(&ray, &mut account);
                 assert_eq!(color, whitted.radiance(&ray, &mut counts));
                 let tree = account.into_tree().unwrap();
@@ -300,7 +300,7 @@ fn an_account_adds_up_to_the_light_that_is_found_without_it() {
     assert_eq!(kinds.keys().map(String::as_str).collect::<Vec<_>>(), known);
 }
 
-fn count(node: &Node, kinds: &mut std::collections::BTreeMap<String, u32>) {
+fn count(node: &TraceNode, kinds: &mut std::collections::BTreeMap<String, u32>) {
     let json = serde_json::to_value(&node.what).unwrap();
     *kinds.entry(json["kind"].as_str().unwrap().into()).or_default() += 1;
     node.terms.iter().for_each(|node| count(node, kinds));

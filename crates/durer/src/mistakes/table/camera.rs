@@ -1,7 +1,7 @@
 //! Mistakes of the camera and of places in pixels.
 
 use super::{Mistake, Values, row};
-use crate::camera::Lens;
+use crate::camera::Projection;
 use crate::dialect::Compat;
 use crate::math::{Vec2, Vec3, fp};
 use crate::mistakes::habits::{Aspect, Rays};

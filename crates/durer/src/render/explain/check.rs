@@ -3,7 +3,7 @@
 use super::{Explanation, explain};
 use crate::film::Filter;
 use crate::film::course::CourseFilter;
-use crate::integrator::Node;
+use crate::integrator::TraceNode;
 use crate::math::Color;
 use crate::render::{Control, Job, RenderError, Sampling, render};
 use crate::sampler::{Sampler, hash};
@@ -77,6 +77,6 @@ fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
 }
 
 /// The first node of a tree whose value is not the sum of its terms.
-fn uneven(node: &Node) -> Option<&Node> {
+fn uneven(node: &TraceNode) -> Option<&TraceNode> {
     if node.sum() != node.value { Some(node) } else { node.terms.iter().find_map(uneven) }
 }

@@ -3,7 +3,7 @@
 use super::{Mean, SampleAccount};
 use crate::film::course::CourseFilter;
 use crate::math::{Color, Vec3};
-use crate::render::samples::{Aim, Samples, share};
+use crate::render::samples::{PixelSample, Samples, share};
 use crate::render::sub_pixels::SubPixels;
 use crate::render::{Crop, Job};
 use crate::sampler::Sampler;
@@ -16,18 +16,18 @@ pub(super) fn around(
     job: &Job,
     here: (u32, u32),
     (sampler, samples, filter): (Sampler, u32, CourseFilter),
-    account: impl Fn((u32, u32), u32, Aim) -> SampleAccount,
+    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
 ) -> (Mean, Vec<SampleAccount>) {
     let samples = sampler.round_up(samples);
     let all = |crop: Crop| crop.places().flat_map(move |of| (0..samples).map(move |sample| (of, sample)));
     let aim = |(of, sample): ((u32, u32), u32)| {
         let (aim, position) = source.aim_kept((sampler, samples), of.0, of.1, sample);
-        (of, sample, Aim { weight: filter.weight_between(of, position, here), ..aim })
+        (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
     };
     let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
     // Where no sample counts, the pixel is the mean of its own.
     if aims.iter().all(|(.., aim)| aim.weight == 0.0) {
-        let own = |(of, sample, aim)| account(of, sample, Aim { weight: 1.0, ..aim });
+        let own = |(of, sample, aim)| account(of, sample, PixelSample { weight: 1.0, ..aim });
         return (Mean::Around, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
     }
     (Mean::Around, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
@@ -38,7 +38,7 @@ pub(super) fn sub_pixels(
     source: &Samples,
     world: &World,
     grid: SubPixels,
-    account: impl Fn((u32, u32), u32, Aim) -> SampleAccount,
+    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
 ) -> (Mean, Vec<SampleAccount>) {
     let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
     let one = |(i, place): (usize, (u32, u32))| {
@@ -46,7 +46,7 @@ pub(super) fn sub_pixels(
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim_sub_pixel(&grid, &raster, place);
-        account(grid.pixel(place), grid.number(place), Aim { weight: grid.develop(white)[0].x, ..aim })
+        account(grid.pixel(place), grid.number(place), PixelSample { weight: grid.develop(white)[0].x, ..aim })
     };
     let samples = grid.around.places().enumerate().map(one).collect();
     (Mean::SubPixels(grid), samples)

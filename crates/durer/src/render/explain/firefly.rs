@@ -4,8 +4,8 @@
 use super::Explanation;
 use super::text::number;
 use crate::film::luminance_of;
-use crate::integrator::account::What;
-use crate::integrator::{Node, Tree};
+use crate::integrator::trace::TermKind;
+use crate::integrator::{TraceNode, Tree};
 
 impl Explanation {
     /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no
@@ -46,9 +46,9 @@ impl Explanation {
 /// Follows the brightest terms to where the light comes from.
 fn cause(light: &Tree) -> Vec<String> {
     let (mut node, mut chosen) = (&light.root, Vec::new());
-    let adds = |node: &Node| luminance_of(light.color(node.contribution()));
+    let adds = |node: &TraceNode| luminance_of(light.color(node.contribution()));
     loop {
-        if let What::Ray { bounce: Some(bounce), .. } = &node.what {
+        if let TermKind::Ray { bounce: Some(bounce), .. } = &node.what {
             chosen.push(bounce);
         }
         let next = node.terms.iter().max_by(|a, b| adds(a).total_cmp(&adds(b)));
@@ -67,8 +67,8 @@ fn cause(light: &Tree) -> Vec<String> {
     };
     let mut said = Vec::new();
     match &node.what {
-        What::Emission { .. } | What::Sky if single && seldom.is_some() => {
-            let what = if matches!(node.what, What::Sky) { "the sky" } else { "a lamp" };
+        TermKind::Emission { .. } | TermKind::Sky if single && seldom.is_some() => {
+            let what = if matches!(node.what, TermKind::Sky) { "the sky" } else { "a lamp" };
             said.push(told(what));
             said.push(
                 "lamps are not connected with through mirrors and glass, so such light is found seldom and counts much: \
@@ -76,15 +76,15 @@ fn cause(light: &Tree) -> Vec<String> {
                     .into(),
             );
         }
-        What::Emission { mis } => {
+        TermKind::Emission { mis } => {
             said.push(told("a lamp"));
             said.push(format!(
                 "its weight beside being connected with is {}: connections find that light more seldom still",
                 number(*mis)
             ));
         }
-        What::Sky => said.push(told("the sky")),
-        What::Direct { choice, pdf, mis, .. } => {
+        TermKind::Sky => said.push(told("the sky")),
+        TermKind::Direct { choice, pdf, mis, .. } => {
             let way = if chosen.is_empty() { "at the first hit".into() } else { format!("after {way}") };
             said.push(format!(
                 "a lamp was connected with {way}, chosen with probability {} and density {} /sr (MIS weight {})",

@@ -5,8 +5,8 @@ use crate::describe::DescribedList;
 use crate::diag::{Files, Span};
 use crate::dialect::Compat;
 use crate::image::Transfer;
-use crate::integrator::account::{Bounce, Line as RayLine, RayKind, Shadow, Struck, TermValue, What};
-use crate::integrator::{Node, Tree};
+use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
+use crate::integrator::{TraceNode, Tree};
 use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
 use crate::spectrum::{Lanes, Spectrum};
@@ -26,7 +26,7 @@ pub struct Names<'a> {
 
 /// A line of an explanation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Line {
+pub struct TextLine {
     /// How deep it is indented.
     pub depth: usize,
     /// What the term adds to the one above; `None` on lines that only tell more of the line before.
@@ -50,10 +50,10 @@ pub struct Telling {
     pub transfer: Transfer,
 }
 
-impl Line {
+impl TextLine {
     /// One that adds nothing.
     fn plain(depth: usize, text: String) -> Self {
-        Line { depth, adds: None, color: Color::ZERO, share: 0.0, text }
+        TextLine { depth, adds: None, color: Color::ZERO, share: 0.0, text }
     }
 }
 
@@ -162,9 +162,9 @@ impl Names<'_> {
 impl Explanation {
     /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place
     /// in the list.
-    pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<Line> {
+    pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<TextLine> {
         let mut lines = Vec::new();
-        let mut say = |depth, text: String| lines.push(Line::plain(depth, text));
+        let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
         let [r, g, b] = telling.transfer.encode_pixel(self.color);
         let curve = telling.transfer.name();
         say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
@@ -192,7 +192,7 @@ impl Explanation {
             say(1, format!("luminance {luminance}, with 90 % confidence at most {bound} from the truth: {parts}"));
         }
         if let Some(stale) = self.stale_texels {
-            say(1, format!("and {} by the habit `stale-texels`", rgb(stale)));
+            say(1, format!("and {} by the quirk `stale-texels`", rgb(stale)));
         }
         let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
         for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
@@ -202,7 +202,7 @@ impl Explanation {
             0 => {}
             left => {
                 let text = format!("{left} samples more have no weight here");
-                lines.push(Line::plain(1, text));
+                lines.push(TextLine::plain(1, text));
             }
         }
         lines
@@ -219,30 +219,36 @@ impl Explanation {
     }
 }
 
-fn sample_lines(sample: &SampleAccount, name: String, names: &Names, whole: Option<&Telling>, lines: &mut Vec<Line>) {
+fn sample_lines(
+    sample: &SampleAccount,
+    name: String,
+    names: &Names,
+    whole: Option<&Telling>,
+    lines: &mut Vec<TextLine>,
+) {
     let SampleAccount { place, weight, light, .. } = sample;
     let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
     let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
-    lines.push(Line::plain(1, text));
+    lines.push(TextLine::plain(1, text));
     if let (Some(light), Some(telling)) = (light, whole) {
         tree_lines(light, names, 2, telling, lines);
     }
 }
 
 /// The lines of a tree.
-pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<Line> {
+pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<TextLine> {
     let mut lines = Vec::new();
     tree_lines(light, names, 0, telling, &mut lines);
     lines
 }
 
-fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<Line>) {
+fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<TextLine>) {
     if let Lanes::Waves(waves) = &tree.lanes {
         let told = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
         let text = format!("light at {} nm; the eye makes of it", told(waves.nm));
-        lines.push(Line::plain(depth, text));
+        lines.push(TextLine::plain(depth, text));
         for (name, observer) in ["red", "green", "blue"].into_iter().zip(waves.observer()) {
-            lines.push(Line::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
+            lines.push(TextLine::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
         }
     }
     node_lines(&tree.root, names, depth, telling, Context::of(tree), lines);
@@ -257,12 +263,19 @@ impl<'a> Context<'a> {
     }
 }
 
-fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: Context, lines: &mut Vec<Line>) {
+fn node_lines(
+    node: &TraceNode,
+    names: &Names,
+    depth: usize,
+    telling: &Telling,
+    at: Context,
+    lines: &mut Vec<TextLine>,
+) {
     let (factor, value) = (numbers(node.factor), numbers(node.value));
     let mut more = Vec::new();
     let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
     let text = match &node.what {
-        What::Ray { from, ray, weight, hit, bounce } => {
+        TermKind::Ray { from, ray, weight, hit, bounce } => {
             below.dir = ray.dir;
             let from = match from {
                 RayKind::Camera => "camera ray",
@@ -290,16 +303,16 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
                 }
             }
         }
-        What::Photons { radius, photons } => {
+        TermKind::Photons { radius, photons } => {
             more.push(format!("{photons} photons at most {} away", number(*radius)));
             format!("light that mirrors and glass throw here: {value}")
         }
-        What::OneWavelength { nm } => {
+        TermKind::OneWavelength { nm } => {
             format!("colours are spread: {} nm alone goes on, and counts for all four: {factor} · {value}", number(*nm))
         }
-        What::Sky => "background".into(),
-        What::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
-        What::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
+        TermKind::Sky => "background".into(),
+        TermKind::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
+        TermKind::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
             more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));
             more.push(format!(
                 "surface: value · cos = {}; chosen with probability {}{}",
@@ -310,10 +323,10 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
             format!("direct light of {}: {factor} · {value}{}", names.emitter(*light), weight_text(*mis))
         }
-        What::Ambient { share } => {
+        TermKind::Ambient { share } => {
             format!("ambient{}: light {factor} · colour {value}", share_text(*share))
         }
-        What::Light { light, to_light, distance, share, shadow } => {
+        TermKind::Light { light, to_light, distance, share, shadow } => {
             below.to_light = *to_light;
             more.push(format!(
                 "L = {}, {} away; {} arrives",
@@ -326,8 +339,8 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", numbers(node.scale)) };
             format!("{}{}: {through}{sum}", names.short_light(*light), share_text(*share))
         }
-        What::Diffuse { cosine } => format!("diffuse: max(0, N·L = {}) · {value}", number(*cosine)),
-        What::Highlight { model, base, exponent } => {
+        TermKind::Diffuse { cosine } => format!("diffuse: max(0, N·L = {}) · {value}", number(*cosine)),
+        TermKind::Highlight { model, base, exponent } => {
             more.push(match *model {
                 "N·H" => format!("H = norm(L + V) = {}", vector((at.to_light - at.dir).normalize_or_zero())),
                 _ => format!("R = d - 2 (d·N) N = {}", vector(reflect(at.dir, at.n))),
@@ -335,7 +348,7 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             let (base, exponent, strength) = (number(*base), number(*exponent), number(node.factor.numbers()[0]));
             format!("highlight: max(0, {model} = {base})^{exponent} = {strength} · {value}")
         }
-        What::Secondary { here, there, fresnel, total } => {
+        TermKind::Secondary { here, there, fresnel, total } => {
             below.fresnel = *fresnel;
             let mut text = match here == there && fresnel.is_none() {
                 true => "mirrored light".to_string(),
@@ -351,28 +364,28 @@ fn node_lines(node: &Node, names: &Names, depth: usize, telling: &Telling, at: C
             }
             text
         }
-        What::Cut { weight } => {
+        TermKind::Cut { weight } => {
             format!("a ray that counts for {} only is not traced (--min-throughput)", number(*weight))
         }
-        What::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
+        TermKind::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
     };
     let contribution = node.contribution();
-    let of_whole = |node: &Node, gain| brightness(at.tree.color(gain * node.contribution())) / at.whole;
+    let of_whole = |node: &TraceNode, gain| brightness(at.tree.color(gain * node.contribution())) / at.whole;
     let color = at.tree.color(contribution);
-    lines.push(Line { depth, adds: Some(contribution), color, share: of_whole(node, at.gain), text });
-    let mut tell = |text: String| lines.push(Line::plain(depth + 1, text));
+    lines.push(TextLine { depth, adds: Some(contribution), color, share: of_whole(node, at.gain), text });
+    let mut tell = |text: String| lines.push(TextLine::plain(depth + 1, text));
     more.into_iter().for_each(&mut tell);
     if depth >= telling.deepest && !node.terms.is_empty() {
         return tell(format!("{} below (--depth)", terms(node.terms.len())));
     }
-    let small = |term: &&Node| of_whole(term, below.gain).abs() < telling.least;
+    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < telling.least;
     let left = node.terms.iter().filter(small).count();
     for term in node.terms.iter().filter(|term| !small(term)) {
         node_lines(term, names, depth + 1, telling, below, lines);
     }
     if left > 0 {
         let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
-        lines.push(Line::plain(depth + 1, text));
+        lines.push(TextLine::plain(depth + 1, text));
     }
 }
 
@@ -396,7 +409,7 @@ fn terms(count: usize) -> String {
 
 /// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and
 /// the share.
-fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
+fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
     let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
         (Some(r), Some(Material::Phong(phong))) if from == "mirrored ray" => {
@@ -409,7 +422,7 @@ fn split(node: &Node, from: &str, at: &Context, names: &Names) -> String {
     }
 }
 
-fn struck_lines(hit: &Struck, names: &Names) -> Vec<String> {
+fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
     let (object, t) = (names.short_object(hit.object), number(hit.t));
     let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
     if hit.barycentric != Vec3::ZERO {
@@ -446,7 +459,7 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
         share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
         share if share.is(1.0) && names.world.rules().has(Compat::ShadowFronts) => {
             format!(
-                "{object} stands {t} away, but does not block it: its back is turned to the ray (habit `shadow-fronts`)"
+                "{object} stands {t} away, but does not block it: its back is turned to the ray (quirk `shadow-fronts`)"
             )
         }
         share if share.is(1.0) => format!("{object} stands {t} away, but does not block it: it lets all light through"),
@@ -458,7 +471,7 @@ fn share_text(share: f32) -> String {
     if share == 1.0 { String::new() } else { format!(" of a part of {}", number(share)) }
 }
 
-fn ray_line(ray: &RayLine) -> String {
+fn ray_line(ray: &RayRecord) -> String {
     format!("{} + t {}", vector(ray.origin), vector(ray.dir))
 }
 

@@ -51,7 +51,7 @@ fn all_crossings_are_where_a_line_goes_in_or_out() {
                 let on = distance(shape, line.at(t)).abs();
                 assert!(on < 1e-9 * f64::from(size), "{on} {shape:?} {line:?} {t}");
                 // The crossing knows its face.
-                let surface = shape.surface(line.at(t), &Crossing { t: t as f32, uv });
+                let surface = shape.surface(line.at(t), &ShapeHit { t: t as f32, uv });
                 let off = (surface.position.as_dvec3() - line.at(t)).length();
                 assert!(off < 1e-6 * f64::from(size), "{shape:?} {line:?} {t} {surface:?}");
                 found[kind] += 1;

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::spawn::from_surface;
+use crate::integrator::spawn::spawn_ray;
 use crate::math::random::rounds;
 use crate::math::{Affine, Ray64};
 use crate::world::{Hit, World};
@@ -69,7 +69,7 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                         if dir.normalize().dot(surface.n_geo).abs() < in_it {
                             continue;
                         }
-                        let away = from_surface(&surface, dir, f32::INFINITY, None);
+                        let away = spawn_ray(&surface, dir, f32::INFINITY, None);
                         counts[kind] += 1;
                         let Some(again) = world.closest(&away, &mut ()) else { continue };
                         let other = is_other_side(&shape, &world, &surface, &away, &again);
@@ -95,7 +95,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
         let surface = world.interaction(ray, first).surface;
         for side in [1.0, -1.0] {
             let normal = side * surface.n_geo;
-            let away = from_surface(&surface, normal, f32::INFINITY, None);
+            let away = spawn_ray(&surface, normal, f32::INFINITY, None);
             let lifted = (away.origin() - surface.point()).dot(normal.as_dvec3());
             // What an unbounded plane shows may be far away.
             let far = surface.position.abs().max_element() > 500.0;
@@ -162,7 +162,7 @@ fn a_floor_in_a_coordinate_plane_is_left() {
         let surface = floor.surface(DVec3::ZERO, &floor.intersect(&ray).unwrap());
         // No coordinate of the point is off the floor, and no offset is needed; also for low rays.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
-        let away = from_surface(&surface, dir, f32::INFINITY, None);
+        let away = spawn_ray(&surface, dir, f32::INFINITY, None);
         assert_eq!(floor.intersect(&away.rounded), None, "{floor:?} {away:?}");
     }
 }

@@ -5,7 +5,7 @@ use crate::dialect::MeshNormals;
 use crate::shape::mesh::NO_INDEX;
 
 fn normal_at(mesh: &Mesh, part: u32, uv: Vec2) -> Vec3 {
-    mesh.surface(part, &Crossing { t: 1.0, uv }).n_shade
+    mesh.surface(part, &ShapeHit { t: 1.0, uv }).n_shade
 }
 
 /// Places on a triangle: its three corners.
@@ -47,7 +47,7 @@ fn flat_means_one_normal_a_triangle() {
     let mesh = Mesh::new(ball(8), MeshNormals::Flat, true);
     for part in 0..mesh.len() as u32 {
         for uv in CORNERS {
-            let surface = mesh.surface(part, &Crossing { t: 1.0, uv });
+            let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             assert_eq!(surface.n_shade, surface.n_geo);
         }
     }
@@ -81,7 +81,7 @@ fn above_a_number_of_vertices_a_mesh_is_smooth() {
     let count = ball(8).positions.len();
     let smooth = |limit: usize| {
         let mesh = Mesh::new(ball(8), MeshNormals::SmoothAbove(limit), true);
-        let surface = mesh.surface(0, &Crossing { t: 1.0, uv: CORNERS[2] });
+        let surface = mesh.surface(0, &ShapeHit { t: 1.0, uv: CORNERS[2] });
         surface.n_shade != surface.n_geo
     };
     assert!(smooth(count - 1) && !smooth(count) && !smooth(count + 1));
@@ -93,14 +93,14 @@ fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
     let mesh = Mesh::new(cube(), rule, true);
     for part in 0..12 {
         for uv in CORNERS {
-            let surface = mesh.surface(part, &Crossing { t: 1.0, uv });
+            let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             assert!((surface.n_shade - surface.n_geo).length() < 1e-6, "{surface:?}");
         }
     }
     let mesh = Mesh::new(ball(16), rule, true);
     for part in 0..mesh.len() as u32 {
         for uv in CORNERS {
-            let surface = mesh.surface(part, &Crossing { t: 1.0, uv });
+            let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             let off = (surface.n_shade - surface.position).length();
             // At the poles each triangle has a vertex of its own; elsewhere four or more faces are
             // averaged, whose planes are tilted by up to half a ring, 5.6 degrees, and not quite
@@ -157,7 +157,7 @@ fn a_files_normals_and_coordinates_are_interpolated() {
         ..MeshData::default()
     };
     let surface = |data: &MeshData, rule, file_normals| {
-        let crossing = Crossing { t: 1.0, uv: Vec2::new(0.25, 0.5) };
+        let crossing = ShapeHit { t: 1.0, uv: Vec2::new(0.25, 0.5) };
         Mesh::new(data.clone(), rule, file_normals).surface(0, &crossing)
     };
     let seen = surface(&data, MeshNormals::Flat, true);
@@ -184,7 +184,7 @@ fn a_triangle_without_area_has_a_unit_normal_and_is_met_by_no_ray() {
     for rule in [MeshNormals::Flat, MeshNormals::SmoothByArea, MeshNormals::SmoothByFace, MeshNormals::Crease(40.0)] {
         let mesh = Mesh::new(data.clone(), rule, true);
         for part in 0..2 {
-            let surface = mesh.surface(part, &Crossing { t: 1.0, uv: Vec2::splat(0.3) });
+            let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv: Vec2::splat(0.3) });
             assert!(surface.n_geo.is_normalized() && surface.n_shade.is_normalized(), "{rule:?} {surface:?}");
             let ray = Ray::new(Vec3::new(0.5, 1.0, 0.0), Vec3::NEG_Y);
             let sheared = super::super::watertight::WatertightRay::new(&ray);

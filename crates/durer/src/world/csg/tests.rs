@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::{AccelKind, testing};
-use crate::integrator::spawn::from_surface;
+use crate::integrator::spawn::spawn_ray;
 use crate::math::random::Random;
 use crate::scene::{self, Group, MatrixOp, Node, Operation};
 use crate::shape::*;
@@ -370,7 +370,7 @@ fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
             let surface = at.surface;
             let n = if outwards { -surface.n_geo } else { surface.n_geo };
             let dir = crate::integrator::whitted::refract(ray.dir(), n, eta).unwrap();
-            ray = from_surface(&surface, dir, f32::INFINITY, None);
+            ray = spawn_ray(&surface, dir, f32::INFINITY, None);
         }
         assert!(world.closest(&ray, &mut ()).is_none());
         let at = ray.line().at((focus - ray.origin().x) / f64::from(ray.dir().x));
@@ -477,7 +477,7 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
                 if dir.dot(surface.n_geo).abs() < 1e-3 {
                     continue;
                 }
-                let away = from_surface(&surface, dir, f32::INFINITY, None);
+                let away = spawn_ray(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
                 // Whoever goes out comes in next, and the other way round; edges nearer than the
                 // error are not known.

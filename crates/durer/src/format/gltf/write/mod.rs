@@ -11,7 +11,7 @@ mod solid;
 #[cfg(test)]
 mod tests;
 
-use crate::camera::{Camera, Lens};
+use crate::camera::{Camera, Projection};
 use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::Dialect;

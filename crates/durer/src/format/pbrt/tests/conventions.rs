@@ -3,7 +3,7 @@ use super::super::named;
 use super::super::spectrum::{Space, Spectrum, conductor, metal, sum};
 use super::*;
 use crate::bsdf::microfacet::Ggx;
-use crate::camera::{CameraSample, Frame, Lens};
+use crate::camera::{CameraBasis, CameraSample, Projection};
 use crate::compile::testing;
 use crate::diag::Diagnostic;
 use crate::dialect::Dialect;
@@ -19,7 +19,7 @@ use crate::world::World;
 /// The ray of a scene's camera through a point of the picture, -1 to 1 across its larger side.
 fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
     let camera = scene.camera.as_ref().unwrap();
-    let frame = Frame::of(camera, Dialect::Durer.rules());
+    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
     let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
     let ray = camera.ray(&frame, &sample).unwrap();
     let mut found = Vec::new();
@@ -78,7 +78,7 @@ fn lenses_and_other_cameras() {
     let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
     let scene = camera(text, [100, 100]);
     let lens = scene.camera.unwrap();
-    let frame = Frame::of(&lens, Dialect::Durer.rules());
+    let frame = CameraBasis::of(&lens, Dialect::Durer.rules());
     for place in [Vec2::new(0.1, 0.9), Vec2::new(0.99, 0.5)] {
         let sample = CameraSample { lens: place, ..CameraSample::at(Vec2::new(0.5, 0.25)) };
         let ray = lens.ray(&frame, &sample).unwrap();

@@ -1,6 +1,6 @@
 use super::*;
 use crate::LoadOptions;
-use crate::camera::{CameraSample, Frame, Lens};
+use crate::camera::{CameraBasis, CameraSample, Projection};
 use crate::diag::{Diagnostics, Files};
 use crate::dialect::Dialect;
 use crate::integrator::{Integrate, Path as Paths, Settings, Transport};
@@ -84,7 +84,7 @@ fn sees(options: &str, x: f32, y: f32) -> Vec3 {
     let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
     let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
     let camera = scene.camera.as_ref().unwrap();
-    let frame = Frame::of(camera, Dialect::Durer.rules());
+    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
     let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
     camera.ray(&frame, &sample).unwrap().dir.normalize()
 }

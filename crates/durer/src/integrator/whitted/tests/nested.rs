@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::compile::testing;
-use crate::integrator::{Account, Node};
+use crate::integrator::{TraceNode, TraceRecorder};
 
 const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1 angle 40 }
     Materials {
@@ -29,7 +29,7 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
         least_weight: 0.0,
     };
     let ray = Ray::new(origin.into(), Vec3::new(sine, -(1.0 - sine * sine).sqrt(), 0.0));
-    let mut account = Account::default();
+    let mut account = TraceRecorder::default();
     Whitted { world, settings, cancel: None }.radiance(&ray, &mut account);
     let mut found = Vec::new();
     transmitted(&account.into_tree().unwrap().root, &mut found);
@@ -37,8 +37,8 @@ fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
     found.iter().map(|dir| (1e3 * sine / dir.x).round() / 1e3).collect()
 }
 
-fn transmitted(node: &Node, found: &mut Vec<Vec3>) {
-    if let What::Ray { from: RayKind::Transmitted, ray, .. } = &node.what {
+fn transmitted(node: &TraceNode, found: &mut Vec<Vec3>) {
+    if let TermKind::Ray { from: RayKind::Transmitted, ray, .. } = &node.what {
         found.push(ray.dir);
     }
     node.terms.iter().for_each(|term| transmitted(term, found));

@@ -1,13 +1,14 @@
 //! An account of a ray's light: the tree of everything that made it.
 //!
-//! An integrator tells a [`Witness`] each term when it begins it, and what came of it when it ends
-//! it. Plain tallies hear nothing, at no cost; an [`Account`] keeps all of it. In every node,
+//! An integrator tells a [`TraceListener`] each term when it begins it, and what came of it when it
+//! ends it. Plain tallies hear nothing, at no cost; a [`TraceRecorder`] keeps all of it. In every
+//! node,
 //!
 //! value = scale · (sum of the children's factor · value, in order),
 //!
-//! in the arithmetic of the picture: see [`Node::sum`]. So the tree adds up to the colour, and not
-//! just nearly. Where light is made of wavelengths, terms are the light at those of the sample, and
-//! [`Tree::sum`] is the colour that the eye makes of it.
+//! in the arithmetic of the picture: see [`TraceNode::sum`]. So the tree adds up to the colour, and
+//! not just nearly. Where light is made of wavelengths, terms are the light at those of the sample,
+//! and [`Tree::sum`] is the colour that the eye makes of it.
 
 use crate::bvh::{RayCount, TraversalCounter, TraversalStats};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
@@ -17,23 +18,23 @@ use crate::world::emitters::LightId;
 use serde::Serialize;
 
 /// Hears what an integrator does. The closures are called only by those that listen.
-pub trait Witness: TraversalCounter {
+pub trait TraceListener: TraversalCounter {
     /// Whether it wants to be told of terms that come to nothing too.
     const LISTENS: bool = false;
 
     /// What the lanes of all terms are; where it is not told, they are colours.
     fn lanes(&mut self, _lanes: &Lanes) {}
     /// A term begins.
-    fn begin(&mut self, _what: impl FnOnce() -> What) {}
+    fn begin(&mut self, _what: impl FnOnce() -> TermKind) {}
     /// The ray of the term that was begun last hits something.
-    fn hit(&mut self, _hit: impl FnOnce() -> Struck) {}
+    fn hit(&mut self, _hit: impl FnOnce() -> HitRecord) {}
     /// The term that was begun last is done.
     fn end(&mut self, _factor: impl Into<TermValue>, _scale: impl Into<TermValue>, _value: impl Into<TermValue>) {}
 }
 
-impl Witness for () {}
-impl Witness for RayCount {}
-impl Witness for TraversalStats {}
+impl TraceListener for () {}
+impl TraceListener for RayCount {}
+impl TraceListener for TraversalStats {}
 
 /// What a term is: a colour, or light at four wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -109,7 +110,7 @@ impl std::ops::Add for TermValue {
 pub struct Tree {
     /// The term that all others belong to.
     #[serde(flatten)]
-    pub root: Node,
+    pub root: TraceNode,
     /// What its terms are; in JSON only if they are light at wavelengths.
     #[serde(rename = "waves", skip_serializing_if = "Lanes::is_rgb")]
     pub lanes: Lanes,
@@ -129,9 +130,9 @@ impl Tree {
 
 /// A term: what it is, how it counts, and of what it is made.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Node {
+pub struct TraceNode {
     /// What it is.
-    pub what: What,
+    pub what: TermKind,
     /// What it is multiplied by in the node above.
     pub factor: TermValue,
     /// What the sum of the terms below is multiplied by.
@@ -140,10 +141,10 @@ pub struct Node {
     pub value: TermValue,
     /// The terms that it is the sum of, in the order of addition; none where `what` itself says how
     /// it is computed.
-    pub terms: Vec<Node>,
+    pub terms: Vec<TraceNode>,
 }
 
-impl Node {
+impl TraceNode {
     /// What the node adds to the one above.
     pub fn contribution(&self) -> TermValue {
         self.factor * self.value
@@ -175,7 +176,7 @@ pub enum RayKind {
 
 /// A ray as numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Line {
+pub struct RayRecord {
     /// Where it begins.
     pub origin: Vec3,
     /// Its direction; not of length 1 in the space of an object that was scaled.
@@ -186,21 +187,21 @@ pub struct Line {
     pub t_max: f32,
 }
 
-impl From<&Ray64> for Line {
+impl From<&Ray64> for RayRecord {
     fn from(ray: &Ray64) -> Self {
-        Line::from(&ray.rounded)
+        RayRecord::from(&ray.rounded)
     }
 }
 
-impl From<&Ray> for Line {
+impl From<&Ray> for RayRecord {
     fn from(ray: &Ray) -> Self {
-        Line { origin: ray.origin, dir: ray.dir, t_min: ray.t_min, t_max: ray.t_max }
+        RayRecord { origin: ray.origin, dir: ray.dir, t_min: ray.t_min, t_max: ray.t_max }
     }
 }
 
 /// What a ray hit, and how the surface is there.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Struck {
+pub struct HitRecord {
     /// Number of the object in the world.
     pub object: u32,
     /// Number of the triangle in a mesh, else 0.
@@ -225,7 +226,7 @@ pub struct Struck {
     /// Barycentric coordinates; 0 on what is no triangle.
     pub barycentric: Vec3,
     /// The ray in the object's own space, where a transform applies.
-    pub local: Option<Line>,
+    pub local: Option<RayRecord>,
     /// Numbers of the materials that make up the point, with their shares.
     pub material: u32,
 }
@@ -247,7 +248,7 @@ pub struct Bounce {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shadow {
     /// The ray to the light.
-    pub ray: Line,
+    pub ray: RayRecord,
     /// Number of the first object on it and the `t` of its hit; none where the light is free.
     pub blocker: Option<(u32, f32)>,
     /// The share of the light that comes through.
@@ -257,17 +258,17 @@ pub struct Shadow {
 /// One kind of term.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
-pub enum What {
+pub enum TermKind {
     /// The light that comes along a ray.
     Ray {
         /// What sent it out.
         from: RayKind,
         /// The ray.
-        ray: Line,
+        ray: RayRecord,
         /// How much it counts for in the pixel.
         weight: f32,
         /// What it hit.
-        hit: Option<Box<Struck>>,
+        hit: Option<Box<HitRecord>>,
         /// How its direction was chosen at random.
         #[serde(skip_serializing_if = "Option::is_none")]
         bounce: Option<Bounce>,
@@ -367,7 +368,7 @@ pub enum What {
     Spent,
 }
 
-impl What {
+impl TermKind {
     /// A name for a model of highlights.
     pub fn highlight(model: HighlightModel) -> &'static str {
         match model {
@@ -379,15 +380,15 @@ impl What {
 
 /// A witness that keeps everything.
 #[derive(Debug, Default)]
-pub struct Account {
+pub struct TraceRecorder {
     /// Terms that were begun and are not done.
-    open: Vec<Node>,
+    open: Vec<TraceNode>,
     /// The term that all others belong to.
-    done: Option<Node>,
+    done: Option<TraceNode>,
     lanes: Lanes,
 }
 
-impl Account {
+impl TraceRecorder {
     /// The tree; `None` if nothing was told.
     pub fn into_tree(self) -> Option<Tree> {
         let lanes = self.lanes;
@@ -395,32 +396,32 @@ impl Account {
     }
 }
 
-impl TraversalCounter for Account {
+impl TraversalCounter for TraceRecorder {
     const COUNTS_WORK: bool = false;
 }
 
-impl Witness for Account {
+impl TraceListener for TraceRecorder {
     const LISTENS: bool = true;
 
     fn lanes(&mut self, lanes: &Lanes) {
         self.lanes = *lanes;
     }
 
-    fn begin(&mut self, what: impl FnOnce() -> What) {
+    fn begin(&mut self, what: impl FnOnce() -> TermKind) {
         let [one, zero] = [Color::ONE, Color::ZERO].map(TermValue::Color);
-        let node = Node { what: what(), factor: one, scale: one, value: zero, terms: Vec::new() };
+        let node = TraceNode { what: what(), factor: one, scale: one, value: zero, terms: Vec::new() };
         self.open.push(node);
     }
 
-    fn hit(&mut self, hit: impl FnOnce() -> Struck) {
-        if let Some(Node { what: What::Ray { hit: place, .. }, .. }) = self.open.last_mut() {
+    fn hit(&mut self, hit: impl FnOnce() -> HitRecord) {
+        if let Some(TraceNode { what: TermKind::Ray { hit: place, .. }, .. }) = self.open.last_mut() {
             *place = Some(Box::new(hit()));
         }
     }
 
     fn end(&mut self, factor: impl Into<TermValue>, scale: impl Into<TermValue>, value: impl Into<TermValue>) {
         let Some(node) = self.open.pop() else { return };
-        let node = Node { factor: factor.into(), scale: scale.into(), value: value.into(), ..node };
+        let node = TraceNode { factor: factor.into(), scale: scale.into(), value: value.into(), ..node };
         match self.open.last_mut() {
             Some(above) => above.terms.push(node),
             None => self.done = Some(node),

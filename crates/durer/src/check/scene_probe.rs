@@ -4,8 +4,8 @@ use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
 use super::mesh::files::{MeshFile, files};
 use super::probes::{ProbeGrid, Subject};
-use super::sight::{Sight, sights};
 use super::verdict::{Verdict, verdicts};
+use super::visibility::{Visibility, visibilities};
 use crate::math::Color;
 use std::ops::Deref;
 use std::sync::OnceLock;
@@ -15,9 +15,9 @@ const DARK: f32 = 0.02;
 
 /// A scene, and what a coarse look at its picture found.
 #[derive(Debug)]
-pub struct Scout<'a> {
+pub struct SceneProbe<'a> {
     grid: ProbeGrid<'a>,
-    sights: OnceLock<Vec<Sight>>,
+    visibilities: OnceLock<Vec<Visibility>>,
     verdicts: OnceLock<Vec<Verdict>>,
     aims: OnceLock<Vec<Option<Aim>>>,
     light: OnceLock<Vec<Color>>,
@@ -25,7 +25,7 @@ pub struct Scout<'a> {
     material_rays: OnceLock<Vec<usize>>,
 }
 
-impl<'a> Deref for Scout<'a> {
+impl<'a> Deref for SceneProbe<'a> {
     type Target = ProbeGrid<'a>;
 
     fn deref(&self) -> &ProbeGrid<'a> {
@@ -33,12 +33,12 @@ impl<'a> Deref for Scout<'a> {
     }
 }
 
-impl<'a> Scout<'a> {
+impl<'a> SceneProbe<'a> {
     /// Looks at a scene.
     pub fn new(subject: &Subject<'a>) -> Self {
-        Scout {
+        SceneProbe {
             grid: ProbeGrid::new(subject),
-            sights: OnceLock::new(),
+            visibilities: OnceLock::new(),
             verdicts: OnceLock::new(),
             aims: OnceLock::new(),
             light: OnceLock::new(),
@@ -48,8 +48,8 @@ impl<'a> Scout<'a> {
     }
 
     /// How each object is seen.
-    pub(super) fn sights(&self) -> &[Sight] {
-        self.sights.get_or_init(|| sights(self))
+    pub(super) fn visibilities(&self) -> &[Visibility] {
+        self.visibilities.get_or_init(|| visibilities(self))
     }
 
     /// What each light does to what is seen.

@@ -4,12 +4,12 @@ use super::{Statement, statement, words::Words};
 use crate::dialect::{Compat, CompatSet};
 use std::borrow::Cow;
 
-/// The same file, with blanks in place of what programs with some habits pass over: all else stays
+/// The same file, with blanks in place of what programs with some quirks pass over: all else stays
 /// where it is.
 ///
-/// The habits are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
-pub fn known(bytes: &[u8], habits: CompatSet) -> Cow<'_, [u8]> {
-    let has = |compat: Compat| habits & compat.bit() != 0;
+/// The quirks are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
+pub fn known(bytes: &[u8], quirks: CompatSet) -> Cow<'_, [u8]> {
+    let has = |compat: Compat| quirks & compat.bit() != 0;
     let end = match bytes.iter().rposition(|&byte| byte == b'\n') {
         _ if !has(Compat::LostLastLine) => bytes.len(),
         last => last.map_or(0, |last| last + 1),

@@ -1,14 +1,14 @@
 //! How each object is seen: in the picture, behind another, or not at all.
 
 use super::probes::ProbeGrid;
-use crate::camera::{Camera, CameraSample, Lens};
+use crate::camera::{Camera, CameraSample, Projection};
 use crate::math::{Aabb, Ray, Vec2, Vec3};
 use crate::shape::Primitive;
 use crate::world::{Geometry, Object};
 
 /// How an object is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Sight {
+pub(super) enum Visibility {
     /// Some of it is in the picture.
     Seen,
     /// Some of it would be, but for another object.
@@ -20,34 +20,34 @@ pub(super) enum Sight {
 }
 
 /// Objects beyond this number are not looked for one by one.
-const MOST_OBJECTS: usize = 200;
+const MAX_OBJECTS: usize = 200;
 /// Corners of a mesh that are looked for.
-const MOST_CORNERS: usize = 40;
+const MAX_CORNERS: usize = 40;
 
 /// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
 /// at.
-pub(super) fn sights(grid: &ProbeGrid) -> Vec<Sight> {
+pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
     let objects = grid.world().objects();
-    let mut sights = vec![Sight::Unknown; objects.len()];
-    grid.seen().for_each(|(_, seen)| sights[seen.object as usize] = Sight::Seen);
-    for (i, object) in objects.iter().enumerate().take(MOST_OBJECTS) {
-        if sights[i] != Sight::Seen {
-            sights[i] = sight(grid, i as u32, object);
+    let mut visibilities = vec![Visibility::Unknown; objects.len()];
+    grid.seen().for_each(|(_, seen)| visibilities[seen.object as usize] = Visibility::Seen);
+    for (i, object) in objects.iter().enumerate().take(MAX_OBJECTS) {
+        if visibilities[i] != Visibility::Seen {
+            visibilities[i] = sight(grid, i as u32, object);
         }
     }
-    sights
+    visibilities
 }
 
-fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Sight {
+fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     let points = points(object);
     if points.is_empty() {
-        return Sight::Unknown;
+        return Visibility::Unknown;
     }
-    let mut sight = Sight::Outside;
+    let mut sight = Visibility::Outside;
     for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
         match grid.world().closest(&ray, &mut ()) {
-            Some(hit) if hit.object == number => return Sight::Seen,
-            Some(hit) => sight = Sight::Hidden(hit.object),
+            Some(hit) if hit.object == number => return Visibility::Seen,
+            Some(hit) => sight = Visibility::Hidden(hit.object),
             None => {}
         }
     }
@@ -76,7 +76,7 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
         Geometry::Primitive(Primitive::Triangle(triangle)) => within(triangle.corners()).map(to_world).to_vec(),
         Geometry::Mesh(tree) => {
             let count = tree.mesh.len();
-            let each = (0..count).step_by((count / MOST_CORNERS).max(1));
+            let each = (0..count).step_by((count / MAX_CORNERS).max(1));
             each.map(|i| to_world(within(tree.mesh.corners(i as u32))[0])).collect()
         }
         _ => {

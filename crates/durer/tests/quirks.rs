@@ -1,4 +1,4 @@
-//! Habits of the course's programs, one test each: what they do, and what is done where nobody
+//! Quirks of the course's programs, one test each: what they do, and what is done where nobody
 //! asked for them.
 
 use durer::diag::{Diagnostics, Files};
@@ -9,7 +9,7 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// A world of a dialect, with its habits or under sane rules; files are in a folder.
+/// A world of a dialect, with its quirks or under sane rules; files are in a folder.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
     let rules = dialect.rules().clone();
     let compat = if official { Vec::new() } else { off(&rules) };
@@ -25,7 +25,7 @@ fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> Worl
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// All habits turned off by name.
+/// All quirks turned off by name.
 fn off(rules: &durer::dialect::Rules) -> Vec<(Compat, bool)> {
     Compat::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
@@ -70,8 +70,8 @@ fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
     let sheared = "Transform { scale 2 1 1 z_rotate 45 }";
     let bounds = |text: &str, official| world(text, Dialect::F23, official).bounds().max;
     let root = |x: f32| x.sqrt();
-    // The first axis of the product is (2, 1) / √2; what is left of the second is (-2, 4) √2 / 5 across
-    // it.
+    // The first axis of the product is (2, 1) / √2; what is left of the second is (-2, 4) √2 / 5
+    // across it.
     let image = bounds(&node(sheared, ball), true);
     let [a, b] = [[2.0 / root(2.0), 1.0 / root(2.0)], [-0.4 * root(2.0), 0.8 * root(2.0)]];
     let extent = |i: usize| (a[i] * a[i] + b[i] * b[i]).sqrt();
@@ -112,8 +112,8 @@ fn normals_of_planes_count_with_their_length() {
         close(seen(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
         close(seen(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
-    // Mirrors: d - 2 (d·n) n with the normal as it is, here (0, 1, 1) of length √2, sends a ray down to
-    // (0, 1, 2) / √5.
+    // Mirrors: d - 2 (d·n) n with the normal as it is, here (0, 1, 1) of length √2, sends a ray
+    // down to (0, 1, 2) / √5.
     let mirror = "Background { color 0 0 0 ambientLight 0 0 0 }
          Lights { numLights 1 DirectionalLight { direction 0 1 2 color 1 1 1 } }
          Materials { numMaterials 2 Material { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1000 } Material { } }
@@ -190,7 +190,8 @@ fn a_camera_of_2012_inside_glass_is_in_air() {
          Group {{ numObjects 2 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }}
            MaterialIndex 1 Sphere {{ center 3 0 -4 radius 0.05 }} }}"
     );
-    // From (0, 0, 0.5) straight on; Snell's law bends the ray away, by far more than the target's size.
+    // From (0, 0, 0.5) straight on; Snell's law bends the ray away, by far more than the target's
+    // size.
     let (origin, to_target) = ([0.0, 0.0, 0.5], [3.0, 0.0, -4.5]);
     let color = |official| seen(&world(&text, Dialect::F12a5, official), origin, to_target).x;
     assert!(color(true) > 0.1 && color(false) < 0.01, "{} {}", color(true), color(false));
@@ -206,8 +207,8 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
                Material {{ diffuseColor 0 0 0 specularColor 1 1 1 refractionIndex {index} }} }}
              Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
         );
-        // Straight through the middle, with a black sky behind mirrored rays: two passages are left of what
-        // is white.
+        // Straight through the middle, with a black sky behind mirrored rays: two passages are left
+        // of what is white.
         let mut world = world(&text, Dialect::F12a5, true);
         let settings = Settings {
             bounces: 4,
