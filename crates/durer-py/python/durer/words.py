@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
 
 
 class Background(Thing):
@@ -101,6 +101,62 @@ class Fog(Thing):
             ("min", min),
             ("max", max),
             ("density", density),
+        ])
+
+
+class Texture(Thing):
+    """A picture with a name, and how it lies on surfaces. What takes a picture in a `PrincipledMaterial` takes that name.
+
+    name: path; must be given. Its name.
+
+    picture: path; must be given. The picture's file.
+
+    wrap_u: `repeat`, `mirror`, `clamp`; repeat where it is not given. What is beyond its left and right border: `repeat`, `mirror` or `clamp`.
+
+    wrap_v: `repeat`, `mirror`, `clamp`; repeat where it is not given. What is beyond its upper and lower border.
+
+    texels: `linear`, `nearest`; linear where it is not given. Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
+
+    uv_set: whole number, at most 1; 0 where it is not given. The set of a mesh's texture coordinates: 0, or 1 for the second.
+
+    uv_transform: `{ }` of rows of 3 numbers, 2 of them. From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
+
+    alpha_cutoff: number. Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is written, as the alpha says.
+
+    normal_scale: number; 1 where it is not given. How far the normals of a normal map lean, times.
+
+    channel: `r`, `g`, `b`, `a`, `angle`. What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green; where nothing is written, red, or of opacity what there is.
+
+    texel_range: `{ }` of rows of 2 numbers, 1 of them. What a texel's 0 and 1 stand for, where the picture changes a number.
+    """
+
+    def __init__(
+        self,
+        *,
+        name: str,
+        picture: str,
+        wrap_u: Optional[Literal["repeat", "mirror", "clamp"]] = None,
+        wrap_v: Optional[Literal["repeat", "mirror", "clamp"]] = None,
+        texels: Optional[Literal["linear", "nearest"]] = None,
+        uv_set: Optional[Union[int, Material]] = None,
+        uv_transform: Optional[npt.ArrayLike] = None,
+        alpha_cutoff: Optional[float] = None,
+        normal_scale: Optional[float] = None,
+        channel: Optional[Literal["r", "g", "b", "a", "angle"]] = None,
+        texel_range: Optional[npt.ArrayLike] = None,
+    ) -> None:
+        super().__init__("Texture", [
+            ("name", name),
+            ("picture", picture),
+            ("wrapU", wrap_u),
+            ("wrapV", wrap_v),
+            ("texels", texels),
+            ("uvSet", uv_set),
+            ("uvTransform", uv_transform),
+            ("alphaCutoff", alpha_cutoff),
+            ("normalScale", normal_scale),
+            ("channel", channel),
+            ("texelRange", texel_range),
         ])
 
 
