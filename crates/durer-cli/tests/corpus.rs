@@ -59,7 +59,7 @@ fn models_written_in_words_make_the_same_picture() {
     for name in MODELS {
         let model = models.join(name);
         let picture = |path: &str| {
-            place.gives(0, &format!("render {path} -o a.ppm --integrator path --size 32x24 --samples 4 -q --restart"));
+            place.gives(0, &format!("render {path} -o a.ppm --integrator path --size 24x24 --samples 4 -q --restart"));
             std::fs::read(place.path("a.ppm")).unwrap()
         };
         let first = picture(&model.display().to_string());

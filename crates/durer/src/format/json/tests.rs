@@ -256,8 +256,15 @@ fn changed(random: &mut Random, value: &mut Value) {
 }
 
 /// What the reader refuses and no schema can say.
-const BEYOND: [&str; 6] =
-    ["mixed of earlier", "flattens space", "last row", "points nowhere", "too long or too short", "nested deeper"];
+const BEYOND: [&str; 7] = [
+    "there is a texture",
+    "mixed of earlier",
+    "flattens space",
+    "last row",
+    "points nowhere",
+    "too long or too short",
+    "nested deeper",
+];
 
 #[test]
 fn the_schema_and_the_reader_agree() {

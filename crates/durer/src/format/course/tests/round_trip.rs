@@ -54,7 +54,8 @@ fn random_scenes_survive_in_every_dialect() {
 fn random_scenes_survive_as_json() {
     let mut random = Random::seeded(2);
     for _ in 0..3000 {
-        let scene = random.scene(Dialect::Durer);
+        // Meshes and pictures are told by their hashes, and not read.
+        let scene = Scene { assets: Default::default(), ..random.scene(Dialect::Durer) };
         let json = serde_json::to_string(&scene).unwrap();
         let again: Scene = serde_json::from_str(&json).unwrap();
         same(&scene, &again, &json);
