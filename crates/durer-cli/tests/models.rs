@@ -41,7 +41,7 @@ fn a_model_is_converted_also_to_words() {
     };
     for name in ["words.txt", "json.json"] {
         let said = place.gives(0, &format!("convert a.stl -o {name}")).out;
-        assert!(said.contains(name) && said.contains("a.ply"), "{said}");
+        assert!(said.contains(name) && said.contains("a.stl.ply"), "{said}");
         assert_eq!(picture(name), picture("a.stl"), "{name}");
         // What is written is a scene like any other.
         place.gives(0, &format!("convert {name} -o again-{name}"));
