@@ -190,6 +190,6 @@ fn names_of_files_of_materials_may_have_blanks() {
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
     for names in ["one two.mtl", "three.mtl one\\ two.mtl"] {
         let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
-        assert_eq!(told, [String::new(); 0], "{names}");
+        assert!(told.is_empty(), "{names}: {told:?}");
     }
 }
