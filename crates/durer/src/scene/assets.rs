@@ -11,7 +11,7 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes and pictures by name. A [`FileName`](crate::describe::FileName) of the scene means the
+/// Meshes and pictures by name. A [`FileName`] of the scene means the
 /// asset of that name, if there is one, and else a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
