@@ -11,6 +11,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::diag::{Diagnostic, Diagnostics, Files};
 use durer::dialect::Dialect;
+use durer::format::beside::{Beside, plain};
 use durer::format::course::write;
 use durer::format::{json, mesh_format_for, scene_format_for};
 use durer::load;
@@ -86,24 +87,22 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     // A text names files: those of a model go into a folder of the same name.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
-    let folder: String = stem.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
+    let folder = plain(&stem);
     if folder == name {
         return Err(bad("the name needs an ending, as in `scene.txt`: the model's files go into a folder without"));
     }
     let (scene, files) = loaded.put_beside(&folder);
     let base = args.output.parent().unwrap_or(Path::new(""));
     std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot make the folder `{folder}`"))?;
-    let mut all = Vec::new();
-    for (path, bytes) in &files {
-        all.push((guard.writes("a file of the model", &base.join(path))?, bytes.to_vec()));
-    }
+    let writes = |(path, bytes): Beside| Ok((guard.writes("a file of the model", &base.join(path))?, bytes));
+    let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
     all.push((place, text(&scene)));
     if let Some(options) = asked_for(&loaded.scene.wishes) {
         let message = "the file also says how large and how good its picture is; the scene's text does not";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
-    let all: Vec<_> = all.iter().map(|(place, bytes)| (place, bytes.clone())).collect();
-    output::save(&all, false)
+    let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();
+    output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
 }
 
 /// The options of rendering that a file asks for, if any.

@@ -3,33 +3,36 @@
 use super::extension;
 use super::ply::write_whole;
 use crate::describe::{Describe, FileName, Value};
-use crate::scene::{Group, Material, Node, PictureBytes, Scene};
+use crate::image;
+use crate::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
 use crate::source::Source;
 use crate::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
-use std::sync::Arc;
 
 /// A file's name, seen from the scene, and what it holds.
-pub type Beside = (String, Arc<[u8]>);
+pub type Beside = (String, Vec<u8>);
+
+/// A name that a scene's text can have for a file: letters, digits and `-_.`.
+pub fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
+}
 
 /// The same scene with all its meshes and pictures in files of a folder beside it, and these files.
 /// Files that it names are copied there; those that cannot be read are named as before.
 pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<Beside>) {
-    let mut put = Put { scene, folder, source, files: Vec::new(), taken: BTreeSet::new(), known: BTreeMap::new() };
+    let (files, taken, known, textures) = Default::default();
+    let mut put = Put { scene, folder, source, files, taken, known, textures };
     let mut made = scene.clone();
-    made.assets.meshes.clear();
-    made.assets.pictures.clear();
     if let Some(root) = &mut made.root {
         put.group(root);
     }
-    let mut textures = BTreeMap::new();
     for material in &mut made.materials {
         if let Material::Principled(layers) = &mut material.value {
-            put.fields(&mut **layers, &mut textures);
+            put.fields(&mut **layers);
         }
     }
-    put.fields(&mut made.background, &mut textures);
-    made.assets.pictures = textures.into_values().collect();
+    put.fields(&mut made.background);
+    made.assets = Assets { meshes: BTreeMap::new(), pictures: put.textures.into_values().collect() };
     (made, put.files)
 }
 
@@ -42,17 +45,16 @@ struct Put<'a> {
     taken: BTreeSet<String>,
     /// The new names of meshes and of pictures' files, by the old.
     known: BTreeMap<(&'static str, String), String>,
+    /// Named textures by the names that they had.
+    textures: BTreeMap<String, (String, Picture)>,
 }
 
-/// Named textures by the names that they had.
-type Textures = BTreeMap<String, (String, crate::scene::Picture)>;
-
 impl Put<'_> {
-    /// A name of letters that is not yet taken, of one that may be anything.
-    fn name(&mut self, of: &str, ending: &str) -> String {
+    /// A name that is not yet taken, like one that may be anything.
+    fn name(&mut self, of: &str, extension: &str) -> String {
+        let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
         let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
-        let kept = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let stem: String = last.strip_suffix(ending).unwrap_or(last).chars().map(kept).take(60).collect();
+        let stem: String = plain(last.strip_suffix(&ending).unwrap_or(last)).chars().take(60).collect();
         let stem = if stem.trim_matches('.').is_empty() { "unnamed" } else { stem.trim_start_matches('.') };
         let numbered = (0..).map(|i| if i == 0 { format!("{stem}{ending}") } else { format!("{stem}-{i}{ending}") });
         let free = |name: &String| !self.taken.contains(&name.to_lowercase());
@@ -62,9 +64,9 @@ impl Put<'_> {
     }
 
     /// Adds a file, and gives its name as the scene has it.
-    fn file(&mut self, of: &str, ending: &str, bytes: Arc<[u8]>) -> String {
-        let name = self.name(of, ending);
-        let path = format!("{}/{name}", self.folder);
+    fn file(&mut self, of: &str, extension: &str, bytes: Vec<u8>) -> String {
+        let (folder, name) = (self.folder, self.name(of, extension));
+        let path = format!("{folder}/{name}");
         self.files.push((path.clone(), bytes));
         path
     }
@@ -84,15 +86,20 @@ impl Put<'_> {
     }
 
     fn mesh(&mut self, name: &str) -> String {
-        let key = ("mesh", name.to_string());
+        let scene = self.scene;
+        self.once("mesh", name, |put| match scene.assets.meshes.get(name) {
+            Some(data) => put.file(name, "ply", write_whole(data)),
+            None => put.copied(name),
+        })
+    }
+
+    /// The new name of a thing, which is put beside the scene when it is first named.
+    fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
+        let key = (kind, name.to_string());
         if let Some(known) = self.known.get(&key) {
             return known.clone();
         }
-        let scene = self.scene;
-        let made = match scene.assets.meshes.get(name) {
-            Some(data) => self.file(name, ".ply", Arc::from(write_whole(data))),
-            None => self.copied(name),
-        };
+        let made = put(self);
         self.known.insert(key, made.clone());
         made
     }
@@ -100,79 +107,46 @@ impl Put<'_> {
     /// A file that the scene names, beside it too.
     fn copied(&mut self, name: &str) -> String {
         match self.source.read(name) {
-            Ok(bytes) => {
-                let ending = format!(".{}", extension(name));
-                self.file(name, &ending, bytes)
-            }
+            Ok(bytes) => self.file(name, &extension(name), bytes.to_vec()),
             Err(_) => name.to_string(),
         }
     }
 
     /// What the fields of a thing name.
-    fn fields<T: Describe>(&mut self, thing: &mut T, textures: &mut Textures) {
+    fn fields<T: Describe>(&mut self, thing: &mut T) {
         for i in 0..T::FIELDS.len() {
             let Some(Value::Path(file)) = Describe::get(thing, i) else { continue };
-            let path = self.named(&file.path, textures);
+            let path = self.named(&file.path);
             Describe::set(thing, i, Value::Path(FileName { path, ..file }));
         }
     }
 
     /// The new name of a picture: that of its file, or of a texture that says how it lies.
-    fn named(&mut self, name: &str, textures: &mut Textures) -> String {
-        if let Some((known, _)) = textures.get(name) {
+    fn named(&mut self, name: &str) -> String {
+        if let Some((known, _)) = self.textures.get(name) {
             return known.clone();
         }
-        let Some(picture) = self.scene.assets.pictures.get(name) else {
+        let scene = self.scene;
+        let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // `lamp.csv:red` and `picture.png:g` are a column and a channel of a file.
-            return match name.rsplit_once(':').filter(|_| !self.source.contains(name)) {
-                Some((path, what)) => format!("{}:{what}", self.whole(path)),
-                None => self.whole(name),
-            };
+            let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
+            let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
+            return self.once("picture", path, |put| put.copied(path)) + &what;
         };
-        let path = picture.bytes.path().to_string();
-        let key = ("picture", path.clone());
-        let file = match (self.known.get(&key), &picture.bytes) {
-            (Some(known), _) => known.clone(),
-            (None, PictureBytes::File(_)) => self.copied(&path),
-            (None, PictureBytes::Here(_, bytes)) => self.file(&path, ending(&path, bytes), bytes.clone()),
-        };
-        self.known.insert(key, file.clone());
-        if picture.mapping == Mapping::default() {
+        let path = bytes.path();
+        let file = self.once("picture", path, |put| match bytes {
+            PictureBytes::File(_) => put.copied(path),
+            PictureBytes::Here(_, bytes) => {
+                let own = extension(path);
+                put.file(path, image::extension_of(bytes, path).unwrap_or(&own), bytes.to_vec())
+            }
+        });
+        if *mapping == Mapping::default() {
             return file;
         }
-        let own = self.name(file.rsplit('/').next().unwrap_or_default(), ":");
-        let picture = crate::scene::Picture { bytes: PictureBytes::File(file), mapping: picture.mapping };
-        textures.insert(name.to_string(), (own.clone(), picture));
+        let own = self.name(&file, "");
+        let picture = Picture { bytes: PictureBytes::File(file), mapping: *mapping };
+        self.textures.insert(name.to_string(), (own.clone(), picture));
         own
     }
-
-    /// A file that is named as it is.
-    fn whole(&mut self, name: &str) -> String {
-        let key = ("picture", name.to_string());
-        if let Some(known) = self.known.get(&key) {
-            return known.clone();
-        }
-        let made = self.copied(name);
-        self.known.insert(key, made.clone());
-        made
-    }
-}
-
-/// The ending of a picture's file: its own, or what its first bytes say.
-fn ending(name: &str, bytes: &[u8]) -> &'static str {
-    const ENDINGS: [(&str, &[u8]); 10] = [
-        (".png", b"\x89PNG"),
-        (".jpg", &[0xff, 0xd8, 0xff]),
-        (".webp", b"RIFF"),
-        (".ktx2", &[0xab, b'K', b'T', b'X']),
-        (".exr", &[0x76, 0x2f, 0x31, 0x01]),
-        (".hdr", b"#?"),
-        (".pfm", b"PF"),
-        (".ppm", b"P6"),
-        (".bmp", b"BM"),
-        (".tga", b""),
-    ];
-    let own = format!(".{}", extension(name));
-    let known = ENDINGS.iter().find(|(ending, _)| *ending == own);
-    known.or_else(|| ENDINGS.iter().find(|(_, magic)| bytes.starts_with(magic))).map_or(".tga", |row| row.0)
 }

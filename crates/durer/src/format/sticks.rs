@@ -52,7 +52,7 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
     // Balls of a dense cloud touch their neighbours on a surface.
-    let shown_points = points.len().div_ceil(step(points.len()).max(1));
+    let shown_points = points.len().div_ceil(step(points.len()));
     let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
     let mut made = MeshData::default();
     for &[a, b] in lines.iter().step_by(step(lines.len())) {

@@ -182,6 +182,12 @@ pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, Ima
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
 
+/// The usual extension of files of the format that bytes are in, if one is recognised; `name` tells
+/// where bytes do not.
+pub fn extension_of(bytes: &[u8], name: &str) -> Option<&'static str> {
+    recognise(bytes, name).ok().map(|format| format.extensions[0])
+}
+
 /// The usual extension of each format, for a message.
 fn known_extensions() -> String {
     let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();

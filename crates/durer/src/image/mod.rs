@@ -20,7 +20,9 @@ mod conformance;
 
 pub use display::{Display, Tone};
 pub use error::ImageError;
-pub use formats::{Depth, FORMATS, Format, Raster, RowFormat, RowWriter, Strip, WriteOptions, format_for};
+pub use formats::{
+    Depth, FORMATS, Format, Raster, RowFormat, RowWriter, Strip, WriteOptions, extension_of, format_for,
+};
 pub use limits::{checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
 pub use save::{Content, Destination, SaveError, save, save_all};
