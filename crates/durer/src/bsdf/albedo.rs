@@ -35,15 +35,25 @@ impl Table {
 
     /// Linear between the entries.
     fn at(&self, cosine: f32, roughness: f32) -> f32 {
-        let place = |x: f32| {
-            let x = x.clamp(0.0, 1.0) * (SIZE - 1) as f32;
-            let i = (x as usize).min(SIZE - 2);
-            (i, x - i as f32)
-        };
         let ((i, a), (j, b)) = (place(cosine.max(0.0).sqrt()), place(roughness));
         let row = |j: usize| self.0[j * SIZE + i] * (1.0 - a) + self.0[j * SIZE + i + 1] * a;
         row(j) * (1.0 - b) + row(j + 1) * b
     }
+}
+
+/// The entry of a table below a number from 0 to 1, and how far that is on the way to the next.
+fn place(x: f32) -> (usize, f32) {
+    let x = x.clamp(0.0, 1.0) * (SIZE - 1) as f32;
+    let i = (x as usize).min(SIZE - 2);
+    (i, x - i as f32)
+}
+
+/// The mean of a function over all directions above by their cosine.
+fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
+    const STEPS: usize = 512;
+    let at = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let sum: f64 = (0..STEPS).map(|i| f64::from(2.0 * at(i) * value(at(i)))).sum();
+    (sum / STEPS as f64) as f32
 }
 
 /// What is worked out by several threads when it is first asked for.
@@ -115,8 +125,13 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
 pub struct Dielectric {
     /// The index inside over that outside.
     pub ior: f32,
+    /// The mean of what it reflects where it is smooth, from outside, over all directions by their
+    /// cosine.
+    smooth_mean: f32,
     /// Reflected from outside and from inside; and all that is not lost.
     tables: OnceLock<[[Table; 2]; 2]>,
+    /// The mean of what it reflects from outside, for each roughness of the tables.
+    means: OnceLock<Vec<f32>>,
 }
 
 impl PartialEq for Dielectric {
@@ -128,7 +143,8 @@ impl PartialEq for Dielectric {
 impl Dielectric {
     /// Of an index.
     pub fn new(ior: f32) -> Self {
-        Dielectric { ior, tables: OnceLock::new() }
+        let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
+        Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new() }
     }
 
     /// What it reflects, and all that is not lost; from inside or from outside.
@@ -156,6 +172,28 @@ impl Dielectric {
     pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         let [reflected, all] = self.tables(inside);
         (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
+    }
+
+    /// The share that is reflected from outside: smooth where there is no roughness.
+    pub fn given(&self, cosine: f32, roughness: f32) -> f32 {
+        match Ggx::new(roughness, 0.0).is_smooth() {
+            true => fresnel::dielectric(cosine, self.ior),
+            false => self.reflected(false, cosine, roughness),
+        }
+    }
+
+    /// The mean of [`Dielectric::given`] over all directions by their cosine.
+    pub fn mean(&self, roughness: f32) -> f32 {
+        if Ggx::new(roughness, 0.0).is_smooth() {
+            return self.smooth_mean;
+        }
+        let of = |row: usize| {
+            let roughness = row as f32 / (SIZE - 1) as f32;
+            mean_by_cosine(|cosine| self.reflected(false, cosine, roughness))
+        };
+        let means = once(&self.means, || (0..SIZE).map(of).collect());
+        let (i, a) = place(roughness);
+        means[i] * (1.0 - a) + means[i + 1] * a
     }
 
     /// What multiplies one reflection or refraction, so that nothing is lost.

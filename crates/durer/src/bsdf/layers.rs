@@ -2,11 +2,12 @@
 //!
 //! Light that a layer gives back does not reach the one below: layers are weighed by what is left
 //! of it in the direction from which they are seen. OpenPBR calls that albedo scaling. It keeps
-//! energy, but the whole is not reciprocal.
+//! energy, but the whole is not reciprocal. A matte base is weighed by the direction of the light
+//! too ([`Boundary`]): plastic is reciprocal.
 
 use super::albedo::{self, Dielectric};
 use super::film::{self, Film};
-use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
+use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, Through};
 use super::lobe::rough::{Facet, Rough};
@@ -74,6 +75,7 @@ impl Tables {
         ];
         boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
             boundary.gain(false, 1.0, 0.0);
+            boundary.mean(1.0);
         });
     }
 
@@ -120,7 +122,7 @@ pub struct View<'a> {
 }
 
 /// Adds the lobes of what is there of a material, each by a factor.
-pub fn scattering(bsdf: &mut Bsdf, factor: f32, here: &Parameters, tables: &Tables, view: View) {
+pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, tables: &'a Tables, view: View) {
     let stack = Stack {
         here,
         tables,
@@ -135,16 +137,16 @@ pub fn scattering(bsdf: &mut Bsdf, factor: f32, here: &Parameters, tables: &Tabl
 }
 
 /// The layers of a point.
-struct Stack<'a> {
+struct Stack<'a, 't> {
     here: &'a Parameters,
-    tables: &'a Tables,
+    tables: &'t Tables,
     view: View<'a>,
     base: Spectrum,
     specular: Spectrum,
 }
 
-impl Stack<'_> {
-    fn scattering(&self, bsdf: &mut Bsdf, factor: f32) {
+impl<'t> Stack<'_, 't> {
+    fn scattering(&self, bsdf: &mut Bsdf<'t>, factor: f32) {
         let (m, view) = (self.here, self.view);
         let mu = view.wo.z;
         let mut below = Spectrum::splat(factor);
@@ -184,16 +186,19 @@ impl Stack<'_> {
             let film = self.film(self.tables.opaque.ior);
             let specular = m.reflection * self.specular;
             let given = self.boundary(bsdf, &self.tables.opaque, roughness, opaque * specular, film);
-            let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness };
+            let dielectric = &*self.tables.opaque;
+            let boundary = Boundary { dielectric, roughness, reflection: m.reflection };
+            let boundary = (dielectric.ior != 1.0).then_some(boundary);
+            let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness, boundary };
             let weight = opaque * (Spectrum::ONE - m.reflection * given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
-            self.subsurface(bsdf, weight * m.subsurface_weight);
+            self.subsurface(bsdf, weight * m.subsurface_weight, boundary);
         }
     }
 
     /// Light that goes into the body, or of a sheet comes out on both sides.
-    fn subsurface(&self, bsdf: &mut Bsdf, weight: Spectrum) {
+    fn subsurface(&self, bsdf: &mut Bsdf<'t>, weight: Spectrum, boundary: Option<Boundary<'t>>) {
         if weight.max_element() <= 0.0 {
             return;
         }
@@ -207,7 +212,7 @@ impl Stack<'_> {
         let color = self.view.lanes.reflectance(m.subsurface_color);
         let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
         let share = (weight * color).max_element();
-        bsdf.push(Diffuse { color, roughness: 0.0 }, weight * (1.0 - onwards), share * (1.0 - onwards));
+        bsdf.push(Diffuse { boundary, ..Diffuse::lambert(color) }, weight * (1.0 - onwards), share * (1.0 - onwards));
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 
@@ -223,7 +228,7 @@ impl Stack<'_> {
     /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.
     fn boundary(
         &self,
-        bsdf: &mut Bsdf,
+        bsdf: &mut Bsdf<'t>,
         tables: &Dielectric,
         roughness: f32,
         weight: Spectrum,
@@ -264,7 +269,7 @@ impl Stack<'_> {
         tint * Spectrum::ONE.lerp(darker, m.coat_darkening)
     }
 
-    fn metal(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
+    fn metal(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         if weight.max_element() <= 0.0 {
             return;
         }
@@ -298,7 +303,7 @@ impl Stack<'_> {
         bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
     }
 
-    fn glass(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
+    fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
         // With a depth the body has the colour, and not its skin.
         let tint = match m.transmission_depth > 0.0 {
@@ -335,7 +340,7 @@ impl Stack<'_> {
 
     /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
     /// it came.
-    fn sheet(&self, bsdf: &mut Bsdf, roughness: f32, weight: Spectrum) {
+    fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
         let (m, wo) = (self.here, self.view.wo);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let plain = fresnel::slab(wo.z, eta);

@@ -25,9 +25,9 @@ use smallvec::SmallVec;
 
 /// A lobe, how much it counts, and how often it is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Weighted {
+pub struct Weighted<'a> {
     /// The lobe.
-    pub lobe: Lobe,
+    pub lobe: Lobe<'a>,
     /// What multiplies it.
     pub weight: Spectrum,
     /// The probability with which it is sampled.
@@ -36,8 +36,8 @@ pub struct Weighted {
 
 /// The lobes of a point, seen from one direction.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Bsdf {
-    lobes: SmallVec<[Weighted; 4]>,
+pub struct Bsdf<'a> {
+    lobes: SmallVec<[Weighted<'a>; 4]>,
     /// The sum of the shares that were given.
     total: f32,
 }
@@ -55,9 +55,9 @@ pub struct BsdfSample {
     pub lobe: usize,
 }
 
-impl Bsdf {
+impl<'a> Bsdf<'a> {
     /// Adds a lobe. Lobes are chosen in proportion to their `share`: about what they give back.
-    pub fn push(&mut self, lobe: impl Into<Lobe>, weight: Spectrum, share: f32) {
+    pub fn push(&mut self, lobe: impl Into<Lobe<'a>>, weight: Spectrum, share: f32) {
         if weight.max_element() > 0.0 && share > 0.0 {
             self.lobes.push(Weighted { lobe: lobe.into(), weight, probability: share });
             self.total += share;
@@ -65,7 +65,7 @@ impl Bsdf {
     }
 
     /// The lobes, with the probabilities that they are chosen.
-    pub fn lobes(&self) -> impl Iterator<Item = Weighted> {
+    pub fn lobes(&self) -> impl Iterator<Item = Weighted<'a>> {
         self.lobes.iter().map(|part| Weighted { probability: part.probability / self.total, ..*part })
     }
 

@@ -101,7 +101,7 @@ fn deviate(chi2: f64, freedom: f64) -> f64 {
 }
 
 /// One of each lobe that scatters into many directions, with names.
-pub fn broad() -> Vec<(&'static str, Lobe)> {
+pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
     let rough = |roughness, anisotropy, facet, behind| {
         Lobe::from(Rough { ggx: Ggx::new(roughness, anisotropy).clamped(), facet, behind })
     };
@@ -114,8 +114,8 @@ pub fn broad() -> Vec<(&'static str, Lobe)> {
         })
     };
     vec![
-        ("Lambert", Diffuse { color: Spectrum::ONE, roughness: 0.0 }.into()),
-        ("rough matte", Diffuse { color: Spectrum::ONE, roughness: 1.0 }.into()),
+        ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
+        ("rough matte", Diffuse { roughness: 1.0, ..Diffuse::lambert(Spectrum::ONE) }.into()),
         ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
         ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
         ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
@@ -136,6 +136,7 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
     vec![
         ("matte under a boundary", white()),
         ("rough matte", PrincipledMaterial { base_diffuse_roughness: 1.0, ..white() }),
+        ("half rough matte", PrincipledMaterial { base_diffuse_roughness: 0.4, specular_ior: 2.0, ..white() }),
         ("metal", PrincipledMaterial { base_metalness: 1.0, ..white() }),
         ("glass", PrincipledMaterial { transmission_weight: 1.0, ..white() }),
         ("thin glass", PrincipledMaterial { transmission_weight: 1.0, walls: Walls::Thin, ..white() }),
@@ -178,7 +179,7 @@ impl<'a> Furnace<'a> {
 }
 
 /// A material from outside.
-pub(super) fn seen(here: &Parameters, tables: &Tables, wo: Vec3) -> Bsdf {
+pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
     let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: here.specular_ior };
     let mut bsdf = Bsdf::default();
     layers::scattering(&mut bsdf, 1.0, here, tables, view);

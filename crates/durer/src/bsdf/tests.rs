@@ -34,6 +34,24 @@ fn reflecting_lobes_are_the_same_both_ways() {
 }
 
 #[test]
+fn plastic_is_the_same_both_ways() {
+    let mut random = Random(15);
+    let material = PrincipledMaterial { base_color: Vec3::new(0.9, 0.5, 0.1), ..Default::default() };
+    for (ior, reflection) in [(1.1, 1.0), (1.5, 1.0), (1.5, 0.3), (2.5, 1.0)] {
+        let material = PrincipledMaterial { specular_ior: ior, specular_roughness: 0.0, ..material.clone() };
+        let tables = Tables::new(&material, None, &mut Vec::new());
+        let here = Parameters { reflection, ..Parameters::of(&material) };
+        for _ in 0..500 {
+            let mut direction = || warp::polar(random.between(0.02, 1.0), random.between(0.0, 1.0));
+            let (wo, wi) = (direction(), direction());
+            let there = seen(&here, &tables, wo).eval(wo, wi).0 / wi.z;
+            let back = seen(&here, &tables, wi).eval(wi, wo).0 / wo.z;
+            assert!((there - back).abs().max_element() <= 1e-5, "{ior}, {reflection}: {there} {back}");
+        }
+    }
+}
+
+#[test]
 fn lobes_have_values_along_the_surface_too() {
     let heights = [0.0, -0.0, 1e-38, -1e-38, 1e-30, -1e-30, 1e-12, -1e-12, 1e-6, -1e-6];
     let nearly_flat = |z: f32, turn: f32| warp::polar(0.0, turn).with_z(z);

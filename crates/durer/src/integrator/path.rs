@@ -178,7 +178,7 @@ impl<'w> Path<'w> {
         tally: &mut T,
     ) -> Color {
         let mut bsdf = Bsdf::default();
-        bsdf.push(Diffuse { color: Spectrum::ONE, roughness: 0.0 }, Spectrum::ONE, 1.0);
+        bsdf.push(Diffuse::lambert(Spectrum::ONE), Spectrum::ONE, 1.0);
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
         let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
@@ -189,7 +189,7 @@ impl<'w> Path<'w> {
         std::f32::consts::PI * sample.lanes.color(light)
     }
 
-    fn vertex<'a>(&self, place: Place<'a>, state: &'a State, sample: &Sample) -> Vertex<'a> {
+    fn vertex<'a>(&self, place: Place<'a, 'w>, state: &'a State, sample: &Sample) -> Vertex<'a, 'w> {
         Vertex { place, state, choices: sample.bounce(state.depth).pair(Use::Choices as u32) }
     }
 

@@ -17,7 +17,7 @@ use crate::world::material::Emission;
 
 /// A surface point as it is seen from one direction.
 #[derive(Clone, Debug)]
-pub struct Shading {
+pub struct Shading<'w> {
     /// Its frame; the side from which it is seen is above.
     pub frame: Frame,
     /// The true normal on that side.
@@ -25,10 +25,10 @@ pub struct Shading {
     /// The local direction from which it is seen.
     pub wo: Vec3,
     /// How it scatters.
-    pub bsdf: Bsdf,
+    pub bsdf: Bsdf<'w>,
 }
 
-impl Shading {
+impl Shading<'_> {
     /// The value times the cosine of a direction of the world, and the density with which that
     /// would be chosen. Light that comes from behind the true surface and would be reflected, or
     /// the other way round, is none: the normals for shading are only nearly right.
@@ -56,7 +56,7 @@ impl World {
     /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from
     /// the side that its normal does not point to; `eta` is the index behind the surface over
     /// that before it.
-    pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading {
+    pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
         // The first of a mixture that bends normals counts for all of it.
@@ -270,7 +270,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &Part, color: Color, wo: Vec3, eta: f32, l
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
     let scale = part.share / all.max_element().max(1.0);
-    bsdf.push(Diffuse { color, roughness: 0.0 }, Spectrum::splat(scale), scale * color.max_element());
+    bsdf.push(Diffuse::lambert(color), Spectrum::splat(scale), scale * color.max_element());
     let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
     bsdf.push(highlight, Spectrum::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
     bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());

@@ -5,6 +5,7 @@
 //! more than once.
 
 use super::{NOTHING, Scatter, Scattered};
+use crate::bsdf::albedo::Dielectric;
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
@@ -12,17 +13,50 @@ use std::f32::consts::{FRAC_1_PI, PI};
 
 /// A matte surface. Its value does not depend on which direction is which.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Diffuse {
+pub struct Diffuse<'a> {
     /// The share of light given back, by colour.
     pub color: Spectrum,
     /// From 0 (Lambert) to 1.
     pub roughness: f32,
+    /// What light passes on its way in. What it passes on its way out is the weight of the lobe.
+    pub boundary: Option<Boundary<'a>>,
+}
+
+/// The boundary of dielectrics on a matte surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary<'a> {
+    /// What is known of it.
+    pub dielectric: &'a Dielectric,
+    /// Its own roughness.
+    pub roughness: f32,
+    /// What multiplies its reflection, from 0 to 1.
+    pub reflection: f32,
+}
+
+impl Boundary<'_> {
+    /// The share of light from a direction above that passes, over the mean of that share over all
+    /// directions by their cosine.
+    ///
+    /// With (1 - E(wo)) as the weight of a matte base, the base gives (1 - E(wo)) (1 - E(wi)) / (1
+    /// - E mean) of what it gives without the boundary: the same both ways, and with the boundary's
+    /// E(wo) all light there is. Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled
+    /// Specular-Matte BRDF Model with Importance Sampling*, Eurographics 2001.
+    fn entering(&self, cosine: f32) -> f32 {
+        let passing = |reflected: f32| 1.0 - self.reflection * reflected;
+        let (own, mean) = (self.dielectric.given(cosine, self.roughness), self.dielectric.mean(self.roughness));
+        passing(own) / passing(mean)
+    }
 }
 
 const C1: f32 = 0.5 - 2.0 / (3.0 * PI);
 const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 
-impl Diffuse {
+impl<'a> Diffuse<'a> {
+    /// Lambert's, of a colour, with nothing on it.
+    pub fn lambert(color: Spectrum) -> Self {
+        Diffuse { color, roughness: 0.0, boundary: None }
+    }
+
     /// The directional albedo of single scattering for a white surface.
     fn single(&self, cosine: f32) -> f32 {
         let mu = cosine.clamp(1e-6, 1.0);
@@ -34,6 +68,19 @@ impl Diffuse {
 
     /// The value without the cosine.
     pub fn value(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+        let Some(boundary) = &self.boundary else { return self.bare(wo, wi) };
+        let entering = boundary.entering(wi.z);
+        if self.roughness == 0.0 {
+            return self.color * (FRAC_1_PI * entering);
+        }
+        // Of a rough base the part that is the same in all directions. Of the rest not all would
+        // come out again, or more than went in.
+        let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
+        self.bare(wo, wi) + self.color * (even * (entering - 1.0))
+    }
+
+    /// The same with nothing on it.
+    fn bare(&self, wo: Vec3, wi: Vec3) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
         }
@@ -48,7 +95,7 @@ impl Diffuse {
     }
 }
 
-impl Scatter for Diffuse {
+impl Scatter for Diffuse<'_> {
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         if wi.z <= 0.0 { NOTHING } else { (wi.z * self.value(wo, wi), FRAC_1_PI * wi.z) }
     }

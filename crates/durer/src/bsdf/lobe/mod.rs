@@ -43,13 +43,13 @@ macro_rules! lobes {
     ($($(#[doc = $doc:literal])+ $name:ident($type:ty),)+) => {
         /// One way of scattering.
         #[derive(Clone, Copy, Debug, PartialEq)]
-        pub enum Lobe { $($(#[doc = $doc])+ $name($type),)+ }
+        pub enum Lobe<'a> { $($(#[doc = $doc])+ $name($type),)+ }
 
-        $(impl From<$type> for Lobe {
+        $(impl<'a> From<$type> for Lobe<'a> {
             fn from(lobe: $type) -> Self { Lobe::$name(lobe) }
         })+
 
-        impl Scatter for Lobe {
+        impl Scatter for Lobe<'_> {
             #[inline]
             fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
                 match self { $(Lobe::$name(lobe) => lobe.eval(wo, wi),)+ }
@@ -62,7 +62,7 @@ macro_rules! lobes {
             }
         }
 
-        impl Lobe {
+        impl Lobe<'_> {
             /// Whether it scatters light from behind the surface into many directions.
             pub fn passes_light(&self) -> bool {
                 matches!(self, Lobe::DiffuseTransmission(_) | Lobe::RoughGlass(_))
@@ -79,7 +79,7 @@ macro_rules! lobes {
 
 lobes! {
     /// Matte: energy-preserving Oren-Nayar; Lambert where it is not rough.
-    Diffuse(diffuse::Diffuse),
+    Diffuse(diffuse::Diffuse<'a>),
     /// Matte, on the other side.
     DiffuseTransmission(diffuse::DiffuseTransmission),
     /// The course's highlight.

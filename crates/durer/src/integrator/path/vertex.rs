@@ -23,17 +23,17 @@ pub(super) struct Scattered {
 }
 
 /// A point on the way of a path.
-pub(super) struct Vertex<'a> {
-    pub(super) place: Place<'a>,
+pub(super) struct Vertex<'a, 'w> {
+    pub(super) place: Place<'a, 'w>,
     pub(super) state: &'a State,
     /// Numbers for a lobe and for a light.
     pub(super) choices: Vec2,
 }
 
 /// What scatters light there.
-pub(super) enum Place<'a> {
+pub(super) enum Place<'a, 'w> {
     /// A surface, and how light goes through it if it does.
-    Surface(&'a Surface, &'a Shading, Option<&'a Passage>),
+    Surface(&'a Surface, &'a Shading<'w>, Option<&'a Passage>),
     /// A medium, along a unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
@@ -50,7 +50,7 @@ pub(super) struct Chosen {
     pub(super) lobe: usize,
 }
 
-impl Place<'_> {
+impl Place<'_, '_> {
     pub(super) fn point(&self) -> DVec3 {
         match self {
             Place::Surface(surface, ..) => surface.point(),
