@@ -137,7 +137,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
     let method = args.method.method(Method::PATH)?;
-    let setup = Setup { world: &opened.world, settings, seed: args.seed, cancel: None };
+    let setup = Setup { world: &opened.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
     };

@@ -7,6 +7,7 @@ mod eyes;
 mod handedness;
 mod pose;
 pub mod raster;
+mod ray_cone;
 mod sheet;
 
 pub mod cave;
@@ -34,6 +35,7 @@ pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
 pub use pose::{CameraBasis, Pose};
 pub use raster::Raster;
+pub use ray_cone::RayCone;
 pub use thin_lens::ThinLensCamera;
 
 macro_rules! delegate {

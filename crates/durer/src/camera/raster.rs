@@ -54,6 +54,12 @@ impl Raster {
         (empty.x as u32, empty.y as u32)
     }
 
+    /// The area of the square that a pixel covers.
+    pub fn pixel_area(&self) -> f32 {
+        let side = |to: Vec2| (self.point(to) - self.point(Vec2::ZERO)).length();
+        side(Vec2::X) * side(Vec2::Y)
+    }
+
     /// The point of the square for a place in the picture, in pixels from its upper left corner.
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.

@@ -45,6 +45,8 @@ pub(super) struct Loader<'r> {
     pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
     /// What was decoded, by the name of the file or the bytes' place in memory.
     pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
+    /// The same with smaller versions of themselves.
+    pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
     /// What was decoded before somebody asked for it.
     pub(super) ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
@@ -60,6 +62,7 @@ impl<'r> Loader<'r> {
             texture_numbers: HashMap::new(),
             map_numbers: HashMap::new(),
             decoded: HashMap::new(),
+            mipmapped: HashMap::new(),
             ahead: HashMap::new(),
             textures: Vec::new(),
         }

@@ -24,7 +24,10 @@ impl Loader<'_> {
             return *known;
         }
         let (bytes, mapping) = self.found(name);
-        let texture = self.picture(name, bytes, encoding, diagnostics);
+        let texture = match mapping.mipmaps {
+            true => self.mipmapped(name, bytes, encoding, diagnostics),
+            false => self.picture(name, bytes, encoding, diagnostics),
+        };
         let number = texture.map(|texture| {
             self.textures.push(texture.mapped(mapping));
             (self.textures.len() - 1) as u32
@@ -149,6 +152,26 @@ impl Loader<'_> {
             kept.keep_picture(origin, encoding, texture, self.resources.source.digest_of(&path));
         }
         self.decoded.insert(key, texture.clone());
+        texture
+    }
+
+    /// A picture with smaller versions of itself.
+    fn mipmapped(
+        &mut self,
+        name: &FileName,
+        bytes: PictureBytes,
+        encoding: Encoding,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Texture> {
+        let key = (bytes.path().to_string(), encoding);
+        if let Some(known) = self.mipmapped.get(&key) {
+            return known.clone();
+        }
+        let texture = self.picture(name, bytes, encoding, diagnostics);
+        // They take a third of what it takes itself: 1/4 + 1/16 + ...
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64 / 3, diagnostics));
+        let texture = texture.map(Texture::with_levels);
+        self.mipmapped.insert(key, texture.clone());
         texture
     }
 

@@ -7,6 +7,7 @@ pub mod spawn;
 pub mod trace;
 pub mod whitted;
 
+use crate::camera::RayCone;
 use crate::describe::{Describe, DescribedList, described_list};
 use crate::dialect::Dialect;
 use crate::math::{Color, Ray};
@@ -48,6 +49,8 @@ pub struct Setup<'w> {
     pub world: &'w World,
     /// What light does.
     pub settings: Settings,
+    /// How wide what a sample stands for is, if there are pixels.
+    pub cone: Option<RayCone>,
     /// Decides random numbers that are no sample's.
     pub seed: u64,
     /// Once set, no more rays are traced, and what comes out means nothing.

@@ -11,6 +11,7 @@ use super::whitted::hit_record;
 use super::{Integrate, Settings};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
+use crate::camera::RayCone;
 use crate::math::{Color, Ray, Ray64, Vec3, gamma};
 use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
@@ -36,6 +37,8 @@ pub struct Path<'w> {
     /// What brings the light of lamps that mirrors and glass throw on things; without, paths find
     /// it by chance.
     pub photons: Option<Arc<Photons>>,
+    /// How wide what a sample stands for is, if some picture asks.
+    pub cone: Option<RayCone>,
     /// Once set, no more rays are traced, and what comes out means nothing.
     pub cancel: Option<&'w AtomicBool>,
 }
@@ -96,6 +99,8 @@ struct State {
     broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
     alone: bool,
+    /// How long the way from the camera is, if it went straight or over mirrors and through glass.
+    from_camera: Option<f32>,
 }
 
 impl Default for State {
@@ -109,6 +114,7 @@ impl Default for State {
             behind_mirrors: false,
             broad: false,
             alone: false,
+            from_camera: Some(0.0),
         }
     }
 }
@@ -150,7 +156,7 @@ impl Integrate for Path<'_> {
 impl<'w> Path<'w> {
     /// Without photons, and never cancelled.
     pub fn new(world: &'w World, settings: Settings, transport: Transport) -> Self {
-        Path { world, settings, transport, photons: None, cancel: None }
+        Path { world, settings, transport, photons: None, cone: None, cancel: None }
     }
 
     fn sample(&self, id: SampleId) -> Sample {
@@ -182,7 +188,7 @@ impl<'w> Path<'w> {
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
         let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
-        let state = State::default();
+        let state = State { from_camera: None, ..State::default() };
         let vertex = self.vertex(Place::Surface(surface, &shading, None), &state, &sample);
         let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
         let light = near + self.indirect(&vertex, &sample, tally);
@@ -260,7 +266,7 @@ impl<'w> Path<'w> {
                         scale /= survival;
                         let dir = medium.phase.sample(way.dir, numbers.pair());
                         ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-                        (rest, walked, state.from) = (ray, 0.0, None);
+                        (rest, walked, state.from, state.from_camera) = (ray, 0.0, None, None);
                         state.throughput = whole * scale;
                         continue;
                     }
@@ -269,7 +275,10 @@ impl<'w> Path<'w> {
             }
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
-            let at = self.world.interaction(ray, hit);
+            let mut at = self.world.interaction(ray, hit);
+            if let (Some(cone), Some(before)) = (&self.cone, state.from_camera) {
+                at.width = cone.width_at(before + length);
+            }
             if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &at) {
                 rest.rounded.t_min = hit.t;
                 continue;
@@ -287,7 +296,10 @@ impl<'w> Path<'w> {
                 Some(passage) if self.is_nothing(&at, &passage) => {
                     (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
                 }
-                passage => return (End::Surface(at, passage), scale),
+                passage => {
+                    state.from_camera = state.from_camera.map(|before| before + length);
+                    return (End::Surface(at, passage), scale);
+                }
             }
         }
     }
@@ -407,6 +419,7 @@ impl<'w> Path<'w> {
             // No photons are kept in fog: light that it scatters comes by paths.
             broad: if delta { state.broad } else { matches!(place, Place::Surface(..)) },
             alone: state.alone,
+            from_camera: state.from_camera.filter(|_| delta),
         };
         let ray = place.spawn(chosen.wi);
         tally.begin(|| TermKind::Ray {

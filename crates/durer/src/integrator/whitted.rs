@@ -348,7 +348,7 @@ impl Whitted<'_> {
 
 /// What a witness is told of a hit.
 pub(super) fn hit_record(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> HitRecord {
-    let Interaction { ray, hit, surface, material } = at;
+    let Interaction { ray, hit, surface, material, .. } = at;
     let object = &world.objects()[hit.object as usize];
     HitRecord {
         object: hit.object,

@@ -1,7 +1,9 @@
 //! What decides a picture.
 
 use super::crop::Crop;
+use super::eye::raster;
 use super::passes;
+use crate::camera::RayCone;
 use crate::film::Filter;
 use crate::film::aov::{Aov, Value};
 use crate::film::course::CourseFilter;
@@ -160,7 +162,10 @@ impl Job {
     /// What computes the light, over a world. Once `cancel` is set, no more rays are traced, and
     /// what comes out means nothing.
     pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
-        self.method.over(Setup { world, settings: self.settings, seed: self.seed, cancel })
+        let raster = raster(world, self.width, self.height);
+        let area = raster.pixel_area() / self.sampling.samples() as f32;
+        let cone = RayCone::new(world.camera(), world.camera_frame(), area);
+        self.method.over(Setup { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
     /// Whether the colour's samples are wanted, as colour or as something else.

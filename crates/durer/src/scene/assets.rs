@@ -35,6 +35,12 @@ described_words! {
     Texels { Linear = "linear", Nearest = "nearest" }
 }
 
+described_words! {
+    /// What is shown where many texels are seen at once: some of them, whose mean over a pixel's samples is right, or a smaller version of the picture,
+    /// which has less noise and is a little blurred.
+    Minified { Texels = "texels", Mipmaps = "mipmaps" }
+}
+
 described! {
     /// A picture with a name, and how it lies on surfaces. What takes a picture in a `PrincipledMaterial` takes that name.
     NamedTexture ["Texture" in set::DURER] {
@@ -48,6 +54,8 @@ described! {
         wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
         /// Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
         texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
+        /// What is shown where a sample sees many texels at once, under paths: some of them (`texels`), or a smaller version of the picture (`mipmaps`).
+        minified: Minified = Minified::Texels, optional, Rule::Any, ["minified" in set::DURER];
         /// The set of a mesh's texture coordinates: 0, or 1 for the second.
         uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
         /// From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
@@ -69,7 +77,7 @@ impl NamedTexture {
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
-        let Mapping { wrap: [wrap_u, wrap_v], nearest, second, transform, cutoff, strength, channel, range } =
+        let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
             picture.mapping;
         Some(NamedTexture {
             name: named(name),
@@ -77,6 +85,7 @@ impl NamedTexture {
             wrap_u,
             wrap_v,
             texels: if nearest { Texels::Nearest } else { Texels::Linear },
+            minified: if mipmaps { Minified::Mipmaps } else { Minified::Texels },
             uv_set: second.into(),
             uv_transform: transform.to_vec(),
             alpha_cutoff: cutoff,
@@ -92,6 +101,7 @@ impl NamedTexture {
         let mapping = Mapping {
             wrap: [self.wrap_u, self.wrap_v],
             nearest: self.texels == Texels::Nearest,
+            mipmaps: self.minified == Minified::Mipmaps,
             second: self.uv_set > 0,
             transform: self.uv_transform.as_slice().try_into().unwrap_or(usual.transform),
             cutoff: self.alpha_cutoff,

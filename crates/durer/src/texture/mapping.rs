@@ -41,6 +41,8 @@ pub struct Mapping {
     pub wrap: [Wrap; 2],
     /// Whether the nearest texel counts alone; else the four around a point are mixed.
     pub nearest: bool,
+    /// Whether smaller versions of the picture are shown where many of its texels are seen at once.
+    pub mipmaps: bool,
     /// Whether the second set of texture coordinates counts.
     pub second: bool,
     /// From the surface's coordinates to the picture's, both with v downwards from the upper
@@ -62,6 +64,7 @@ impl Default for Mapping {
         Mapping {
             wrap: [Wrap::Repeat; 2],
             nearest: false,
+            mipmaps: false,
             second: false,
             transform: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
             cutoff: None,

@@ -4,9 +4,10 @@ pub mod cie_sky;
 pub mod cube_map;
 pub mod environment;
 pub mod mapping;
+mod mipmap;
 pub mod sky;
 
-use crate::math::{Color, Vec2};
+use crate::math::{Color, Vec2, fp};
 pub use cie_sky::CieSky;
 pub use cube_map::CubeMap;
 pub use environment::Environment;
@@ -23,6 +24,8 @@ pub struct Texture {
     /// Opacity of each texel, where not all are opaque.
     alpha: Option<Opacity>,
     mapping: Option<Mapping>,
+    /// Smaller and smaller versions of it, if there are any.
+    levels: Arc<[Texture]>,
 }
 
 /// Red, green and blue, row 0 on top.
@@ -57,7 +60,7 @@ impl Texture {
 
     fn of(width: u32, height: u32, count: usize, texels: impl FnOnce() -> Texels) -> Option<Self> {
         let fits = (width as usize).checked_mul(height as usize).is_some_and(|wanted| wanted == count && count > 0);
-        fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None })
+        fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None, levels: Arc::default() })
     }
 
     /// The same texels, with other meanings of the 256 values of eight bits.
@@ -106,7 +109,7 @@ impl Texture {
             Some(Opacity::Eight(_)) => size_of::<u8>(),
             Some(Opacity::Float(_)) => size_of::<f32>(),
         };
-        self.count() * (texel + opacity)
+        self.count() * (texel + opacity) + self.levels.iter().map(Texture::bytes).sum::<usize>()
     }
 
     /// The same with an opacity for each texel; opaque where there are not as many.
@@ -140,9 +143,30 @@ impl Texture {
     }
 
     /// Colour and opacity at (u, v), with v upwards, as its mapping says. Bilinear mixing is of
-    /// linear values.
-    pub fn texel(&self, mapping: &Mapping, uv: Vec2) -> [f32; 4] {
-        self.texel_at(mapping, mapping.place(uv))
+    /// linear values. With levels, those two are mixed whose texels are about as wide as what is
+    /// seen there, which is `width` of its own texels wide.
+    pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
+        let place = mapping.place(uv);
+        if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
+            return mapping.cut(self.texel_at(mapping, place));
+        }
+        let level = (fp::ln(width) * std::f32::consts::LOG2_E).min(self.levels.len() as f32);
+        let (larger, part) = (level as usize, level.fract());
+        let of = |level: usize| match level.checked_sub(1) {
+            None => self.texel_at(mapping, place),
+            Some(i) => {
+                self.levels[i.min(self.levels.len() - 1)].texel_at(&Mapping { nearest: false, ..*mapping }, place)
+            }
+        };
+        let (larger, smaller) = (of(larger), of(larger + 1));
+        mapping.cut(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
+    }
+
+    /// How many of its texels, along a side, a length of texture coordinates is.
+    pub fn texels_in(&self, mapping: &Mapping, length: f32) -> f32 {
+        let [[a, b, _], [c, d, _]] = mapping.transform;
+        let area = (a * d - b * c).abs() * self.width as f32 * self.height as f32;
+        length * area.sqrt()
     }
 
     /// How the red of a place changes with u and v.
@@ -160,7 +184,8 @@ impl Texture {
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
-    /// The same at a place of the picture, in its widths from the left and heights from the top.
+    /// Colour and opacity at a place of the picture, in its widths from the left and heights from the
+    /// top; opacity is not cut yet.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
         let texel = |i: i64, j: i64| {
@@ -170,26 +195,25 @@ impl Texture {
             [r, g, b, self.opacity(at)]
         };
         if mapping.nearest {
-            return mapping.cut(texel(x.floor() as i64, y.floor() as i64));
+            return texel(x.floor() as i64, y.floor() as i64);
         }
         let (left, top) = ((x - 0.5).floor(), (y - 0.5).floor());
         let (a, b) = ((x - 0.5 - left) as f32, (y - 0.5 - top) as f32);
         let (i, j) = (left as i64, top as i64);
         let corners = [texel(i, j), texel(i.saturating_add(1), j), texel(i, j.saturating_add(1))];
         let last = texel(i.saturating_add(1), j.saturating_add(1));
-        let mixed: [f32; 4] = std::array::from_fn(|c| {
+        std::array::from_fn(|c| {
             let upper = (1.0 - a) * corners[0][c] + a * corners[1][c];
             let lower = (1.0 - a) * corners[2][c] + a * last[c];
             (1.0 - b) * upper + b * lower
-        });
-        mapping.cut(mixed)
+        })
     }
 
     /// The colour at (u, v), with v upwards: bilinear, with no half-texel shift, clamped at the
     /// border; or as its mapping says.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {
-            let [r, g, b, _] = self.texel(mapping, uv);
+            let [r, g, b, _] = self.texel(mapping, uv, 0.0);
             return Color::new(r, g, b);
         }
         let (width, height) = (self.width as f32, self.height as f32);

@@ -119,7 +119,7 @@ fn numbers_are_looked_up_as_they_are() {
     let texels = vec![Vec3::new(2.0, 0.1, -1.0), Vec3::ZERO];
     let texture = Texture::from_floats(2, 1, texels.clone()).unwrap().with_opacity(vec![0.25, 1.0]);
     let mapping = Mapping { nearest: true, ..Mapping::default() };
-    assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5)), [2.0, 0.1, -1.0, 0.25]);
+    assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5), 0.0), [2.0, 0.1, -1.0, 0.25]);
     // They have no curve, and take 16 bytes a texel with their opacity.
     assert_eq!(texture.clone().decoded(|_| 0.5), texture);
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());

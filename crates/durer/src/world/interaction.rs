@@ -17,6 +17,8 @@ pub struct Interaction {
     pub hit: Hit,
     /// The number of the material there.
     pub material: u32,
+    /// How wide what a sample stands for is there, across the ray; 0 where nobody knows.
+    pub width: f32,
 }
 
 impl Interaction {
@@ -49,6 +51,12 @@ impl World {
             _ => object.material,
         };
         // Made where it stays, as the last thing: a copy of what was just written takes long.
-        Interaction { surface: object.surface(&ray, point, &crossing, hit.part, quirks), ray, hit, material }
+        Interaction {
+            surface: object.surface(&ray, point, &crossing, hit.part, quirks),
+            ray,
+            hit,
+            material,
+            width: 0.0,
+        }
     }
 }

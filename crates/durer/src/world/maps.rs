@@ -5,7 +5,7 @@ use crate::material::Parameters;
 use crate::material::parameters::{Change, TEXTURED};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::shape::{Primitive, Shape};
-use crate::texture::{Channel, Texture};
+use crate::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
 
 /// The pictures of a material in layers, by their numbers in [`World::textures`].
@@ -96,7 +96,17 @@ impl World {
     fn texel(&self, map: Option<u32>, at: &Interaction) -> Option<[f32; 4]> {
         let texture = &self.textures()[map? as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
-        Some(texture.texel(&mapping, self.coordinates(texture, at)?))
+        Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.texels_seen(texture, &mapping, at)))
+    }
+
+    /// How many texels along a side a sample stands for, in the direction in which they are fewest.
+    /// In the other there are more where a surface is seen from the side; there samples have to do.
+    fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &Interaction) -> f32 {
+        if at.width <= 0.0 || !texture.has_levels() {
+            return 0.0;
+        }
+        let Some([u, v]) = self.derivatives(at, mapping.second) else { return 0.0 };
+        texture.texels_in(mapping, at.width / u.cross(v).length().sqrt())
     }
 
     /// The texture coordinates of a hit that count for a texture.
@@ -123,7 +133,8 @@ impl World {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
-        let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?);
+        // A mean of normals would be that of a smoother surface.
+        let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?, 0.0);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
                 // The tangents of the file are given about the object's own normal.

@@ -17,6 +17,7 @@ use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::ShapeHit;
 use crate::source::Digest;
+use crate::texture::Texture;
 pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
 use glam::DVec3;
@@ -38,6 +39,7 @@ pub struct World {
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
+    has_mipmaps: bool,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// What else stands outside: objects without end, and all where they are so few that no tree
@@ -95,6 +97,7 @@ impl World {
             has_cutouts: false,
             hides_backs: false,
             has_interfaces: false,
+            has_mipmaps: false,
             packs: PrimitivePacks::default(),
             loose: Vec::new(),
             accel: Accel::None,
@@ -102,6 +105,7 @@ impl World {
         world.has_cutouts = world.finds_cutouts();
         world.hides_backs = world.finds_hidden_backs();
         world.has_interfaces = world.finds_interfaces();
+        world.has_mipmaps = world.textures().iter().any(Texture::has_levels);
         world.emitters = Emitters::new(&world);
         world
     }
@@ -124,6 +128,12 @@ impl World {
     /// Whether some body has no skin, so that light goes straight into it.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
+    }
+
+    /// Whether some picture has smaller versions of itself, so that it matters how wide what a
+    /// sample stands for is.
+    pub fn has_mipmaps(&self) -> bool {
+        self.has_mipmaps
     }
 
     /// The first hit in the ray's interval.

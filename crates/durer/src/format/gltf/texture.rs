@@ -127,7 +127,9 @@ impl Model<'_> {
     fn sampler(&self, at: &At) -> Mapping {
         let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
         let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
-        Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, ..Mapping::default() }
+        // Those with smaller versions of the picture.
+        let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.whole(9728..=9987), Some(9984..)));
+        Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
     }
 }
 

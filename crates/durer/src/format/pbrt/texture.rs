@@ -201,6 +201,7 @@ impl Reader<'_> {
             }
         }
         mapping.nearest = params.text("filter") == Some("point");
+        mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
         if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
             self.said
                 .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");

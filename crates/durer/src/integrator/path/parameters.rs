@@ -29,8 +29,10 @@ impl Copy for Transport {}
 impl Parameters for Transport {
     type Integrator<'w> = Path<'w>;
 
-    fn over(self, Setup { world, settings, cancel, .. }: Setup<'_>) -> Path<'_> {
-        Path { cancel, ..Path::new(world, settings, self) }
+    fn over(self, Setup { world, settings, cone, cancel, .. }: Setup<'_>) -> Path<'_> {
+        // Else nobody asks for it.
+        let cone = cone.filter(|_| world.has_mipmaps());
+        Path { cancel, cone, ..Path::new(world, settings, self) }
     }
 
     fn transport(&self) -> Option<Transport> {

@@ -40,8 +40,10 @@ impl Writer<'_> {
             Wrap::Clamp => 33071,
         };
         let filter = if mapping.nearest { 9728 } else { 9729 };
+        // Linear within levels and between them.
+        let smaller = if mapping.mipmaps { 9987 } else { filter };
         let [s, t] = mapping.wrap.map(wrap);
-        let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": filter });
+        let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": smaller });
         let known = self.lists.get("samplers").and_then(|list| list.iter().position(|known| *known == sampler));
         let sampler = known.unwrap_or_else(|| self.add("samplers", sampler));
         let index = self.add("textures", json!({ "source": source, "sampler": sampler }));

@@ -19,7 +19,8 @@ fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
     let world = world.unwrap_or_else(|| panic!("{:?}", diagnostics.iter().collect::<Vec<_>>()));
     let settings = Settings { bounces: 0, ..Job::default().settings };
-    let paths = Paths { world: &world, settings, transport: Transport::default(), photons: None, cancel: None };
+    let paths =
+        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
     const SAMPLES: u32 = 256;
     let sum: glam::DVec3 = (0..SAMPLES)
         .map(|i| paths.irradiance(point.as_dvec3(), normal, SampleId::new(0, (0, 0), i), &mut ()).as_dvec3())
@@ -116,7 +117,8 @@ fn round_things_are_lit_as_flat_ones_are() {
     let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();
     let world = loaded.compile(&options, &mut files, &mut diagnostics).unwrap();
     let settings = Settings { bounces: 0, ..Job::default().settings };
-    let paths = Paths { world: &world, settings, transport: Transport::default(), photons: None, cancel: None };
+    let paths =
+        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
     let mut dark = 0;
     for i in 0..256 {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 1.40625 + 0.3);

@@ -1,0 +1,56 @@
+//! How wide a part of the picture is where rays meet things.
+
+use super::{Camera, CameraBasis, CameraSample, Projection};
+use crate::math::Vec2;
+
+/// The cone around a camera ray that stands for a part of the picture.
+///
+/// One for the whole picture, that of its middle. Source: Amanatides, *Ray Tracing with Cones*,
+/// SIGGRAPH 1984.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RayCone {
+    /// Its width at the camera.
+    width: f32,
+    /// How much wider it becomes on a way of length 1.
+    spread: f32,
+}
+
+impl RayCone {
+    /// That of an area of a camera's picture; `None` where the middle of the picture sees nothing.
+    pub fn new(camera: &Camera, basis: &CameraBasis, area: f32) -> Option<Self> {
+        let middle = CameraSample::at(Vec2::ZERO);
+        camera.ray(basis, &middle)?;
+        let [width, next] = [0.0, 1.0].map(|t| (area * camera.footprint(basis, &middle, t)).sqrt());
+        let cone = RayCone { width, spread: next - width };
+        (cone.width.is_finite() && cone.spread.is_finite()).then_some(cone)
+    }
+
+    /// Its width at a distance.
+    pub fn width_at(&self, distance: f32) -> f32 {
+        self.width + distance * self.spread
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::{OrthographicCamera, PerspectiveCamera};
+    use crate::dialect::Dialect;
+
+    #[test]
+    fn cones_widen_in_perspective_and_nowhere_else() {
+        let cone = |camera: Camera, side: f32| {
+            let basis = CameraBasis::of(&camera, Dialect::Durer.rules());
+            RayCone::new(&camera, &basis, side * side).unwrap()
+        };
+        let perspective = PerspectiveCamera { angle: 90.0, ..Default::default() };
+        let cone_of_pixel = cone(Camera::Perspective(perspective), 0.01);
+        assert!((cone_of_pixel.width_at(0.0)).abs() < 1e-6);
+        // At distance 2 the whole square is 4 wide.
+        assert!((cone_of_pixel.width_at(2.0) - 0.02).abs() < 1e-6);
+        let orthographic = OrthographicCamera { size: 6.0, ..Default::default() };
+        let cone_of_pixel = cone(Camera::Orthographic(orthographic), 0.01);
+        assert!((cone_of_pixel.width_at(7.0) - 0.03).abs() < 1e-6);
+        assert!((cone_of_pixel.width_at(0.0) - 0.03).abs() < 1e-6);
+    }
+}
