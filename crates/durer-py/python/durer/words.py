@@ -117,6 +117,8 @@ class Texture(Thing):
 
     texels: `linear`, `nearest`; linear where it is not given. Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
 
+    minified: `texels`, `mipmaps`; texels where it is not given. What is shown where a sample sees many texels at once, under paths: some of them (`texels`), or a smaller version of the picture (`mipmaps`).
+
     uv_set: whole number, at most 1; 0 where it is not given. The set of a mesh's texture coordinates: 0, or 1 for the second.
 
     uv_transform: `{ }` of rows of 3 numbers, 2 of them. From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
@@ -138,6 +140,7 @@ class Texture(Thing):
         wrap_u: Optional[Literal["repeat", "mirror", "clamp"]] = None,
         wrap_v: Optional[Literal["repeat", "mirror", "clamp"]] = None,
         texels: Optional[Literal["linear", "nearest"]] = None,
+        minified: Optional[Literal["texels", "mipmaps"]] = None,
         uv_set: Optional[Union[int, Material]] = None,
         uv_transform: Optional[npt.ArrayLike] = None,
         alpha_cutoff: Optional[float] = None,
@@ -151,6 +154,7 @@ class Texture(Thing):
             ("wrapU", wrap_u),
             ("wrapV", wrap_v),
             ("texels", texels),
+            ("minified", minified),
             ("uvSet", uv_set),
             ("uvTransform", uv_transform),
             ("alphaCutoff", alpha_cutoff),
