@@ -1,42 +1,13 @@
 //! What the pictures on a surface and the colours of its vertices make of a material in layers.
 
-use super::{Geometry, Interaction, Principled, World};
+use super::material::Principled;
+use super::{Geometry, Interaction, World};
 use crate::material::Parameters;
 use crate::material::parameters::{Change, TEXTURED};
 use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::shape::{Primitive, Shape};
 use crate::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
-
-/// The pictures of a material in layers, by their numbers in [`World::textures`].
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Maps {
-    /// Its alpha multiplies the opacity.
-    pub base_color: Option<u32>,
-    /// Multiplies the colour of emission.
-    pub emission: Option<u32>,
-    /// Multiplies the opacity.
-    pub opacity: Option<u32>,
-    /// Normals in tangent space.
-    pub normal: Option<u32>,
-    /// Heights.
-    pub bump: Option<u32>,
-    /// How far their 1 lies above their 0, in units of the world.
-    pub bump_height: f32,
-    /// What changes parameters.
-    pub parameters: Vec<Map>,
-}
-
-/// A picture that changes a parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Map {
-    /// What it does: the number of a row of [`TEXTURED`].
-    pub row: usize,
-    /// Its number.
-    pub texture: u32,
-    /// What counts of it where a number is wanted; `None`: what its mapping says, or red.
-    pub channel: Option<Channel>,
-}
 
 impl World {
     /// The parameters of a material in layers at a hit. Where the surface has no texture

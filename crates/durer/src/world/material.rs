@@ -6,7 +6,7 @@ use crate::material::{ColorNoise, Parameters, PrincipledMaterial, Solid};
 use crate::math::Color;
 use crate::medium::Medium;
 use crate::spectrum::Curve;
-use crate::world::Maps;
+use crate::texture::Channel;
 use smallvec::SmallVec;
 use std::sync::Arc;
 
@@ -29,6 +29,36 @@ pub enum HighlightModel {
         /// Whether surfaces that face away have highlights too.
         behind: bool,
     },
+}
+
+/// The pictures of a material in layers, by their numbers in [`super::World::textures`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Maps {
+    /// Its alpha multiplies the opacity.
+    pub base_color: Option<u32>,
+    /// Multiplies the colour of emission.
+    pub emission: Option<u32>,
+    /// Multiplies the opacity.
+    pub opacity: Option<u32>,
+    /// Normals in tangent space.
+    pub normal: Option<u32>,
+    /// Heights.
+    pub bump: Option<u32>,
+    /// How far their 1 lies above their 0, in units of the world.
+    pub bump_height: f32,
+    /// What changes parameters.
+    pub parameters: Vec<Map>,
+}
+
+/// A picture that changes a parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Map {
+    /// What it does: the number of a row of [`TEXTURED`](crate::material::parameters::TEXTURED).
+    pub row: usize,
+    /// Its number.
+    pub texture: u32,
+    /// What counts of it where a number is wanted; `None`: what its mapping says, or red.
+    pub channel: Option<Channel>,
 }
 
 /// A principled material with its files read and its tables worked out.

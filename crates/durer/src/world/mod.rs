@@ -22,8 +22,7 @@ pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
 use glam::DVec3;
 pub use interaction::Interaction;
-pub use maps::{Map, Maps};
-pub use material::{Emission, HighlightModel, Material, Part, Parts, Phong, Principled};
+pub use material::{Emission, HighlightModel, Map, Maps, Material, Part, Parts, Phong, Principled};
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
 
