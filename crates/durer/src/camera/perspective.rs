@@ -7,7 +7,7 @@
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
-use super::pose::unit_or;
+use super::pose::{unit_or, units_or};
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
@@ -54,6 +54,16 @@ impl Projection for PerspectiveCamera {
             }
         };
         Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
+    }
+
+    fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
+        if frame.screen_point {
+            return std::array::from_fn(|i| self.ray(frame, &samples[i]));
+        }
+        let forward = frame.forward / frame.half_width as f32;
+        let [right, up] = [frame.right, frame.up];
+        let along = |axis: usize| samples.map(|at| forward[axis] + at.point.x * right[axis] + at.point.y * up[axis]);
+        units_or([along(0), along(1), along(2)], frame.forward).map(|dir| Some(Ray::new(frame.eye, dir)))
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {

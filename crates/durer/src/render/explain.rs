@@ -6,7 +6,8 @@ mod firefly;
 mod text;
 
 use super::confidence::{ErrorBound, corrected};
-use super::samples::{PixelSample, Samples};
+use super::aim::PixelSample;
+use super::samples::Samples;
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::camera::Raster;
