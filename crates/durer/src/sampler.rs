@@ -211,18 +211,19 @@ impl Sequence {
     /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
     /// one by one: first coordinates, then second ones. Side by side they take a third of the time.
     #[inline]
-    pub fn points<const N: usize>(sequences: [Sequence; N], samples: [u32; N]) -> [[f32; N]; 2] {
-        let mut index = samples;
-        let (mut first, mut second) = (sequences.map(|of| of.scramble as u32), sequences.map(|of| (of.scramble >> 32) as u32));
-        let shuffle = sequences.map(|of| of.shuffle);
+    pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
+        let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
         for i in 0..N {
-            index[i] = nested_uniform_scramble(index[i], shuffle[i]);
+            let Sequence { shuffle: own, scramble: both } = sequences[i];
+            (shuffle[i], scramble[0][i], scramble[1][i]) = (own, both as u32, (both >> 32) as u32);
         }
+        let mut points = [[0.0; N]; 2];
         for i in 0..N {
-            first[i] = nested_uniform_scramble(index[i].reverse_bits(), first[i]);
-            second[i] = nested_uniform_scramble(sobol_second(index[i]), second[i]);
+            let index = nested_uniform_scramble(samples[i], shuffle[i]);
+            points[0][i] = unit(nested_uniform_scramble(index.reverse_bits(), scramble[0][i]));
+            points[1][i] = unit(nested_uniform_scramble(sobol_second(index), scramble[1][i]));
         }
-        [first.map(unit), second.map(unit)]
+        points
     }
 
     /// The point of a sample.

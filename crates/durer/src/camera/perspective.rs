@@ -61,9 +61,15 @@ impl Projection for PerspectiveCamera {
             return std::array::from_fn(|i| self.ray(frame, &samples[i]));
         }
         let forward = frame.forward / frame.half_width as f32;
-        let [right, up] = [frame.right, frame.up];
-        let along = |axis: usize| samples.map(|at| forward[axis] + at.point.x * right[axis] + at.point.y * up[axis]);
-        units_or([along(0), along(1), along(2)], frame.forward).map(|dir| Some(Ray::new(frame.eye, dir)))
+        let mut dirs = [[0.0; N]; 3];
+        for axis in 0..3 {
+            for i in 0..N {
+                let point = samples[i].point;
+                dirs[axis][i] = forward[axis] + point.x * frame.right[axis] + point.y * frame.up[axis];
+            }
+        }
+        let units = units_or(&dirs, frame.forward);
+        std::array::from_fn(|i| Some(Ray::new(frame.eye, units[i])))
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {

@@ -204,12 +204,13 @@ impl FilterSampler {
 
     /// The same of several positions side by side: their x, then their y.
     #[inline]
-    pub fn samples<const N: usize>(&self, [mut x, mut y]: [[f32; N]; 2]) -> ([Vec2; N], [f32; N]) {
+    pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([Vec2; N], [f32; N]) {
+        let (mut offsets, mut weights) = ([Vec2::ZERO; N], [1.0; N]);
         for i in 0..N {
-            (x[i], y[i]) = (self.warp(x[i]), self.warp(y[i]));
+            offsets[i] = Vec2::new(self.warp(positions[0][i]), self.warp(positions[1][i]));
+            weights[i] = self.weight(offsets[i]);
         }
-        let offsets = std::array::from_fn(|i| Vec2::new(x[i], y[i]));
-        (offsets, offsets.map(|offset| self.weight(offset)))
+        (offsets, weights)
     }
 
     #[inline]

@@ -13,7 +13,7 @@ use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Interaction, Material, Part, Phong, World};
+use crate::world::{HighlightModel, Hit, Interaction, Material, Part, Phong, World};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -101,22 +101,43 @@ impl Integrate for Whitted<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
     }
+
+    fn first_hits(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
+        self.world.closest_of_eight(rays)
+    }
+
+    fn radiance_from<T: TraceListener>(&self, ray: &Ray, hit: Option<Hit>, _: SampleId, tally: &mut T) -> Color {
+        tally.ray();
+        self.camera_ray(ray, tally, |_, _| hit)
+    }
 }
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
+        self.camera_ray(ray, tally, |ray, tally| self.world.closest_along(ray, tally))
+    }
+
+    #[inline(always)]
+    fn camera_ray<T: TraceListener>(
+        &self,
+        ray: &Ray,
+        tally: &mut T,
+        find: impl FnOnce(&mut Ray64, &mut T) -> Option<Hit>,
+    ) -> Color {
+        let mut along = ray.into();
         let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0 };
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let color = self.trace(&mut ray.into(), path, tally);
+        let found = find(&mut along, tally);
+        let color = self.trace(&along, found, path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
-    fn trace<T: TraceListener>(&self, ray: &mut Ray64, path: Path, tally: &mut T) -> Color {
+    /// The light along a ray that has hit this first.
+    fn trace<T: TraceListener>(&self, ray: &Ray64, mut found: Option<Hit>, path: Path, tally: &mut T) -> Color {
         // What it runs in behind surfaces that are none.
         let mut inside = None;
-        let mut found = self.world.closest_along(ray, tally);
         while let Some(hit) = found {
             let at = self.world.interaction_along(ray, hit);
             let media = inside.as_ref().unwrap_or(path.media);
@@ -391,7 +412,8 @@ impl Whitted<'_> {
         }
         let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
         tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
-        let color = self.trace(&mut ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
+        let found = self.world.closest_along(&mut ray, tally);
+        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
         tally.end(weight, Color::ONE, color);
         weight * color
     }

@@ -8,6 +8,7 @@ use crate::film::FilterSampler;
 use crate::math::{Ray, Vec2};
 use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use crate::world::World;
+use std::array::from_fn;
 
 /// Where a sample goes.
 pub(super) struct PixelSample {
@@ -120,20 +121,18 @@ impl<'a> Aim<'a> {
             let one = batch.of.each_ref().map(|(pixel, sample)| self.sample(pixel, *sample));
             return (one.each_ref().map(|sample| sample.ray), one.map(|sample| sample.weight));
         };
-        let numbers = batch.of.map(|(_, sample)| sample);
-        let positions = Sequence::points(batch.of.each_ref().map(|(pixel, _)| pixel.positions), numbers);
-        let (offsets, weights) = warp.samples(positions);
-        let places: [Vec2; BATCH] = std::array::from_fn(|i| batch.of[i].0.center + offsets[i]);
+        let numbers = from_fn(|i| batch.of[i].1);
+        let positions = Sequence::points(&from_fn(|i| batch.of[i].0.positions), &numbers);
+        let (offsets, weights) = warp.samples(&positions);
+        let points: [Vec2; BATCH] = self.raster.points(&from_fn(|i| batch.of[i].0.center + offsets[i]));
         let mut lenses = [[0.5; BATCH]; 2];
         if self.has_aperture {
-            let sequences = batch.of.each_ref().map(|(pixel, _)| pixel.id.sequence(LENS_DIMENSION));
-            lenses = Sequence::points(sequences, numbers);
+            lenses = Sequence::points(&from_fn(|i| batch.of[i].0.id.sequence(LENS_DIMENSION)), &numbers);
         }
-        let (points, [lens_x, lens_y]) = (self.raster.points(places), lenses);
-        let at = std::array::from_fn(|i| CameraSample {
+        let at = from_fn(|i| CameraSample {
             point: points[i],
             pixel: batch.of[i].0.point,
-            lens: Vec2::new(lens_x[i], lens_y[i]),
+            lens: Vec2::new(lenses[0][i], lenses[1][i]),
         });
         (self.world.camera().rays(self.world.camera_frame(), &at), weights)
     }

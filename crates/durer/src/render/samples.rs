@@ -10,7 +10,7 @@ use crate::dialect::Compat;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::film::Film;
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::math::{Color, Vec2, Vec3};
 use crate::sampler::{SampleId, Sampler};
 use crate::threads;
 use crate::world::{Material, World};
@@ -172,10 +172,15 @@ impl<'a> Samples<'a> {
 
     fn add_batch(&self, film: &mut Film, batch: &mut Batch, at: &At, rays: &mut RayCount) -> Result<(), Stopped> {
         let (aimed, weights) = self.aim.batch(batch);
-        for ((&(pixel, sample), ray), weight) in batch.take().iter().zip(aimed).zip(weights) {
+        let hits = self.integrator.first_hits(&aimed);
+        for (i, (pixel, sample)) in batch.take().iter().enumerate() {
             self.check()?;
-            at.set((pixel.x, pixel.y, Some(sample)));
-            film.add_if_seen(pixel.x, pixel.y, sample, self.light(&pixel, sample, ray, rays), weight);
+            at.set((pixel.x, pixel.y, Some(*sample)));
+            let color = aimed[i].map(|ray| match &hits {
+                Some(hits) => self.integrator.radiance_from(&ray, hits[i], pixel.id.of_sample(*sample), rays),
+                None => self.integrator.radiance(&ray, pixel.id.of_sample(*sample), rays),
+            });
+            film.add_if_seen(pixel.x, pixel.y, *sample, color.map(|color| self.with_stale(pixel, color)), weights[i]);
         }
         Ok(())
     }
@@ -184,14 +189,13 @@ impl<'a> Samples<'a> {
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
-        (self.light(&pixel, sample, ray, rays), weight)
+        let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.of_sample(sample), rays));
+        (color.map(|color| self.with_stale(&pixel, color)), weight)
     }
 
-    /// The colour of a sample of a pixel.
-    fn light(&self, pixel: &Pixel, sample: u32, ray: Option<Ray>, rays: &mut RayCount) -> Option<Color> {
-        let color = self.integrator.radiance(&ray?, pixel.id.of_sample(sample), rays);
+    fn with_stale(&self, pixel: &Pixel, color: Color) -> Color {
         let stale = self.stale.get(pixel.y as usize * self.job.width as usize + pixel.x as usize);
-        Some(stale.map_or(color, |&stale| color + stale))
+        stale.map_or(color, |&stale| color + stale)
     }
 
     /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.

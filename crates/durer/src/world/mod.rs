@@ -14,7 +14,7 @@ pub mod solid;
 use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
-use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray, Ray64, Vec2, Vec3};
 use crate::shape::ShapeHit;
 use crate::source::Digest;
 pub use contents::{Assets, Contents};
@@ -40,6 +40,8 @@ pub struct World {
     has_interfaces: bool,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
+    /// All things, where they are a few planes and spheres: for rays that are asked together.
+    pub(crate) few: PrimitivePacks,
     /// What else stands outside: objects without end, and all where they are so few that no tree
     /// pays.
     pub(crate) loose: Vec<u32>,
@@ -96,6 +98,7 @@ impl World {
             hides_backs: false,
             has_interfaces: false,
             packs: PrimitivePacks::default(),
+            few: PrimitivePacks::default(),
             loose: Vec::new(),
             accel: Accel::None,
         };
@@ -194,6 +197,18 @@ impl World {
             }
         }
         best
+    }
+
+    /// The first hits of eight rays, as [`World::closest`] has them one by one; `None` where nothing
+    /// is gained by asking for them together. Where there is no ray there is no hit.
+    pub fn closest_of_eight(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
+        if self.few.is_empty() {
+            return None;
+        }
+        let nowhere = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
+        let sound = std::array::from_fn(|i| rays[i].filter(crate::bvh::is_sound).unwrap_or(nowhere));
+        let met = self.few.closest_of_eight(&sound);
+        Some(met.map(|met| met.map(|met| Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 })))
     }
 
     /// Whether anything is hit in the ray's interval; the first thing found will do.
