@@ -49,6 +49,12 @@ impl Bvh {
         self.bounds
     }
 
+    /// Whether there is nothing in it.
+    #[inline]
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
     /// Numbers of the things in the order in which [`Bvh::traverse`] knows them.
     #[inline]
     pub fn primitive_indices(&self) -> &[u32] {

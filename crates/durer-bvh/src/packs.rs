@@ -5,7 +5,7 @@
 //! and in the same order, so hits have the same bits.
 
 use super::TraversalCounter;
-use super::lanes::{Available, Kernel, Lanes, WIDTH};
+use super::lanes::{Available, Kernel, Lanes, WIDTH, numbers_of};
 use crate::math::{Doubles, Ray, Triple, Vec3};
 
 /// Planes and spheres under the caller's numbers.
@@ -36,6 +36,18 @@ struct Pack {
     vectors: [[f64; WIDTH]; 3],
     sizes: [f64; WIDTH],
     numbers: [u32; WIDTH],
+}
+
+impl Pack {
+    /// The lanes that have a thing.
+    #[inline(always)]
+    fn things(&self) -> std::ops::Range<usize> {
+        let mut end = WIDTH;
+        while end > 0 && self.numbers[end - 1] == u32::MAX {
+            end -= 1;
+        }
+        0..end
+    }
 }
 
 impl Default for PrimitivePacks {
@@ -77,6 +89,13 @@ impl PrimitivePacks {
         counter.work(0, self.count as u64);
         let found = self.level.run(Query::<false> { packs: self, ray });
         (found.number != u32::MAX).then_some(found)
+    }
+
+    /// The first hits of eight rays, as [`PrimitivePacks::closest`] has them one by one: the rays are
+    /// side by side, and things are tested one after the other. So it pays where there are few.
+    pub fn closest_of_eight(&self, rays: &[Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
+        let found = self.level.run(Together { packs: self, rays });
+        found.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
 
     /// Whether there is a hit in the ray's interval. The ray must be finite, and have a direction.
@@ -121,10 +140,7 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
         let dir = lanes.doubles3(lanes.splat3(ray.dir.to_array()));
         let (t_min, t_max) = (lanes.splat(ray.t_min), lanes.splat(ray.t_max));
         for pack in &packs.planes {
-            let normal = load3(lanes, &pack.vectors);
-            // A parallel ray divides by zero, and hits nothing.
-            let t = lanes.load_doubles(&pack.sizes).sub(normal.dot(origin)).div(normal.dot(dir));
-            let t = lanes.singles(t);
+            let t = plane(lanes, origin, dir, load3(lanes, &pack.vectors), lanes.load_doubles(&pack.sizes));
             let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
             if ANY && met != 0 {
                 return PackHit { number: 0, ..best };
@@ -132,27 +148,10 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
             best = nearest(lanes.store(t), met, &pack.numbers, best);
         }
         for pack in &packs.spheres {
-            // The discriminant is taken from the point of the ray nearest to the centre, which
-            // keeps small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing
-            // Gems* (2019), chapter 7.
-            let o = origin.sub(load3(lanes, &pack.vectors));
-            let (dd, b) = (dir.dot(dir), o.dot(dir).mul(lanes.splat_double(-1.0)));
-            let along = b.div(dd);
-            let near = o.add([along; 3].mul(dir));
-            let square = lanes.load_doubles(&pack.sizes);
-            let discriminant = square.sub(near.dot(near));
-            // Where a sphere is missed, it is negative or no number, and so are the roots.
-            if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
-                continue;
-            }
-            // q has the sign of b, so that neither root loses digits to cancellation.
-            let c = o.dot(o).sub(square);
-            let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
-            let (t0, t1) = (c.div(q), q.div(dd));
-            let (near, far) = (lanes.singles(t0.min(t1)), lanes.singles(t1.max(t0)));
+            let (center, square) = (load3(lanes, &pack.vectors), lanes.load_doubles(&pack.sizes));
+            let Some([near, far]) = sphere(lanes, origin, dir, center, square) else { continue };
             let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
-            let in_far = lanes.lt(t_min, far) & lanes.lt(far, t_max);
-            let met = in_near | in_far;
+            let met = in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max);
             if ANY && met != 0 {
                 return PackHit { number: 0, ..best };
             }
@@ -162,9 +161,109 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     }
 }
 
+/// Eight rays' ways through all packs.
+struct Together<'a> {
+    packs: &'a PrimitivePacks,
+    rays: &'a [Ray; WIDTH],
+}
+
+impl Kernel for Together<'_> {
+    type Output = [PackHit; WIDTH];
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, lanes: L) -> [PackHit; WIDTH] {
+        let Together { packs, rays } = self;
+        let mut best = [PackHit { t: 0.0, number: u32::MAX }; WIDTH];
+        let mut rows = [lanes.splat(0.0); WIDTH];
+        for lane in 0..WIDTH {
+            best[lane].t = rays[lane].t_max;
+            rows[lane] = lanes.load(numbers_of(&rays[lane]));
+        }
+        let [x, y, z, dx, dy, dz, t_min, t_max] = lanes.transpose(rows);
+        let (origin, dir) = (lanes.doubles3([x, y, z]), lanes.doubles3([dx, dy, dz]));
+        for pack in &packs.planes {
+            for thing in pack.things() {
+                let t = plane(lanes, origin, dir, splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
+                let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
+                nearer(lanes.store(t), met, pack.numbers[thing], &mut best);
+            }
+        }
+        for pack in &packs.spheres {
+            for thing in pack.things() {
+                let (center, square) = (splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
+                let Some([near, far]) = sphere(lanes, origin, dir, center, square) else { continue };
+                let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
+                let met = in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max);
+                nearer(lanes.store(lanes.select(in_near, near, far)), met, pack.numbers[thing], &mut best);
+            }
+        }
+        best
+    }
+}
+
+/// Where rays meet planes.
+#[inline(always)]
+fn plane<L: Lanes>(
+    lanes: L,
+    origin: [L::Doubles; 3],
+    dir: [L::Doubles; 3],
+    normal: [L::Doubles; 3],
+    offset: L::Doubles,
+) -> L::Floats {
+    // A parallel ray divides by zero, and hits nothing.
+    lanes.singles(offset.sub(normal.dot(origin)).div(normal.dot(dir)))
+}
+
+/// Where rays enter and leave spheres; `None` where all are missed.
+#[inline(always)]
+fn sphere<L: Lanes>(
+    lanes: L,
+    origin: [L::Doubles; 3],
+    dir: [L::Doubles; 3],
+    center: [L::Doubles; 3],
+    square: L::Doubles,
+) -> Option<[L::Floats; 2]> {
+    // The discriminant is taken from the point of the ray nearest to the centre, which keeps small,
+    // far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019),
+    // chapter 7.
+    let o = origin.sub(center);
+    let (dd, b) = (dir.dot(dir), o.dot(dir).mul(lanes.splat_double(-1.0)));
+    let along = b.div(dd);
+    let near = o.add([along; 3].mul(dir));
+    let discriminant = square.sub(near.dot(near));
+    // Where a sphere is missed, it is negative or no number, and so are the roots.
+    if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
+        return None;
+    }
+    // q has the sign of b, so that neither root loses digits to cancellation.
+    let c = o.dot(o).sub(square);
+    let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
+    let (t0, t1) = (c.div(q), q.div(dd));
+    Some([lanes.singles(t0.min(t1)), lanes.singles(t1.max(t0))])
+}
+
 #[inline(always)]
 fn load3<L: Lanes>(lanes: L, [x, y, z]: &[[f64; WIDTH]; 3]) -> [L::Doubles; 3] {
     [lanes.load_doubles(x), lanes.load_doubles(y), lanes.load_doubles(z)]
+}
+
+/// The vector of one thing of a pack in each lane.
+#[inline(always)]
+fn splat3<L: Lanes>(lanes: L, pack: &Pack, thing: usize) -> [L::Doubles; 3] {
+    let [x, y, z] = &pack.vectors;
+    [lanes.splat_double(x[thing]), lanes.splat_double(y[thing]), lanes.splat_double(z[thing])]
+}
+
+/// Takes one thing for the hit of the rays that meet it and nothing better yet.
+#[inline(always)]
+fn nearer(t: [f32; WIDTH], mut met: u32, number: u32, best: &mut [PackHit; WIDTH]) {
+    while met != 0 {
+        let lane = met.trailing_zeros() as usize % WIDTH;
+        if (t[lane], number) < (best[lane].t, best[lane].number) {
+            best[lane] = PackHit { t: t[lane], number };
+        }
+        met &= met - 1;
+    }
 }
 
 /// The better of a hit and those of the lanes that are met.

@@ -111,6 +111,16 @@ impl SampleId {
         SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
     }
 
+    /// Another sample of the same pixel.
+    pub fn of_sample(self, sample: u32) -> Self {
+        SampleId { sample, ..self }
+    }
+
+    /// The points of one dimension of its pixel, whose numbers [`sample_2d`] gives one by one.
+    pub fn sequence(&self, dimension: u32) -> Sequence {
+        Sequence::of(self.key, dimension)
+    }
+
     /// The same sample with other dimensions: `first` of those that integrators may take.
     pub fn at(self, first: u32) -> Self {
         SampleId { first: LENS_DIMENSION + 1 + first, ..self }
@@ -182,7 +192,7 @@ fn grid_side(samples: u32) -> u32 {
 /// every elementary interval of area 2^-k. Points of different pixels or different dimensions are
 /// independent.
 pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
-    Sequence::new(seed, x, y, dimension).point(sample)
+    Sequence::of(key(seed, x, y), dimension).point(sample)
 }
 
 /// The points of one dimension of a pixel, with what they have in common worked out once.
@@ -193,14 +203,27 @@ pub struct Sequence {
 }
 
 impl Sequence {
-    /// The points whose numbers [`sample_2d`] gives one by one.
-    pub fn new(seed: u64, x: u32, y: u32, dimension: u32) -> Self {
-        Sequence::of(key(seed, x, y), dimension)
-    }
-
     fn of(key: u64, dimension: u32) -> Self {
         // One hash gives the shuffle its key and another the two scrambles.
         Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
+    }
+
+    /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
+    /// one by one: first coordinates, then second ones. Side by side they take a third of the time.
+    #[inline]
+    pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
+        let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
+        for i in 0..N {
+            let Sequence { shuffle: own, scramble: both } = sequences[i];
+            (shuffle[i], scramble[0][i], scramble[1][i]) = (own, both as u32, (both >> 32) as u32);
+        }
+        let mut points = [[0.0; N]; 2];
+        for i in 0..N {
+            let index = nested_uniform_scramble(samples[i], shuffle[i]);
+            points[0][i] = unit(nested_uniform_scramble(index.reverse_bits(), scramble[0][i]));
+            points[1][i] = unit(nested_uniform_scramble(sobol_second(index), scramble[1][i]));
+        }
+        points
     }
 
     /// The point of a sample.

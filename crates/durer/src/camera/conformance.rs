@@ -218,3 +218,15 @@ fn footprints_are_areas() {
     });
     assert!(skipped * 5 < checked, "{skipped} of {checked} were not checked");
 }
+
+#[test]
+fn rays_side_by_side_are_those_one_by_one() {
+    all(8, |camera, random| {
+        for rules in [Dialect::Durer.rules(), Dialect::F04.rules()] {
+            let frame = CameraBasis::of(camera, rules);
+            let samples: [CameraSample; 8] = std::array::from_fn(|_| looked(camera, random).0);
+            let alone = samples.each_ref().map(|sample| camera.ray(&frame, sample));
+            assert_eq!(camera.rays(&frame, &samples), alone, "{camera:?}");
+        }
+    });
+}

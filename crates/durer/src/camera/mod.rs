@@ -59,6 +59,9 @@ macro_rules! delegate {
             fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
                 match self { $(Camera::$variant(c) => c.ray(frame, sample),)+ }
             }
+            fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
+                match self { $(Camera::$variant(c) => c.rays(frame, samples),)+ }
+            }
             fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
                 match self { $(Camera::$variant(c) => c.project(frame, world, lens, found),)+ }
             }
@@ -142,6 +145,11 @@ pub trait Projection {
     /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so
     /// that `t` is a distance.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
+
+    /// The rays of several samples, as [`Projection::ray`] gives them one by one.
+    fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
+        std::array::from_fn(|i| self.ray(frame, &samples[i]))
+    }
 
     /// Calls `found` with every point of the picture at which a point of the world is seen through
     /// a point of the lens: one, none, or several, as for a pair of eyes. What hides it is not

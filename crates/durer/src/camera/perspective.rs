@@ -7,7 +7,7 @@
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
-use super::pose::unit_or;
+use super::pose::{unit_or, units_or};
 use super::{CameraBasis, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
@@ -54,6 +54,22 @@ impl Projection for PerspectiveCamera {
             }
         };
         Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
+    }
+
+    fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
+        if frame.screen_point {
+            return std::array::from_fn(|i| self.ray(frame, &samples[i]));
+        }
+        let forward = frame.forward / frame.half_width as f32;
+        let mut dirs = [[0.0; N]; 3];
+        for axis in 0..3 {
+            for i in 0..N {
+                let point = samples[i].point;
+                dirs[axis][i] = forward[axis] + point.x * frame.right[axis] + point.y * frame.up[axis];
+            }
+        }
+        let units = units_or(&dirs, frame.forward);
+        std::array::from_fn(|i| Some(Ray::new(frame.eye, units[i])))
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {

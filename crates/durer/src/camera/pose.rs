@@ -43,6 +43,20 @@ pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
     if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
 }
 
+/// The same of several vectors side by side: their x, y and z.
+#[inline]
+pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [Vec3; N] {
+    let mut units = [[0.0; N]; 3];
+    for i in 0..N {
+        let length = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
+        (units[0][i], units[1][i], units[2][i]) = (x[i] / length, y[i] / length, z[i] / length);
+    }
+    std::array::from_fn(|i| match Vec3::new(units[0][i], units[1][i], units[2][i]) {
+        unit if unit.is_finite() && unit != Vec3::ZERO => unit,
+        _ => unit_or(Vec3::new(x[i], y[i], z[i]), fallback),
+    })
+}
+
 /// The same as the program of 2004 has it: multiplied by the reciprocal of the length.
 fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
     let unit = v * (1.0 / (v.as_dvec3().length() as f32));

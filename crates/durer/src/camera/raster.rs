@@ -64,6 +64,12 @@ impl Raster {
     ///
     /// Pixel (i, j) has its centre at (i + 0.5, j + 0.5), j counted downwards.
     pub fn point(&self, place: Vec2) -> Vec2 {
+        self.points(&[place])[0]
+    }
+
+    /// The same of several places side by side.
+    #[inline]
+    pub fn points<const N: usize>(&self, places: &[Vec2; N]) -> [Vec2; N] {
         // Where pixel centres lie on the border, the first and last centre span the side, not the
         // edges.
         let inset = if self.border_pixels { 1.0 } else { 0.0 };
@@ -75,8 +81,10 @@ impl Raster {
             None => Vec2::splat(size.max_element()),
         };
         let span = span.max(Vec2::ONE);
-        // From the lower left corner of the square, in parts of its side.
-        let from_corner = Vec2::new(place.x, self.height as f32 - place.y) - 0.5 * inset + 0.5 * (span - size);
-        2.0 * (from_corner / span) - 1.0
+        std::array::from_fn(|i| {
+            // From the lower left corner of the square, in parts of its side.
+            let place = Vec2::new(places[i].x, self.height as f32 - places[i].y);
+            2.0 * ((place - 0.5 * inset + 0.5 * (span - size)) / span) - 1.0
+        })
     }
 }

@@ -157,12 +157,17 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
     if kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES {
         boxes.fill(None);
     }
+    let mut few = PrimitivePacks::default();
+    if boxes.iter().all(Option::is_none) && boxes.len() <= FEW_TOGETHER {
+        let all = (0_u32..).zip(objects).all(|(i, object)| object.add_to(&mut few, i));
+        few = if all { few } else { PrimitivePacks::default() };
+    }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
     if loose.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED {
         loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
     }
     let accel = build_accel(world, kind, boxes)?;
-    (world.packs, world.loose, world.accel) = (packs, loose, accel);
+    (world.packs, world.few, world.loose, world.accel) = (packs, few, loose, accel);
     Ok(())
 }
 
@@ -170,6 +175,9 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
 /// them would cost more than it saves.
 const FEW: usize = 2;
 const FEW_SPHERES: usize = 16;
+/// Up to so many planes and spheres, eight rays against one thing are faster than one ray against
+/// eight.
+const FEW_TOGETHER: usize = 16;
 
 /// Fewer planes and spheres than this are tested one after the other: eight at a time take longer.
 const MIN_PACKED: usize = 4;

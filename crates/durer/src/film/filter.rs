@@ -142,7 +142,7 @@ impl Filter {
 pub struct FilterSampler {
     filter: Filter,
     /// The distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
-    knots: Vec<f32>,
+    knots: Box<[f32; SHARES + 1]>,
     /// Integral of the absolute filter over that of the filter: how much a sample must count.
     gain: f32,
 }
@@ -180,7 +180,7 @@ impl FilterSampler {
             let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
             ((bin as f64 + t) / BINS as f64 * f64::from(filter.radius())) as f32
         };
-        FilterSampler { filter, knots: (0..=SHARES).map(distance).collect(), gain: gain as f32 }
+        FilterSampler { filter, knots: Box::new(std::array::from_fn(distance)), gain: gain as f32 }
     }
 
     /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
@@ -199,14 +199,30 @@ impl FilterSampler {
     /// pattern stays even.
     pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
         let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
-        let weight = match self.filter {
+        (offset, self.weight(offset))
+    }
+
+    /// The same of several positions side by side: their x, then their y.
+    #[inline]
+    pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([Vec2; N], [f32; N]) {
+        let (mut offsets, mut weights) = ([Vec2::ZERO; N], [1.0; N]);
+        for i in 0..N {
+            offsets[i] = Vec2::new(self.warp(positions[0][i]), self.warp(positions[1][i]));
+            weights[i] = self.weight(offsets[i]);
+        }
+        (offsets, weights)
+    }
+
+    #[inline]
+    fn weight(&self, offset: Vec2) -> f32 {
+        match self.filter {
             Filter::Mitchell { .. } => self.gain.copysign(self.filter.weight(offset.x, offset.y)),
             _ => 1.0,
-        };
-        (offset, weight)
+        }
     }
 
     /// The distance from the centre for a share of the filter, on the side that `u` lies on.
+    #[inline]
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * u - 1.0;
         let place = v.abs() * SHARES as f32;

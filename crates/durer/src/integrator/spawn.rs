@@ -17,6 +17,7 @@ use glam::DVec3;
 /// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from
 /// there on. Without: it starts beside the surface, as far away as the point may be off, and every
 /// hit counts.
+#[inline]
 pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
     if let Some(epsilon) = epsilon {
         return Ray64::new(surface.point(), dir, epsilon, t_max);
@@ -27,6 +28,7 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 
 /// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
 /// starts on the bent surface that a triangle with normals at its corners stands for.
+#[inline]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     let behind = dir.dot(surface.n_shade) < 0.0;
     let lift = surface.shadow_offsets[usize::from(behind)];
@@ -55,6 +57,7 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
 /// off than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
+#[inline]
 fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
     // Twice the bound: the next intersection rounds as well.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;

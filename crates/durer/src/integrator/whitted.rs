@@ -13,7 +13,7 @@ use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Interaction, Part, Phong, World};
+use crate::world::{HighlightModel, Hit, Interaction, Material, Part, Phong, World};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -73,38 +73,81 @@ pub struct Whitted<'w> {
 }
 
 /// What a ray carries from bounce to bounce.
-#[derive(Clone)]
-struct Path {
+#[derive(Clone, Copy)]
+struct Path<'a> {
     bounces: u32,
     /// What the ray runs in.
-    media: Media,
+    media: &'a Media,
     /// How much the ray counts for in the pixel.
     weight: f32,
+}
+
+/// One of the materials that make up a point, and what was worked out of it.
+struct Lit<'w> {
+    part: Part<'w>,
+    /// A texture or noise is looked up once for all lights.
+    diffuse: Color,
+    /// What it scatters of the light that is asked for.
+    scattered: Color,
+}
+
+impl<'w> Lit<'w> {
+    fn new(part: Part<'w>) -> Self {
+        Lit { part, diffuse: Color::ZERO, scattered: Color::ZERO }
+    }
 }
 
 impl Integrate for Whitted<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
     }
+
+    fn first_hits(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
+        self.world.closest_of_eight(rays)
+    }
+
+    fn radiance_from<T: TraceListener>(&self, ray: &Ray, hit: Option<Hit>, _: SampleId, tally: &mut T) -> Color {
+        tally.ray();
+        self.camera_ray(ray, tally, |_, _| hit)
+    }
 }
 
 impl Whitted<'_> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
-        let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0 };
+        self.camera_ray(ray, tally, |ray, tally| self.world.closest_along(ray, tally))
+    }
+
+    #[inline(always)]
+    fn camera_ray<T: TraceListener>(
+        &self,
+        ray: &Ray,
+        tally: &mut T,
+        find: impl FnOnce(&mut Ray64, &mut T) -> Option<Hit>,
+    ) -> Color {
+        let mut along = ray.into();
+        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0 };
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let color = self.trace(&ray.into(), path, tally);
+        let found = find(&mut along, tally);
+        let color = self.trace(&along, found, path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
-    fn trace<T: TraceListener>(&self, ray: &Ray64, mut path: Path, tally: &mut T) -> Color {
-        let mut rest = *ray;
-        while let Some(hit) = self.world.closest(&rest, tally) {
-            let at = self.world.interaction(ray, hit);
-            match self.passage(&at, &path.media) {
-                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
-                passage => return self.shade(&at, passage, path, tally),
+    /// The light along a ray that has hit this first.
+    fn trace<T: TraceListener>(&self, ray: &Ray64, mut found: Option<Hit>, path: Path, tally: &mut T) -> Color {
+        // What it runs in behind surfaces that are none.
+        let mut inside = None;
+        while let Some(hit) = found {
+            let at = self.world.interaction_along(ray, hit);
+            let media = inside.as_ref().unwrap_or(path.media);
+            match self.passage(&at, media) {
+                Some(Passage { hidden: true, behind, .. }) => {
+                    let mut rest = *ray;
+                    (inside, rest.rounded.t_min) = (Some(behind), hit.t);
+                    found = self.world.closest_along(&mut rest, tally);
+                }
+                passage => return self.shade(&at, passage, Path { media, ..path }, tally),
             }
         }
         let sky = self.world.sky(ray.dir());
@@ -115,21 +158,40 @@ impl Whitted<'_> {
 
     /// The light that leaves a hit against the ray: of each material that makes it up, by its
     /// share.
+    #[inline]
     fn shade<T: TraceListener>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
+        match &self.world.materials()[at.material as usize] {
+            // Nearly always; what is known of one stays in registers.
+            Material::Phong(phong) => {
+                self.shade_all(at, &mut [Lit::new(Part { phong, share: 1.0 })], passage, path, tally)
+            }
+            Material::Solid(..) => {
+                let mut all: SmallVec<[Lit; 2]> = self.world.parts(at).into_iter().map(Lit::new).collect();
+                self.shade_all(at, &mut all, passage, path, tally)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn shade_all<T: TraceListener>(
+        &self,
+        at: &Interaction,
+        all: &mut [Lit],
+        passage: Option<Passage>,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
         let Interaction { ray, surface, .. } = at;
         let from_behind = self.sees_back(at);
         let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
         let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
         let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
-        let parts = self.world.parts(at);
         tally.hit(|| hit_record(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
-            // A texture or noise is looked up once for all lights.
-            let mut diffuse = SmallVec::<[Color; 2]>::new();
-            parts.iter().for_each(|part| diffuse.push(self.world.diffuse_color(part.phong, surface)));
-            for (part, &diffuse) in parts.iter().zip(&diffuse) {
-                let met = part.phong.ambient.unwrap_or(diffuse);
+            for Lit { part, diffuse, .. } in all.iter_mut() {
+                *diffuse = self.world.diffuse_color(part.phong, surface);
+                let met = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
                 tally.begin(|| TermKind::Ambient { share: part.share });
                 tally.end(ambient, Color::ONE, met);
@@ -137,20 +199,19 @@ impl Whitted<'_> {
             }
             for number in 0..self.world.lights().len() {
                 let seen = self.world.illuminate(number, surface.point());
-                let lit = parts.iter().zip(&diffuse);
-                let scattered = |tally: &mut T, (part, &diffuse): (&Part, &Color)| {
-                    direct(part.phong, diffuse, n, ray.dir(), &seen, tally)
-                };
                 // Where nothing of a light would be scattered, nobody asks whether it arrives.
-                let mut known = SmallVec::<[Color; 2]>::new();
                 if !T::LISTENS {
-                    lit.clone().for_each(|part| known.push(scattered(tally, part)));
-                    if known.iter().all(|&color| color == Color::ZERO) {
+                    let mut dark = true;
+                    for Lit { part, diffuse, scattered } in all.iter_mut() {
+                        *scattered = direct(part.phong, *diffuse, n, ray.dir(), &seen, tally);
+                        dark &= *scattered == Color::ZERO;
+                    }
+                    if dark {
                         continue;
                     }
                 }
                 let visible = self.visible(surface, &seen, tally);
-                for (i, (part, diffuse)) in lit.enumerate() {
+                for Lit { part, diffuse, scattered } in all.iter() {
                     let share = part.share;
                     tally.begin(|| {
                         let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
@@ -160,7 +221,8 @@ impl Whitted<'_> {
                     // In the dark nothing is computed.
                     let direct = match visible == Color::ZERO {
                         true => Color::ZERO,
-                        false => known.get(i).copied().unwrap_or_else(|| scattered(tally, (part, diffuse))),
+                        false if T::LISTENS => direct(part.phong, *diffuse, n, ray.dir(), &seen, tally),
+                        false => *scattered,
                     };
                     tally.end(share * visible, seen.color, direct);
                     color += share * visible * direct;
@@ -169,8 +231,12 @@ impl Whitted<'_> {
         }
         let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
         if path.bounces > 0 && !cancelled {
-            color += self.secondary(at, &parts, passage.unwrap_or_default(), path, tally);
-        } else if parts.iter().any(|part| part.phong.reflective + part.phong.transparent != Color::ZERO) {
+            let blend = Blend::of(all.iter().map(|lit| &lit.part));
+            color += match blend.reflective == Color::ZERO && blend.transparent == Color::ZERO {
+                true => Color::ZERO,
+                false => self.secondary(at, blend, passage.unwrap_or_default(), path, tally),
+            };
+        } else if all.iter().any(|Lit { part, .. }| part.phong.reflective + part.phong.transparent != Color::ZERO) {
             tally.begin(|| TermKind::Spent);
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
         }
@@ -184,6 +250,7 @@ impl Whitted<'_> {
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
+    #[inline]
     fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
         let rules = self.world.rules();
         // What stands exactly at the light does not block it.
@@ -192,6 +259,7 @@ impl Whitted<'_> {
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
+    #[inline]
     pub(crate) fn sees_back(&self, at: &Interaction) -> bool {
         let shaded = self.world.rules().has(Compat::ShadedSides);
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
@@ -217,12 +285,18 @@ impl Whitted<'_> {
             return if blocked { Color::ZERO } else { Color::ONE };
         }
         if !self.settings.transparent_shadows {
-            return if self.world.occluded(&ray, tally) { Color::ZERO } else { Color::ONE };
+            return if self.world.occluded_along(&ray, tally) { Color::ZERO } else { Color::ONE };
         }
         let mut share = Color::ONE;
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(blocker) = self.world.intersect(&ray, tally) else { return share };
+            let Some(hit) = self.world.closest_along(&mut ray, tally) else { return share };
+            // What lets nothing through need not be looked at.
+            match &self.world.materials()[self.world.material_of(&hit) as usize] {
+                Material::Phong(phong) if phong.transparent == Color::ZERO => break,
+                _ => {}
+            }
+            let blocker = self.world.interaction_along(&ray, hit);
             let parts = self.world.parts(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
             if share == Color::ZERO {
@@ -238,15 +312,11 @@ impl Whitted<'_> {
     fn secondary<T: TraceListener>(
         &self,
         at: &Interaction,
-        parts: &[Part],
+        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
         passage: Passage,
         path: Path,
         tally: &mut T,
     ) -> Color {
-        let Blend { mut reflective, mut transparent, fresnel, .. } = Blend::of(parts);
-        if reflective == Color::ZERO && transparent == Color::ZERO {
-            return Color::ZERO;
-        }
         // The normal on the ray's side.
         let Interaction { ray, surface, .. } = at;
         let leaving = self.sees_back(at);
@@ -278,10 +348,10 @@ impl Whitted<'_> {
         tally.begin(|| TermKind::Secondary { here, there, fresnel: r, total });
         let mut color = Color::ZERO;
         if self.settings.reflection {
-            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path.clone(), tally);
+            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
         }
         if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
-            let path = Path { media: passage.behind, ..path };
+            let path = Path { media: &passage.behind, ..path };
             color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
         }
         tally.end(Color::ONE, Color::ONE, color);
@@ -289,11 +359,15 @@ impl Whitted<'_> {
     }
 
     /// How light that may go through at a hit does; `None` where none may.
+    #[inline]
     pub(crate) fn passage(&self, at: &Interaction, media: &Media) -> Option<Passage> {
         if !self.world.may_enter(at) {
             return None;
         }
-        let blend = Blend::of(&self.world.parts(at));
+        let blend = match &self.world.materials()[at.material as usize] {
+            Material::Phong(phong) => Blend::of(&[Part { phong, share: 1.0 }]),
+            Material::Solid(..) => Blend::of(&self.world.parts(at)),
+        };
         if blend.transparent == Color::ZERO {
             return None;
         }
@@ -338,9 +412,10 @@ impl Whitted<'_> {
             tally.end(weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
-        let ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
+        let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
         tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
-        let color = self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
+        let found = self.world.closest_along(&mut ray, tally);
+        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
         tally.end(weight, Color::ONE, color);
         weight * color
     }
@@ -378,7 +453,8 @@ pub(crate) struct Blend {
 }
 
 impl Blend {
-    pub(crate) fn of(parts: &[Part]) -> Self {
+    #[inline]
+    pub(crate) fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a Part<'w>>) -> Self {
         let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
         let mut most = 0.0;
         for &Part { phong, share } in parts {
@@ -406,6 +482,7 @@ pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there)
 }
 
 /// Diffuse term and highlight of one light.
+#[inline]
 fn direct<T: TraceListener>(
     phong: &Phong,
     diffuse: Color,

@@ -17,6 +17,7 @@ pub use spot::{Fade, SpotLight};
 macro_rules! delegate {
     ($($variant:ident),+) => {
         impl Emitter for Light {
+            #[inline]
             fn illuminate(&self, point: DVec3) -> Illumination {
                 match self { $(Light::$variant(l) => l.illuminate(point),)+ }
             }

@@ -28,15 +28,16 @@ described! {
 }
 
 impl Emitter for PointLight {
+    #[inline]
     fn illuminate(&self, point: DVec3) -> Illumination {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
-        let divisor = match self.attenuation {
-            Some(a) => a.x + a.y * distance + a.z * distance * distance,
-            None => 1.0,
+        let color = match self.attenuation {
+            Some(a) => self.color / (a.x + a.y * distance + a.z * distance * distance),
+            None => self.color,
         };
         let to_light = offset.normalize_or(Vec3::Y);
-        Illumination { to_light, distance, color: self.color / divisor }
+        Illumination { to_light, distance, color }
     }
 
     fn with_rules(&self, rules: &Rules) -> Self {

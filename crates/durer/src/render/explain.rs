@@ -5,8 +5,9 @@ mod course;
 mod firefly;
 mod text;
 
+use super::aim::PixelSample;
 use super::confidence::{ErrorBound, corrected};
-use super::samples::{PixelSample, Samples};
+use super::samples::Samples;
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
 use crate::camera::Raster;

@@ -1,5 +1,6 @@
 //! From a world and a job to pictures.
 
+mod aim;
 mod bands;
 mod blocks;
 mod confidence;

@@ -1,16 +1,17 @@
 //! How the samples of a block are taken, for each way of sampling.
 
+use super::aim::{Aim, Batch, Pixel, PixelSample};
 use super::error::{MAX_KEPT, center};
 use super::sub_pixels::SubPixels;
-use super::{Control, Crop, Job, RenderError, Sampling, camera_ray, center_ray, raster};
+use super::{Control, Crop, Job, RenderError, Sampling, center_ray};
 use crate::bvh::RayCount;
-use crate::camera::{CameraSample, Projection, Raster};
+use crate::camera::Projection;
 use crate::dialect::Compat;
+use crate::film::Film;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
-use crate::film::{Film, FilterSampler};
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::math::{Color, Ray, Vec2, Vec3};
-use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
+use crate::math::{Color, Vec2, Vec3};
+use crate::sampler::{SampleId, Sampler};
 use crate::threads;
 use crate::world::{Material, World};
 use std::cell::Cell;
@@ -108,39 +109,13 @@ pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
-/// Where a sample goes.
-pub(super) struct PixelSample {
-    /// In the picture, in pixels from the upper left corner.
-    pub(super) place: Vec2,
-    /// In the lens, from 0 to 1.
-    pub(super) lens: Vec2,
-    /// How much it counts for in the pixel.
-    pub(super) weight: f32,
-    /// Its ray; `None` where the camera sees nothing.
-    pub(super) ray: Option<Ray>,
-}
-
-/// What the samples of a pixel have in common.
-struct Pixel {
-    x: u32,
-    y: u32,
-    /// Its middle, in pixels from the upper left corner, and on the square that the camera covers.
-    center: Vec2,
-    point: Vec2,
-    /// Where in the pixel Sobol's samples lie, and where in the lens, if that has an extent.
-    positions: Sequence,
-    lenses: Option<Sequence>,
-}
-
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
     world: &'a World,
     job: &'a Job,
-    raster: Raster,
+    pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    warp: Option<FilterSampler>,
-    has_aperture: bool,
     /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
@@ -157,20 +132,14 @@ impl<'a> Samples<'a> {
 
     /// The same without what [`Compat::StaleTexels`] adds, which takes a look at the whole picture.
     pub(super) fn without_habits(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
-        let warp = match job.sampling {
-            Sampling::Filtered { filter, .. } => Some(filter.sampler()),
-            _ => None,
-        };
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
-        let raster = raster(world, job.width, job.height);
-        let has_aperture = world.camera().has_aperture();
-        Samples { world, job, raster, whitted, integrator, warp, has_aperture, stale: Vec::new(), stop }
+        Samples { world, job, aim: Aim::new(world, job), whitted, integrator, stale: Vec::new(), stop }
     }
 
     /// The size of a sample's weight.
     pub(super) fn gain(&self) -> f32 {
-        self.warp.as_ref().map_or(1.0, FilterSampler::gain)
+        self.aim.gain()
     }
 
     pub(super) fn check(&self) -> Result<(), Stopped> {
@@ -186,99 +155,52 @@ impl<'a> Samples<'a> {
         at: &At,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
+        let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
         for (x, y) in part.places() {
-            let pixel = self.pixel(x, y);
+            let pixel = self.aim.pixel(x, y);
             for sample in range.clone() {
-                self.check()?;
                 at.set((x, y, Some(sample)));
-                let (color, weight) = self.sample_of(&pixel, sample, rays);
-                film.add_if_seen(x, y, sample, color, weight);
+                if batch.push(&pixel, sample) {
+                    self.add_batch(film, &mut batch, at, rays)?;
+                }
             }
         }
+        self.add_batch(film, &mut batch, at, rays)?;
         // What was made after a cancel means nothing.
         self.check()
     }
 
+    fn add_batch(&self, film: &mut Film, batch: &mut Batch, at: &At, rays: &mut RayCount) -> Result<(), Stopped> {
+        let (aimed, weights) = self.aim.batch(batch);
+        let hits = self.integrator.first_hits(&aimed);
+        for (i, (pixel, sample)) in batch.take().iter().enumerate() {
+            self.check()?;
+            at.set((pixel.x, pixel.y, Some(*sample)));
+            let color = aimed[i].map(|ray| match &hits {
+                Some(hits) => self.integrator.radiance_from(&ray, hits[i], pixel.id.of_sample(*sample), rays),
+                None => self.integrator.radiance(&ray, pixel.id.of_sample(*sample), rays),
+            });
+            film.add_if_seen(pixel.x, pixel.y, *sample, color.map(|color| self.with_stale(pixel, color)), weights[i]);
+        }
+        Ok(())
+    }
+
     /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
-        self.sample_of(&self.pixel(x, y), sample, rays)
+        let pixel = self.aim.pixel(x, y);
+        let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
+        let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.of_sample(sample), rays));
+        (color.map(|color| self.with_stale(&pixel, color)), weight)
     }
 
-    fn sample_of(&self, pixel: &Pixel, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
-        let PixelSample { ray, weight, .. } = self.aim_in(pixel, sample);
-        let Pixel { x, y, .. } = *pixel;
-        let id = SampleId::new(self.job.seed, (x, y), sample);
-        let color = ray.map(|ray| self.integrator.radiance(&ray, id, rays));
-        match self.stale.get(y as usize * self.job.width as usize + x as usize) {
-            Some(&stale) => (color.map(|color| color + stale), weight),
-            None => (color, weight),
-        }
-    }
-
-    /// What the samples of a pixel have in common.
-    fn pixel(&self, x: u32, y: u32) -> Pixel {
-        let (seed, center) = (self.job.seed, center(x, y));
-        Pixel {
-            x,
-            y,
-            center,
-            point: self.raster.point(center),
-            positions: Sequence::new(seed, x, y, PIXEL_DIMENSION),
-            lenses: self.has_aperture.then(|| Sequence::new(seed, x, y, LENS_DIMENSION)),
-        }
+    fn with_stale(&self, pixel: &Pixel, color: Color) -> Color {
+        let stale = self.stale.get(pixel.y as usize * self.job.width as usize + pixel.x as usize);
+        stale.map_or(color, |&stale| color + stale)
     }
 
     /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
-        self.aim_in(&self.pixel(x, y), sample)
-    }
-
-    fn aim_in(&self, pixel: &Pixel, sample: u32) -> PixelSample {
-        let middle = Vec2::splat(0.5);
-        let (place, lens, weight) = match (self.job.sampling, &self.warp) {
-            (Sampling::Filtered { .. }, Some(warp)) => {
-                let (offset, weight) = warp.sample(pixel.positions.point(sample));
-                let lens = pixel.lenses.map_or(middle, |lenses| lenses.point(sample));
-                (pixel.center + offset, lens, weight)
-            }
-            (Sampling::Course2004 { sampler, samples, .. }, _) => {
-                return self.aim_kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
-            }
-            // One ray through the middles of pixel and lens.
-            _ => (pixel.center, middle, 1.0),
-        };
-        let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
-        PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
-    }
-
-    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
-    /// more pixels than one, as a filter says.
-    pub(super) fn aim_kept(
-        &self,
-        (sampler, samples): (Sampler, u32),
-        x: u32,
-        y: u32,
-        sample: u32,
-    ) -> (PixelSample, Vec2) {
-        let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
-        let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
-        let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
-        (PixelSample { place, lens, weight: 1.0, ray }, position)
-    }
-
-    /// Where the sample of a sub-pixel goes.
-    pub(super) fn aim_sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
-        let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
-        let ray = camera_ray(self.world, raster, (x, y), place, lens);
-        PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
-    }
-
-    /// Where in the lens a sample lies. A lens without extent needs no numbers.
-    fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
-        match self.has_aperture {
-            true => sampler.lens_position(self.job.seed, x, y, sample),
-            false => Vec2::splat(0.5),
-        }
+        self.aim.sample(&self.aim.pixel(x, y), sample)
     }
 
     /// The finished pixels of a part with their coverage, for samplings whose samples count for
@@ -339,7 +261,7 @@ impl<'a> Samples<'a> {
             self.check()?;
             let (x, y) = (part.left + column, part.top + row);
             at.set((x, y, Some(sample)));
-            let (aim, position) = self.aim_kept(sampling, x, y, sample);
+            let (aim, position) = self.aim.kept(sampling, x, y, sample);
             let mut own = RayCount::default();
             let color = self.kept(show, &aim, SampleId::new(self.job.seed, (x, y), sample), &mut own);
             rays.0 += if counted(x, y) { own.0 } else { 0 };
@@ -365,7 +287,7 @@ impl<'a> Samples<'a> {
             at.set((pixel.0, pixel.1, None));
             let mut own = RayCount::default();
             let id = SampleId::new(self.job.seed, pixel, grid.number((x, y)));
-            pixels.push(self.kept(show, &self.aim_sub_pixel(&grid, &raster, (x, y)), id, &mut own));
+            pixels.push(self.kept(show, &self.aim.sub_pixel(&grid, &raster, (x, y)), id, &mut own));
             rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
         }
         let pixels = grid.develop(pixels);
@@ -383,7 +305,7 @@ impl<'a> Samples<'a> {
             if self.check().is_err() {
                 break;
             }
-            let Some(ray) = center_ray(world, &self.raster, (x, y)) else { continue };
+            let Some(ray) = center_ray(world, &self.aim.raster, (x, y)) else { continue };
             let Some(at) = world.intersect(&ray, &mut ()) else { continue };
             let Material::Phong(phong) = &world.materials()[at.material as usize] else { continue };
             let texel = world.diffuse_color(phong, &at.surface);

@@ -2,15 +2,17 @@
 
 use super::verify::{Way, compare};
 use super::*;
+use crate::bvh::RayCount;
 use crate::compile::testing;
-use crate::film::Filter;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
+use crate::film::{Film, Filter};
 use crate::image::{Depth, FORMATS, WriteOptions, read};
 use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
 use crate::source::Digest;
 use crate::world::World;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
@@ -85,6 +87,27 @@ fn every_way_gives_one_film() {
         }
     }
     assert_ne!(one_ray(1), one_ray(2));
+}
+
+/// Samples are aimed side by side, and explained and replayed one by one.
+#[test]
+fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
+    let (world, stop) = (world(), AtomicBool::new(false));
+    for job in jobs().iter().filter(|job| job.sampling.is_local()) {
+        let samples = samples::Samples::new(&world, job, &stop);
+        let part = Crop { left: 3, top: 2, width: 7, height: 5 };
+        let [mut together, mut alone] = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
+        let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
+        let all = 1..job.sampling.samples().max(2);
+        samples.add(&mut together, part, all.clone(), &at, &mut rays[0]).unwrap();
+        for (x, y) in part.places() {
+            for sample in all.clone() {
+                let (color, weight) = samples.sample(x, y, sample, &mut rays[1]);
+                alone.add_if_seen(x, y, sample, color, weight);
+            }
+        }
+        assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{:?}", job.sampling);
+    }
 }
 
 #[test]

@@ -180,3 +180,16 @@ fn same_arguments_same_bits() {
     assert!(Sampler::NAMES.iter().all(|&(name, sampler)| Sampler::from_name(name) == Some(sampler)));
     assert_eq!(Sampler::from_name("halton"), None);
 }
+
+#[test]
+fn points_side_by_side_are_those_one_by_one() {
+    for first in [0, 5, u32::MAX - 20] {
+        let samples = std::array::from_fn::<u32, 8, _>(|i| first + 2 * i as u32);
+        let sequences = std::array::from_fn::<_, 8, _>(|i| SampleId::new(3, (i as u32, 9), 0).sequence(i as u32 / 4));
+        let [x, y] = Sequence::points(&sequences, &samples);
+        for i in 0..8 {
+            let alone = sample_2d(3, i as u32, 9, samples[i], i as u32 / 4);
+            assert_eq!(Vec2::new(x[i], y[i]), alone, "{first} {i}");
+        }
+    }
+}

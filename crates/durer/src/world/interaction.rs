@@ -37,26 +37,42 @@ impl World {
 
     /// What a ray met at a hit of its. The official programs take the point from the ray as it is.
     pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> Interaction {
-        let ray = ray.into();
+        self.interaction_along(&ray.into(), hit)
+    }
+
+    /// The same with one copy of the ray.
+    #[inline]
+    pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> Interaction {
         let object = &self.objects()[hit.object as usize];
-        let point = object.local_ray(&ray).line().at(f64::from(hit.t));
+        let t = f64::from(hit.t);
+        let point = match &object.to_world {
+            None => ray.rounded.line().at(t),
+            Some(to_world) => to_world.inverse_ray(ray).line().at(t),
+        };
         let crossing = ShapeHit { t: hit.t, uv: hit.uv };
         let quirks = PlacementQuirks {
             as_is: self.rules().is_official(),
             moved_normals: self.rules().has(Compat::MovedNormals),
             mesh_textures: self.rules().has(Compat::MeshTextures),
         };
-        let material = match &object.geometry {
-            Geometry::Solid(solid) => solid.part(hit.part).material,
-            _ => object.material,
-        };
+        let material = self.material_of(&hit);
         // Made where it stays, as the last thing: a copy of what was just written takes long.
         Interaction {
-            surface: object.surface(&ray, point, &crossing, hit.part, quirks),
-            ray,
+            surface: object.surface(ray, point, &crossing, hit.part, quirks),
+            ray: *ray,
             hit,
             material,
             width: 0.0,
+        }
+    }
+
+    /// The number of the material at a hit.
+    #[inline]
+    pub(crate) fn material_of(&self, hit: &Hit) -> u32 {
+        let object = &self.objects()[hit.object as usize];
+        match &object.geometry {
+            Geometry::Solid(solid) => solid.part(hit.part).material,
+            _ => object.material,
         }
     }
 }

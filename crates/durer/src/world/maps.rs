@@ -1,6 +1,6 @@
 //! What the pictures on a surface and the colours of its vertices make of a material in layers.
 
-use super::material::Principled;
+use super::material::{Maps, Principled};
 use super::{Geometry, Interaction, World};
 use crate::material::Parameters;
 use crate::material::parameters::{Change, TEXTURED};

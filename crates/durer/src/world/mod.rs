@@ -14,7 +14,7 @@ pub mod solid;
 use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
-use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray, Ray64, Vec2, Vec3};
 use crate::shape::ShapeHit;
 use crate::source::Digest;
 use crate::texture::Texture;
@@ -41,6 +41,8 @@ pub struct World {
     has_mipmaps: bool,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
+    /// All things, where they are a few planes and spheres: for rays that are asked together.
+    pub(crate) few: PrimitivePacks,
     /// What else stands outside: objects without end, and all where they are so few that no tree
     /// pays.
     pub(crate) loose: Vec<u32>,
@@ -98,6 +100,7 @@ impl World {
             has_interfaces: false,
             has_mipmaps: false,
             packs: PrimitivePacks::default(),
+            few: PrimitivePacks::default(),
             loose: Vec::new(),
             accel: Accel::None,
         };
@@ -137,11 +140,24 @@ impl World {
 
     /// The first hit in the ray's interval.
     pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
+        self.closest_along(&mut ray.into(), counter)
+    }
+
+    /// The same of a ray that is made shorter while it is looked for, and is what it was then: a
+    /// copy of what was just written takes long.
+    #[inline]
+    pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         counter.ray();
-        let mut ray = ray.into();
         if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
+        let t_max = ray.rounded.t_max;
+        let best = self.nearest(ray, counter);
+        ray.rounded.t_max = t_max;
+        best
+    }
+
+    fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
         // A tie is decided by the order of hits, so a later ray may reach just to the present t.
         let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
@@ -154,19 +170,20 @@ impl World {
             }
         };
         if let Some(met) = self.packs.closest(&ray.rounded, counter) {
-            offer(&mut best, &mut ray, met.number, Some((ShapeHit { t: met.t, uv: Vec2::ZERO }, 0)));
+            offer(&mut best, ray, met.number, Some((ShapeHit { t: met.t, uv: Vec2::ZERO }, 0)));
         }
         for &object in &self.loose {
-            let found = self.objects()[object as usize].closest(&ray, false, counter);
-            offer(&mut best, &mut ray, object, found);
+            let found = self.objects()[object as usize].closest(ray, false, counter);
+            offer(&mut best, ray, object, found);
         }
         match &self.accel {
+            Accel::Bvh(bvh) if bvh.is_empty() => {}
             Accel::Bvh(bvh) => {
                 let outer = ray.rounded;
                 bvh.traverse(&outer, counter, |item, _, counter| {
                     let object = bvh.primitive_indices()[item];
-                    let found = self.objects()[object as usize].closest(&ray, false, counter);
-                    offer(&mut best, &mut ray, object, found);
+                    let found = self.objects()[object as usize].closest(ray, false, counter);
+                    offer(&mut best, ray, object, found);
                     ray.rounded.t_max
                 });
             }
@@ -174,16 +191,16 @@ impl World {
                 let outer = ray.rounded;
                 grid.traverse(&outer, counter, |item, _, counter| {
                     let (object, part) = parts[item];
-                    let found = self.objects()[object as usize].part(&ray, part, counter);
-                    offer(&mut best, &mut ray, object, found);
+                    let found = self.objects()[object as usize].part(ray, part, counter);
+                    offer(&mut best, ray, object, found);
                     ray.rounded.t_max
                 });
             }
             Accel::None => {
                 for (i, object) in self.objects().iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
-                        let found = object.part(&ray, part, counter);
-                        offer(&mut best, &mut ray, i as u32, found);
+                        let found = object.part(ray, part, counter);
+                        offer(&mut best, ray, i as u32, found);
                     }
                 }
             }
@@ -191,10 +208,26 @@ impl World {
         best
     }
 
+    /// The first hits of eight rays, as [`World::closest`] has them one by one; `None` where nothing
+    /// is gained by asking for them together. Where there is no ray there is no hit.
+    pub fn closest_of_eight(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
+        if self.few.is_empty() {
+            return None;
+        }
+        let nowhere = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
+        let sound = std::array::from_fn(|i| rays[i].filter(crate::bvh::is_sound).unwrap_or(nowhere));
+        let met = self.few.closest_of_eight(&sound);
+        Some(met.map(|met| met.map(|met| Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 })))
+    }
+
     /// Whether anything is hit in the ray's interval; the first thing found will do.
     pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
+        self.occluded_along(&ray.into(), counter)
+    }
+
+    /// The same without a copy of the ray.
+    pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
         counter.ray();
-        let ray = &ray.into();
         let outer = &ray.rounded;
         if !crate::bvh::is_sound(outer) {
             return false;
@@ -206,6 +239,7 @@ impl World {
         }
         let mut found = false;
         match &self.accel {
+            Accel::Bvh(bvh) if bvh.is_empty() => {}
             Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
                 found |= self.objects()[bvh.primitive_indices()[item] as usize].closest(ray, true, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
@@ -271,6 +305,7 @@ impl World {
     }
 
     /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
+    #[inline]
     pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
         let seen = self.lights()[light].illuminate(point);
         match self.profiles().get(light) {

@@ -157,6 +157,7 @@ impl Object {
     }
 
     /// The surface in world space, at a crossing that is next to this point of object space.
+    #[inline]
     pub(super) fn surface(
         &self,
         ray: &Ray64,
@@ -165,7 +166,7 @@ impl Object {
         part: u32,
         quirks: PlacementQuirks,
     ) -> Surface {
-        let surface = match &self.geometry {
+        let mut surface = match &self.geometry {
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
             Geometry::Solid(solid) => return solid.surface(ray, crossing, part, quirks),
@@ -175,36 +176,33 @@ impl Object {
             false => to_world.normal(n),
         };
         if quirks.as_is {
-            let n_geo = self.to_world.as_ref().map_or(surface.n_geo, |m| m.normal(surface.n_geo));
-            let n_shade = self.to_world.as_ref().map_or(surface.n_shade, |m| shading(m, surface.n_shade));
-            let untextured = quirks.mesh_textures && matches!(self.geometry, Geometry::Primitive(_));
-            return Surface {
-                position: ray.rounded.at(crossing.t),
-                n_geo,
-                n_shade: self.normal_length * n_shade,
-                uv: if untextured { Uv::None } else { surface.uv },
-                ..surface
-            };
+            if let Some(to_world) = &self.to_world {
+                surface.n_geo = to_world.normal(surface.n_geo);
+                surface.n_shade = shading(to_world, surface.n_shade);
+            }
+            surface.position = ray.rounded.at(crossing.t);
+            surface.n_shade *= self.normal_length;
+            if quirks.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
+                surface.uv = Uv::None;
+            }
+        } else if let Some(to_world) = &self.to_world {
+            let error = to_world.point_error(surface.position, surface.error);
+            let point = to_world.point64(surface.position);
+            surface.position = point.as_vec3();
+            surface.rest = (point - surface.position.as_dvec3()).as_vec3();
+            // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
+            surface.error = error + to_world.spread(surface.bulge(to_world.inverse_spread(error)));
+            surface.n_geo = to_world.normal(surface.n_geo);
+            surface.n_shade = shading(to_world, surface.n_shade);
+            surface.shadow_offsets = surface.shadow_offsets.map(|lift| to_world.vector(lift));
+        } else {
+            surface.error += surface.bulge(surface.error);
         }
-        // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
-        let Some(to_world) = &self.to_world else {
-            return Surface { error: surface.error + surface.bulge(surface.error), ..surface };
-        };
-        let error = to_world.point_error(surface.position, surface.error);
-        let point = to_world.point64(surface.position);
-        let position = point.as_vec3();
-        Surface {
-            position,
-            rest: (point - position.as_dvec3()).as_vec3(),
-            error: error + to_world.spread(surface.bulge(to_world.inverse_spread(error))),
-            n_geo: to_world.normal(surface.n_geo),
-            n_shade: shading(to_world, surface.n_shade),
-            shadow_offsets: surface.shadow_offsets.map(|lift| to_world.vector(lift)),
-            ..surface
-        }
+        surface
     }
 
     /// The object's first hit in the ray's interval.
+    #[inline]
     pub(super) fn closest<T: TraversalCounter>(
         &self,
         ray: &Ray64,

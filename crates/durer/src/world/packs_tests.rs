@@ -10,7 +10,7 @@ fn vector(random: &mut Random, size: f32) -> Vec3 {
 }
 
 /// 10^5 rays, in sets of up to 20 planes and 20 spheres, many of them twice: t and number have the
-/// same bits.
+/// same bits, also where eight rays are asked for together.
 #[test]
 fn packs_hit_as_shapes_do() {
     let mut random = Random(8);
@@ -35,6 +35,7 @@ fn packs_hit_as_shapes_do() {
             shapes.push(sphere.into());
         }
         assert_eq!(packs.len(), shapes.len());
+        let mut asked = Vec::new();
         for _ in 0..100 {
             let dirs = [Vec3::X, -Vec3::Z, vector(&mut random, 1.0) + Vec3::splat(1e-6), 1e-20 * Vec3::Y];
             let origins = [Vec3::ZERO, size * Vec3::X, vector(&mut random, 2.0 * size)];
@@ -53,6 +54,11 @@ fn packs_hit_as_shapes_do() {
             assert_eq!(packs.occluded(&ray, &mut ()), expected.is_some(), "{ray:?}");
             hits += usize::from(expected.is_some());
             rays += 1;
+            asked.push(ray);
+        }
+        for eight in asked.as_chunks::<8>().0 {
+            let alone = eight.each_ref().map(|ray| packs.closest(ray, &mut ()));
+            assert_eq!(packs.closest_of_eight(eight), alone, "{eight:?}");
         }
     }
     assert!(3 * hits > rays, "{hits} of {rays} rays hit");

@@ -43,6 +43,7 @@ impl Shading<'_> {
 impl World {
     /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
     /// vertices' colours.
+    #[inline]
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
         if phong.tinted {
@@ -236,6 +237,7 @@ impl World {
     }
 
     /// Whether light may go into a thing at a hit: quickly known, for most materials.
+    #[inline]
     pub fn may_enter(&self, at: &Interaction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => {

@@ -123,3 +123,14 @@ fn warps_are_exact_where_they_can_be() {
         assert!(tent.warp(u) <= tent.warp(u + 1e-3));
     }
 }
+
+#[test]
+fn offsets_side_by_side_are_those_one_by_one() {
+    for filter in sizes() {
+        let sampler = filter.sampler();
+        let positions: [Vec2; 8] = std::array::from_fn(|i| random_2d(1, 0, 0, i as u32, 0) * (i % 7) as f32 / 6.0);
+        let (offsets, weights) = sampler.samples(&[positions.map(|p| p.x), positions.map(|p| p.y)]);
+        let alone = positions.map(|position| sampler.sample(position));
+        assert_eq!(std::array::from_fn::<_, 8, _>(|i| (offsets[i], weights[i])), alone, "{filter:?}");
+    }
+}

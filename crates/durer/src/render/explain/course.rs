@@ -3,7 +3,8 @@
 use super::{Mean, SampleAccount};
 use crate::film::course::CourseFilter;
 use crate::math::{Color, Vec3};
-use crate::render::samples::{PixelSample, Samples, share};
+use crate::render::aim::PixelSample;
+use crate::render::samples::{Samples, share};
 use crate::render::sub_pixels::SubPixels;
 use crate::render::{Crop, Job};
 use crate::sampler::Sampler;
@@ -21,7 +22,7 @@ pub(super) fn around(
     let samples = sampler.round_up(samples);
     let all = |crop: Crop| crop.places().flat_map(move |of| (0..samples).map(move |sample| (of, sample)));
     let aim = |(of, sample): ((u32, u32), u32)| {
-        let (aim, position) = source.aim_kept((sampler, samples), of.0, of.1, sample);
+        let (aim, position) = source.aim.kept((sampler, samples), of.0, of.1, sample);
         (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
     };
     let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
@@ -45,7 +46,7 @@ pub(super) fn sub_pixels(
         // Developing is linear: what comes of a single white one is its weight.
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
-        let aim = source.aim_sub_pixel(&grid, &raster, place);
+        let aim = source.aim.sub_pixel(&grid, &raster, place);
         account(grid.pixel(place), grid.number(place), PixelSample { weight: grid.develop(white)[0].x, ..aim })
     };
     let samples = grid.around.places().enumerate().map(one).collect();
