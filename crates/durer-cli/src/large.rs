@@ -6,7 +6,7 @@ use crate::output::{Target, wrote};
 use crate::progress;
 use crate::report::rejected;
 use crate::terminal::say;
-use durer::image::{Content, Format, MAX_PIXELS, WriteOptions, save_all};
+use durer::image::{Content, FORMATS, Format, MAX_PIXELS, WriteOptions, save_all};
 use durer::render::{Bands, BandsError, Control, Job, RenderError, Statistics};
 use durer::source::Digest;
 use durer::world::World;
@@ -25,7 +25,8 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     let (work, window) = (&args.work, job.window());
     let Some((_, format)) = target.single() else { return refuse("it has other pictures than the colours") };
     if format.rows.is_none() {
-        return refuse(&format!("{} needs all rows at once; take PNG, TGA, PPM, PFM or HDR", format.name));
+        let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
+        return refuse(&format!("{} needs all rows at once; take one of {}", format.name, others.join(", ")));
     }
     format.check_sides(window.width, window.height).map_err(|error| bad(error.to_string()))?;
     for (given, option) in [

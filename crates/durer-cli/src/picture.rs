@@ -112,6 +112,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
         return Err(failed(RenderError::Memory { needed, allowed }));
     }
+    options.rays = Some(window.pixels().saturating_mul(u64::from(job.sampling.samples())));
     let opened = scene.compile(&options, &mut guard)?;
     stages.ends("meshes, pictures and trees");
     if let Ok(mut files) = watched.files.lock() {

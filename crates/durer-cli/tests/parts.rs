@@ -99,7 +99,11 @@ fn rules_of_stopping_and_limits() {
     assert_eq!((place.image8("v.png").width, place.image8("t.png").width), (64, 64));
     assert!(!place.path("t.png.part").exists(), "what nobody wanted is not left");
     let large = "render scene.txt --size 4000x4000 --memory 100M";
-    place.refused(2, &format!("{large} -o p.exr"), &["bands of rows", "OpenEXR needs all rows at once"]);
+    place.refused(
+        2,
+        &format!("{large} -o p.bmp"),
+        &["bands of rows", "BMP needs all rows at once; take one of", "OpenEXR"],
+    );
     place.refused(2, &format!("{large} -o p.png --show color,depth"), &["bands of rows", "other pictures"]);
     place.refused(2, &format!("{large} -o p.png --preview q.png"), &["bands of rows", "--preview"]);
     place.refused(2, &format!("{large} -o p.part --shard 1/2"), &["needs about", "100 MiB", "--memory"]);

@@ -44,6 +44,8 @@ pub struct LoadOptions {
     pub threads: Option<usize>,
     /// Bytes that the world may take; `None`: any number.
     pub memory: Option<u64>,
+    /// About how many camera rays the world is for; `None`: many. Trees are built faster for few.
+    pub rays: Option<u64>,
     /// Meshes and pictures of the same scene as it was before: what did not change is neither read
     /// nor built again.
     pub kept: Option<Arc<Kept>>,
@@ -232,6 +234,7 @@ impl Loaded {
             files,
             sky_optional: options.course,
             memory,
+            rays: options.rays.unwrap_or(u64::MAX),
             kept: options.kept.as_deref(),
         };
         let work = || compile(&self.scene, &self.rules, options.accel, resources, diagnostics);

@@ -3,6 +3,7 @@
 use super::Resources;
 use super::decoded::{Encoding, decode, used};
 use super::kept::Origin;
+use crate::bvh::BuildQuality;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use crate::dialect::{Compat, Rules};
@@ -68,6 +69,13 @@ impl<'r> Loader<'r> {
         }
     }
 
+    /// A mesh with its tree. For fewer rays than there are triangles a better one would take longer
+    /// than it saves; what rays hit is the same to the bit.
+    pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
+        let few = self.resources.rays < mesh.triangles().len() as u64;
+        MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
+    }
+
     /// The mesh of a file.
     pub(super) fn mesh(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         if let Some(known) = self.meshes.get(&name.path) {
@@ -103,7 +111,7 @@ impl<'r> Loader<'r> {
             let mesh = self.centered(mesh);
             // What the official program takes for a determinant of zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
-            Arc::new(MeshTree::new(mesh).least_volume(least_volume))
+            Arc::new(self.tree(mesh).least_volume(least_volume))
         });
         // What there is to say of a file is said each time.
         if let (Some(kept), Some(origin), Some(tree), true) =
@@ -190,7 +198,7 @@ impl<'r> Loader<'r> {
             return None;
         }
         let data = field.mesh(width, &heights);
-        Some(Arc::new(MeshTree::new(self.centered(Mesh::new(data, self.rules.mesh_normals, true)))))
+        Some(Arc::new(self.tree(self.centered(Mesh::new(data, self.rules.mesh_normals, true)))))
     }
 
     /// The mesh about the origin, if it lies far away; the official programs leave it there.

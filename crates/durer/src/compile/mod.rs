@@ -22,7 +22,7 @@ use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
 use crate::texture::Sky;
 use crate::texture::sky::SUN_RADIUS;
-use crate::world::{Accel, Assets, Contents, Geometry, MeshTree, Object, Phong, World};
+use crate::world::{Accel, Assets, Contents, Geometry, Object, Phong, World};
 use glam::DAffine3;
 pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
@@ -51,6 +51,8 @@ pub struct Resources<'a> {
     pub sky_optional: bool,
     /// Bytes that meshes and pictures may take.
     pub memory: u64,
+    /// About how many camera rays the world is for; as many as there can be where nobody knows.
+    pub rays: u64,
     /// What was made of the same files before, and is kept again.
     pub kept: Option<&'a Kept>,
 }
@@ -369,7 +371,7 @@ impl SceneFlattener<'_, '_> {
                     return None;
                 }
                 let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
-                Geometry::Mesh(Arc::new(MeshTree::new(mesh)))
+                Geometry::Mesh(Arc::new(self.loader.tree(mesh)))
             }
             Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };

@@ -1,6 +1,7 @@
 //! A scene with its rules, and what a pupil does otherwise with it.
 
 use super::habits::{Aim, Habits, Output, Turn};
+use crate::bvh::BuildQuality;
 use crate::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
 use crate::compile::{self, AccelKind};
 use crate::dialect::{Compat, CompatSet, Highlight};
@@ -178,7 +179,9 @@ impl<'s> Variant<'s> {
                     let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
                     halves.push(Object { geometry: Geometry::Primitive(Primitive::Triangle(half)), ..object.clone() });
                 }
-                Geometry::Mesh(tree) => *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms())),
+                Geometry::Mesh(tree) => {
+                    *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms(), BuildQuality::Balanced))
+                }
                 _ => {}
             }
         }

@@ -61,8 +61,8 @@ pub struct MeshTree {
 
 impl MeshTree {
     /// Builds the tree.
-    pub fn new(mesh: Mesh) -> Self {
-        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), BuildQuality::Balanced);
+    pub fn new(mesh: Mesh, quality: BuildQuality) -> Self {
+        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), quality);
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 

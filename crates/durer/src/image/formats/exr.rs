@@ -1,12 +1,14 @@
-//! OpenEXR: 32-bit floats, packed without loss, any number of layers.
+//! OpenEXR: 32-bit floats, packed without loss, any number of layers; by rows not packed, and one.
 //!
 //! Layers share one part. The first colour layer has the plain channels R, G and B, which every
 //! viewer shows; those of the others bear the layer's name: `normals.R`. Where the camera does not
 //! see everything there is A as well, with the colours multiplied by it, as the format has it.
 
 use super::limits::{pixel_limit, room_for};
-use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, WriteOptions};
+use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, RowFormat, Strip, WriteOptions};
 use crate::math::Vec3;
+use ::exr::meta::BlockDescription;
+use ::exr::meta::attribute::{ChannelDescription, SampleType};
 use ::exr::meta::header::Header;
 use ::exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Blocks, Compression, Encoding, FlatSamples, Image as ExrImage, LineOrder,
@@ -28,8 +30,47 @@ pub const FORMAT: Format = Format {
     head,
     decode,
     encode,
-    rows: None,
+    rows: Some(&ROWS),
 };
+
+/// Rows one by one, not packed: so it is known where each begins before the first is there.
+static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, png: false };
+
+/// The channels of a picture alone, in the order in which a row has them.
+fn letters(alpha: bool) -> &'static [&'static str] {
+    if alpha { &["A", "B", "G", "R"] } else { &["B", "G", "R"] }
+}
+
+/// Magic number, version, attributes, and where each row begins.
+///
+/// Source: *OpenEXR File Layout*, openexr.com.
+fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
+    let row = 8 + 4 * letters(strip.alpha).len() as u64 * u64::from(strip.width);
+    if row > i32::MAX as u64 {
+        return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB"));
+    }
+    let channels = letters(strip.alpha).iter().map(|letter| ChannelDescription::named(*letter, SampleType::F32));
+    let size = (strip.width as usize, strip.height as usize);
+    let mut header = Header::new(Text::default(), size, channels.collect());
+    header.own_attributes.layer_name = None;
+    let header = header.with_encoding(Compression::Uncompressed, BlockDescription::ScanLines, LineOrder::Increasing);
+    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
+    header.write(&mut bytes).map_err(|error| ImageError::unsupported(NAME, error))?;
+    sort_attributes(&mut bytes);
+    let first = bytes.len() as u64 + 8 * u64::from(strip.height);
+    bytes.extend((0..u64::from(strip.height)).flat_map(|y| (first + y * row).to_le_bytes()));
+    Ok(bytes)
+}
+
+fn row(strip: &Strip, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut Vec<u8>) {
+    let letters = letters(strip.alpha);
+    out.extend(y.to_le_bytes());
+    out.extend((4 * letters.len() as u32 * strip.width).to_le_bytes());
+    if strip.alpha {
+        out.extend((0..pixels.len()).flat_map(|i| coverage.get(i).unwrap_or(&1.0).to_le_bytes()));
+    }
+    (0..3).rev().for_each(|axis| out.extend(pixels.iter().flat_map(|pixel| pixel[axis].to_le_bytes())));
+}
 
 /// Blocks of 16 rows, deflated: without loss, and read by everything.
 const ENCODING: Encoding =
@@ -199,6 +240,33 @@ mod tests {
         assert_eq!(channels.len(), 9);
         let normals = channels.iter().find(|channel| channel.name.eq("normals.G")).unwrap();
         assert_eq!(normals.sample_data, FlatSamples::F32((0..6).map(|i| i as f32).collect()));
+    }
+
+    #[test]
+    fn rows_are_read_by_others() {
+        for alpha in [false, true] {
+            let strip = Strip { width: 3, height: 2, alpha, display: Default::default() };
+            let rows = [[Vec3::X, Vec3::new(f32::MAX, -2.0, 1e-30), Vec3::ZERO], [Vec3::Y, Vec3::Z, Vec3::ONE]];
+            let shares = if alpha { &[0.25, 0.5, 1.0][..] } else { &[] };
+            let mut bytes = Vec::new();
+            let written = FORMAT.write_rows(strip, &mut bytes, |out| {
+                rows.iter().try_for_each(|row| out.row(row, shares)).map_err(Box::<dyn std::error::Error>::from)
+            });
+            written.unwrap();
+            let file = tempfile::NamedTempFile::new().unwrap();
+            std::fs::write(file.path(), &bytes).unwrap();
+            let back = read_all_flat_layers_from_file(file.path()).unwrap();
+            let channels = &back.layer_data[0].channel_data.list;
+            let values = |name: &str| channels.iter().find(|c| c.name.eq(name)).map(|c| c.sample_data.clone());
+            for (axis, name) in ["R", "G", "B"].into_iter().enumerate() {
+                let expected = rows.iter().flatten().map(|pixel| pixel[axis]).collect();
+                assert_eq!(values(name), Some(FlatSamples::F32(expected)), "{name}");
+            }
+            let expected = alpha.then(|| FlatSamples::F32([shares, shares].concat()));
+            assert_eq!(values("A"), expected);
+        }
+        let strip = Strip { width: 1 << 30, height: 1, alpha: false, display: Default::default() };
+        assert!(head_of_rows(&strip).is_err());
     }
 
     #[test]

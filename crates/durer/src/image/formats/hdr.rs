@@ -39,7 +39,7 @@ static ROWS: RowFormat = RowFormat {
     head: |Strip { width, height, .. }| {
         Ok(format!("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n").into_bytes())
     },
-    row: |strip, pixels, _, out| {
+    row: |strip, _, pixels, _, out| {
         let row: Vec<[u8; 4]> = pixels.iter().map(|&pixel| rgbe(pixel)).collect();
         if !PACKED_WIDTHS.contains(&strip.width) {
             out.extend(row.as_flattened());

@@ -76,7 +76,7 @@ fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |_| Ok(Vec::new()),
-    row: |strip, pixels, coverage, out| {
+    row: |strip, _, pixels, coverage, out| {
         let channels = if strip.alpha { 4 } else { 3 };
         strip.eight_bit(pixels, coverage, |rgba| out.extend(&rgba[..channels]));
     },

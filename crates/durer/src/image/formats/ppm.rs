@@ -23,7 +23,7 @@ pub const FORMAT: Format = Format {
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
-    row: |strip, pixels, coverage, out| {
+    row: |strip, _, pixels, coverage, out| {
         // There is no place for alpha.
         Strip { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
     },

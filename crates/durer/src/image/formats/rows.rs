@@ -11,8 +11,8 @@ pub struct RowFormat {
     pub bottom_up: bool,
     /// What stands before the rows.
     pub(super) head: fn(&Strip) -> Result<Vec<u8>, ImageError>,
-    /// Appends the bytes of a row.
-    pub(super) row: fn(&Strip, &[Vec3], &[f32], &mut Vec<u8>),
+    /// Appends the bytes of a row, whose number in the file is given.
+    pub(super) row: fn(&Strip, u32, &[Vec3], &[f32], &mut Vec<u8>),
     /// Whether all that is packed by PNG's own rules, its head with it.
     pub(super) png: bool,
 }
@@ -57,6 +57,8 @@ impl Strip {
 pub struct RowWriter<'w> {
     format: &'static RowFormat,
     strip: Strip,
+    /// The number of the next row.
+    next: u32,
     out: &'w mut dyn Write,
     bytes: Vec<u8>,
 }
@@ -78,7 +80,7 @@ impl Format {
         let head = (format.head)(&strip)?;
         if !format.png {
             out.write_all(&head)?;
-            return rows(&mut RowWriter { format, strip, out, bytes: Vec::new() });
+            return rows(&mut RowWriter { format, strip, next: 0, out, bytes: Vec::new() });
         }
         let mut encoder = png::Encoder::new(out, strip.width, strip.height);
         encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
@@ -86,7 +88,7 @@ impl Format {
         encoder.set_compression(png::Compression::Fast);
         let mut file = encoder.write_header().map_err(io::Error::from)?;
         let mut packed = file.stream_writer().map_err(io::Error::from)?;
-        let made = rows(&mut RowWriter { format, strip, out: &mut packed, bytes: Vec::new() })?;
+        let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed, bytes: Vec::new() })?;
         packed.finish().map_err(io::Error::from)?;
         file.finish().map_err(io::Error::from)?;
         Ok(made)
@@ -100,7 +102,8 @@ impl RowWriter<'_> {
     /// Those of the file.
     pub fn row(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
         self.bytes.clear();
-        (self.format.row)(&self.strip, pixels, coverage, &mut self.bytes);
+        (self.format.row)(&self.strip, self.next, pixels, coverage, &mut self.bytes);
+        self.next += 1;
         self.out.write_all(&self.bytes)
     }
 }
@@ -115,8 +118,9 @@ pub(super) fn encode(
     for layer in layers {
         let strip = Strip::of(layer, options);
         out.extend((rows.head)(&strip)?);
+        let mut next = 0..;
         layer.try_rows(rows.bottom_up, |pixels, coverage| {
-            (rows.row)(&strip, pixels, coverage, out);
+            next.by_ref().take(1).for_each(|row| (rows.row)(&strip, row, pixels, coverage, out));
             Ok(())
         })?;
     }

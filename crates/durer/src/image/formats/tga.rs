@@ -36,7 +36,7 @@ static ROWS: RowFormat = RowFormat {
         // No identification, no palette, origin at the lower left.
         Ok(vec![0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits])
     },
-    row: |strip, pixels, coverage, out| {
+    row: |strip, _, pixels, coverage, out| {
         let channels = if strip.alpha { 4 } else { 3 };
         strip.eight_bit(pixels, coverage, |[r, g, b, a]| out.extend(&[b, g, r, a][..channels]));
     },
