@@ -5,8 +5,8 @@ mod course;
 mod firefly;
 mod text;
 
-use super::confidence::{ErrorBound, corrected};
 use super::aim::PixelSample;
+use super::confidence::{ErrorBound, corrected};
 use super::samples::Samples;
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};

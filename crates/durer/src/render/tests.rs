@@ -2,11 +2,11 @@
 
 use super::verify::{Way, compare};
 use super::*;
-use crate::compile::testing;
 use crate::bvh::RayCount;
-use crate::film::{Film, Filter};
+use crate::compile::testing;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
+use crate::film::{Film, Filter};
 use crate::image::{Depth, FORMATS, WriteOptions, read};
 use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
