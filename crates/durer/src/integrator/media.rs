@@ -88,6 +88,9 @@ impl Media {
 
     /// What it is after entering a thing.
     pub fn entered(&self, medium: Body) -> Self {
+        if self.is_air() {
+            return Media::only(medium);
+        }
         let mut inside = self.0.clone();
         let behind = inside.iter().rev().take_while(|other| !medium.fills(other, true)).count();
         inside.insert(inside.len() - behind, medium);
@@ -96,6 +99,9 @@ impl Media {
 
     /// What it is after leaving an object.
     pub fn left(&self, object: u32) -> Self {
+        if let [only] = &self.0[..] {
+            return if only.object == object { Media::default() } else { Media::only(*only) };
+        }
         let mut inside = self.0.clone();
         if let Some(place) = inside.iter().rposition(|medium| medium.object == object) {
             inside.remove(place);

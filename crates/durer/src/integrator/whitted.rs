@@ -91,12 +91,6 @@ struct Lit<'w> {
     scattered: Color,
 }
 
-impl<'w> Lit<'w> {
-    fn new(part: Part<'w>) -> Self {
-        Lit { part, diffuse: Color::ZERO, scattered: Color::ZERO }
-    }
-}
-
 impl Integrate for Whitted<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
@@ -112,7 +106,7 @@ impl Integrate for Whitted<'_> {
     }
 }
 
-impl Whitted<'_> {
+impl<'w> Whitted<'w> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
         self.camera_ray(ray, tally, |ray, tally| self.world.closest_along(ray, tally))
@@ -160,13 +154,15 @@ impl Whitted<'_> {
     /// share.
     #[inline]
     fn shade<T: TraceListener>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
+        let lit = |part: Part<'w>| {
+            let diffuse = self.world.diffuse_color(part.phong, &at.surface);
+            Lit { part, diffuse, scattered: Color::ZERO }
+        };
         match &self.world.materials()[at.material as usize] {
             // Nearly always; what is known of one stays in registers.
-            Material::Phong(phong) => {
-                self.shade_all(at, &mut [Lit::new(Part { phong, share: 1.0 })], passage, path, tally)
-            }
+            Material::Phong(phong) => self.shade_all(at, &mut [lit(Part { phong, share: 1.0 })], passage, path, tally),
             Material::Solid(..) => {
-                let mut all: SmallVec<[Lit; 2]> = self.world.parts(at).into_iter().map(Lit::new).collect();
+                let mut all: SmallVec<[Lit; 2]> = self.world.parts(at).into_iter().map(lit).collect();
                 self.shade_all(at, &mut all, passage, path, tally)
             }
         }
@@ -189,8 +185,7 @@ impl Whitted<'_> {
         tally.hit(|| hit_record(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
-            for Lit { part, diffuse, .. } in all.iter_mut() {
-                *diffuse = self.world.diffuse_color(part.phong, surface);
+            for Lit { part, diffuse, .. } in all.iter() {
                 let met = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
                 tally.begin(|| TermKind::Ambient { share: part.share });
@@ -482,7 +477,7 @@ pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there)
 }
 
 /// Diffuse term and highlight of one light.
-#[inline]
+#[inline(always)]
 fn direct<T: TraceListener>(
     phong: &Phong,
     diffuse: Color,

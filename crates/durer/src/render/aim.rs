@@ -58,6 +58,10 @@ impl Batch {
         self.len == BATCH
     }
 
+    pub(super) fn is_empty(&self) -> bool {
+        self.len == 0
+    }
+
     /// All of them; then there are none.
     pub(super) fn take(&mut self) -> &[(Pixel, u32)] {
         let len = std::mem::take(&mut self.len);

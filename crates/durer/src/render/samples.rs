@@ -170,7 +170,11 @@ impl<'a> Samples<'a> {
         self.check()
     }
 
+    /// Adds some samples, of which there are none left then.
     fn add_batch(&self, film: &mut Film, batch: &mut Batch, at: &At, rays: &mut RayCount) -> Result<(), Stopped> {
+        if batch.is_empty() {
+            return Ok(());
+        }
         let (aimed, weights) = self.aim.batch(batch);
         let hits = self.integrator.first_hits(&aimed);
         for (i, (pixel, sample)) in batch.take().iter().enumerate() {

@@ -56,14 +56,10 @@ impl World {
             mesh_textures: self.rules().has(Compat::MeshTextures),
         };
         let material = self.material_of(&hit);
-        // Made where it stays, as the last thing: a copy of what was just written takes long.
-        Interaction {
-            surface: object.surface(ray, point, &crossing, hit.part, quirks),
-            ray: *ray,
-            hit,
-            material,
-            width: 0.0,
-        }
+        let surface = object.own_surface(ray, point, &crossing, hit.part, quirks);
+        let mut at = Interaction { surface, ray: *ray, hit, material, width: 0.0 };
+        object.place(&mut at.surface, ray, &crossing, quirks);
+        at
     }
 
     /// The number of the material at a hit.

@@ -307,14 +307,11 @@ impl World {
     /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
     #[inline]
     pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
-        let seen = self.lights()[light].illuminate(point);
-        match self.profiles().get(light) {
-            Some(Some(profile)) => {
-                let candela = profile.at(self.lights()[light].in_profile(-seen.to_light));
-                Illumination { color: candela * seen.color, ..seen }
-            }
-            _ => seen,
+        let mut seen = self.lights()[light].illuminate(point);
+        if let Some(Some(profile)) = self.profiles().get(light) {
+            seen.color = profile.at(self.lights()[light].in_profile(-seen.to_light)) * seen.color;
         }
+        seen
     }
 
     /// The colour that a ray sees that hits nothing.

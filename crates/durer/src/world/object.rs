@@ -157,7 +157,6 @@ impl Object {
     }
 
     /// The surface in world space, at a crossing that is next to this point of object space.
-    #[inline]
     pub(super) fn surface(
         &self,
         ray: &Ray64,
@@ -166,11 +165,34 @@ impl Object {
         part: u32,
         quirks: PlacementQuirks,
     ) -> Surface {
-        let mut surface = match &self.geometry {
+        let mut surface = self.own_surface(ray, point, crossing, part, quirks);
+        self.place(&mut surface, ray, crossing, quirks);
+        surface
+    }
+
+    /// The same before it is placed: in object space, but for solids.
+    pub(super) fn own_surface(
+        &self,
+        ray: &Ray64,
+        point: DVec3,
+        crossing: &ShapeHit,
+        part: u32,
+        quirks: PlacementQuirks,
+    ) -> Surface {
+        match &self.geometry {
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
-            Geometry::Solid(solid) => return solid.surface(ray, crossing, part, quirks),
-        };
+            Geometry::Solid(solid) => solid.surface(ray, crossing, part, quirks),
+        }
+    }
+
+    /// Places such a surface in the world. It stays where it lies in memory, for a copy of what was
+    /// just written takes long.
+    #[inline]
+    pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, quirks: PlacementQuirks) {
+        if matches!(self.geometry, Geometry::Solid(_)) {
+            return;
+        }
         let shading = |to_world: &Affine, n: Vec3| match quirks.moved_normals {
             true => to_world.vector(n).normalize_or(n),
             false => to_world.normal(n),
@@ -198,7 +220,6 @@ impl Object {
         } else {
             surface.error += surface.bulge(surface.error);
         }
-        surface
     }
 
     /// The object's first hit in the ray's interval.
