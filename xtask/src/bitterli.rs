@@ -8,7 +8,7 @@ use durer::image::compare::{Options, Picture, Scale, compare};
 use durer::image::{Image, Layer, WriteOptions, format_for, read, save};
 use durer::integrator::{Method, PhotonParameters};
 use durer::math::Vec3;
-use durer::render::{Control, Job, Part, Sampling, Shard};
+use durer::render::{Control, Job, PartialRender, Sampling, Shard};
 use durer::{LoadOptions, load};
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -132,7 +132,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
         settings: durer::integrator::Settings { bounces, ..usual.settings },
         ..usual
     };
-    let part = Part::new(&world, &job, Shard::WHOLE)?;
+    let part = PartialRender::new(&world, &job, Shard::WHOLE)?;
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     let rendered = part.pictures()?;
     let ours = &rendered.layers.first().context("a picture")?.image;

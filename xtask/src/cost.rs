@@ -7,7 +7,7 @@ use durer::diag::{Diagnostics, Files};
 use durer::film::{Film, Filter};
 use durer::integrator::Whitted;
 use durer::math::{Vec2, Vec3};
-use durer::render::{Control, Job, Part, Sampling, Shard, camera_ray, raster};
+use durer::render::{Control, Job, PartialRender, Sampling, Shard, camera_ray, raster};
 use durer::sampler::{Sampler, hash};
 use durer::world::World;
 use durer::{LoadOptions, load};
@@ -158,8 +158,8 @@ fn latency(world: &World, number: u32) -> Duration {
     let after = Duration::from_micros(hash(1, number, 0, 0, 0) % 400_000);
     std::thread::scope(|scope| {
         let render = scope.spawn(|| {
-            let stop =
-                Part::new(world, &job, Shard::WHOLE).and_then(|part| part.render(world, &control, &mut |_, _| {}));
+            let stop = PartialRender::new(world, &job, Shard::WHOLE)
+                .and_then(|part| part.render(world, &control, &mut |_, _| {}));
             (stop, Instant::now())
         });
         std::thread::sleep(after);

@@ -7,7 +7,7 @@ use durer::film::Filter;
 use durer::image::{Image, Layer, WriteOptions, format_for, read_srgb, save};
 use durer::integrator::Method;
 use durer::math::Vec3;
-use durer::render::{Control, Job, Part, Sampling, Shard};
+use durer::render::{Control, Job, PartialRender, Sampling, Shard};
 use durer::scene::{Staging, View};
 use durer::{LoadOptions, load};
 use std::path::{Path, PathBuf};
@@ -97,7 +97,7 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     let world = loaded.compile(&options, &mut files, &mut diagnostics).with_context(|| complaint(&diagnostics))?;
     let sampling = Sampling::Filtered { samples, filter: Filter::Box { radius: 0.5 } };
     let job = Job { width: SIDE, height: SIDE, sampling, method: Method::PATH, ..Job::default() };
-    let part = Part::new(&world, &job, Shard::WHOLE)?;
+    let part = PartialRender::new(&world, &job, Shard::WHOLE)?;
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     Ok(Image::clone(&part.pictures()?.layers.first().context("a picture")?.image))
 }

@@ -4,7 +4,7 @@
 use crate::build::durer;
 use anyhow::{Context, Result, bail, ensure};
 use durer::image::{FORMATS, read};
-use durer::render::Part;
+use durer::render::PartialRender;
 use durer::sampler::hash;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
             match name.as_str() {
                 "p.exr" => drop(read(&fs::read(path)?, &name).with_context(|| format!("torn: {name}"))?),
                 "p.exr.part" => {
-                    Part::read(&fs::read(path)?).with_context(|| format!("torn: {name}"))?;
+                    PartialRender::read(&fs::read(path)?).with_context(|| format!("torn: {name}"))?;
                     parts += 1;
                 }
                 _ => litter += 1,

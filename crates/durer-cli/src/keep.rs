@@ -7,7 +7,7 @@ use crate::output::{encode, format, lengthened, wrote};
 use crate::terminal::complain;
 use crate::{progress, report};
 use durer::image::{Destination, Display, Format, save_all};
-use durer::render::{Panicked, Part, PartError, RenderEvent};
+use durer::render::{Panicked, PartError, PartialRender, RenderEvent};
 use durer::source::Source;
 use std::cell::Cell;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub struct Keeper {
     /// Whether that is what the user wants in the end, and not only until the picture is there.
     wanted: bool,
     /// What was saved before and is gone on with.
-    saved: Cell<Option<Box<Part>>>,
+    saved: Cell<Option<Box<PartialRender>>>,
     resume: bool,
     restart: bool,
     quiet: bool,
@@ -93,7 +93,7 @@ impl Keeper {
     }
 
     /// The part that was saved, if it is to be gone on with; else a fresh one.
-    pub fn begin(&self, fresh: Part) -> Result<Part, Failure> {
+    pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
         let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
         let name = place.path().display();
         let other =
@@ -106,7 +106,7 @@ impl Keeper {
     }
 
     /// Saves work and preview.
-    pub fn watch(&self, part: &Part, moment: RenderEvent) {
+    pub fn watch(&self, part: &PartialRender, moment: RenderEvent) {
         let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
         if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
             let before = Instant::now();
@@ -128,10 +128,10 @@ impl Keeper {
     }
 
     /// Whether what is left of the work takes longer than saving does.
-    fn is_worth_saving(&self, part: &Part) -> bool {
+    fn is_worth_saving(&self, part: &PartialRender) -> bool {
         let (all, done) = part.work();
         let left = self.start.elapsed().as_secs_f64() * all.saturating_sub(done) as f64 / done.max(1) as f64;
-        let bytes = Part::bytes_needed(part.job(), part.shard());
+        let bytes = PartialRender::bytes_needed(part.job(), part.shard());
         let saving = self.saving.get().map_or(bytes as f64 / SAVED_PER_SECOND as f64, |saving| saving.as_secs_f64());
         left > saving
     }
@@ -143,7 +143,7 @@ impl Keeper {
     }
 
     /// Saves a part that is wanted.
-    pub fn save(&self, part: &Part) -> Result<(), Failure> {
+    pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
         save_part(place, part).map_err(|error| Failure::Other(anyhow::anyhow!(error)))?;
@@ -152,7 +152,7 @@ impl Keeper {
     }
 
     /// The picture is saved. Work that is finished is not needed any more.
-    pub fn done(&self, part: &Part, finished: bool) {
+    pub fn done(&self, part: &PartialRender, finished: bool) {
         let Some(place) = &self.place else { return };
         if !finished && (self.wanted || self.resume) {
             if let Err(error) = save_part(place, part) {
@@ -169,7 +169,7 @@ impl Keeper {
     }
 
     /// Saves what is there. The names of the files that were written.
-    pub fn after_interrupt(&self, part: &Part) -> Vec<String> {
+    pub fn after_interrupt(&self, part: &PartialRender) -> Vec<String> {
         let due = |place: &&Destination| part.work().1 > 0 && !place.is_stream();
         let Some(place) = self.place.as_ref().filter(due) else { return Vec::new() };
         progress::saving();
@@ -183,7 +183,7 @@ impl Keeper {
     }
 
     /// Saves what is there after an error in this program, and says how to see it again.
-    pub fn after_panic(&self, part: &Part, panicked: &Panicked, command: &str) -> Failure {
+    pub fn after_panic(&self, part: &PartialRender, panicked: &Panicked, command: &str) -> Failure {
         let saved = self.after_interrupt(part);
         let kept = if saved.is_empty() { String::new() } else { format!("\nwhat was made is in {}", saved.join("")) };
         Failure::Other(anyhow::anyhow!("{panicked}\nto see it alone: {command}{kept}"))
@@ -192,7 +192,7 @@ impl Keeper {
 
 /// What was saved in a file and is to be gone on with. Refuses to replace what is no part at all,
 /// and without `--resume` or `--restart` what is not finished.
-fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, Failure> {
+fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
     let name = path.display();
     if !path.exists() {
         return Ok(None);
@@ -219,7 +219,7 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<Part>>, F
     Err(bad(format!("there is unfinished work in `{name}`, {percent} % done: --resume goes on with it, {restart}")))
 }
 
-fn percent(part: &Part) -> u64 {
+fn percent(part: &PartialRender) -> u64 {
     let (all, done) = part.work();
     100 * done / all.max(1)
 }
@@ -231,11 +231,11 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     let mut start = Vec::new();
     let wrong = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
     match std::fs::File::open(path) {
-        Ok(file) => file.take(Part::MAGIC.len() as u64).read_to_end(&mut start).map(drop).map_err(wrong)?,
+        Ok(file) => file.take(PartialRender::MAGIC.len() as u64).read_to_end(&mut start).map(drop).map_err(wrong)?,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
         Err(error) => return Err(wrong(error)),
     }
-    match Part::MAGIC.starts_with(&start) {
+    match PartialRender::MAGIC.starts_with(&start) {
         true => Ok(()),
         false => Err(format!(
             "`{}` is no part of a picture, and is not replaced by one: choose another name",
@@ -245,7 +245,7 @@ fn check_is_part(path: &Path) -> Result<(), String> {
 }
 
 /// Saves a part, over nothing but a part.
-fn save_part(place: &Destination, part: &Part) -> Result<(), String> {
+fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
     if !place.is_stream() {
         check_is_part(place.path())?;
     }
@@ -253,12 +253,12 @@ fn save_part(place: &Destination, part: &Part) -> Result<(), String> {
 }
 
 /// Reads a part from a file.
-pub fn read_part(path: &Path) -> Result<Part, Failure> {
+pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
     read_part_of(path)?.map_err(|error| bad(format!("`{}` cannot be used: {error}", path.display())))
 }
 
-fn read_part_of(path: &Path) -> Result<Result<Part, PartError>, Failure> {
+fn read_part_of(path: &Path) -> Result<Result<PartialRender, PartError>, Failure> {
     let name = path.display().to_string();
     let bytes = Source::folder(".").budget(u64::MAX).read_path(path, &name).map_err(report::unreadable)?;
-    Ok(Part::read(&bytes))
+    Ok(PartialRender::read(&bytes))
 }

@@ -12,7 +12,7 @@ use crate::terminal::{complain, say};
 use crate::{check, diagrams, job, large, output, progress};
 use durer::compile::Kept;
 use durer::image::checked_count;
-use durer::render::{Bands, Control, Job, Panicked, Part, RenderError, RenderOutcome, Shard, ShardBy, replay};
+use durer::render::{Bands, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, replay};
 use durer::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -96,7 +96,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     stages.ends("reading");
     let job = job::job(&args.job, Some(&args.view), &scene.loaded, args.work.time.is_some())?;
     let window = job.window();
-    let mut needed = Part::bytes_needed(&job, shard);
+    let mut needed = PartialRender::bytes_needed(&job, shard);
     let bands = match &target {
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
@@ -150,7 +150,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         }
         diagrams::check(&job, args.view.zoom).map_err(failed)?;
     }
-    let part = keeper.begin(Part::new(&opened.world, &job, shard).map_err(failed)?)?;
+    let part = keeper.begin(PartialRender::new(&opened.world, &job, shard).map_err(failed)?)?;
     let stop = progress::watch(&control, args.quiet, || {
         part.render(&opened.world, &control, &mut |part, moment| keeper.watch(part, moment))
     })
@@ -215,7 +215,7 @@ fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
 
 /// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty:
 /// it may replace a better one.
-fn stopped(args: &RenderArgs, part: &Part, keeper: &Keeper, target: Option<&Target>) -> Failure {
+fn stopped(args: &RenderArgs, part: &PartialRender, keeper: &Keeper, target: Option<&Target>) -> Failure {
     let mut written = keeper.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
         let display = args.display.display().unwrap_or_default();

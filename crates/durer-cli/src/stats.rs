@@ -2,7 +2,7 @@
 
 use crate::failure::{Failure, failed};
 use crate::terminal::complain;
-use durer::render::{Part, Profile, profile};
+use durer::render::{PartialRender, Profile, profile};
 use durer::world::World;
 use std::time::{Duration, Instant};
 
@@ -28,7 +28,7 @@ impl Stages {
     }
 
     /// Tells of all stages, and of the rays of a part.
-    pub fn tell(&self, world: &World, part: &Part) -> Result<(), Failure> {
+    pub fn tell(&self, world: &World, part: &PartialRender) -> Result<(), Failure> {
         complain("time");
         for (name, time) in &self.done {
             complain(&format!("  {:>9.1} ms  {name}", time.as_secs_f64() * 1e3));

@@ -10,7 +10,7 @@ use clap::Args;
 use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
 use durer::render::verify::{Way, WayError, compare};
-use durer::render::{Control, Part, RenderError};
+use durer::render::{Control, PartialRender, RenderError};
 use durer::world::World;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -104,7 +104,8 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         }
         Ok(Ok(plain))
     });
-    let plain: Part = made.map_err(crate::failure::failed)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
+    let plain: PartialRender =
+        made.map_err(crate::failure::failed)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
     let others = levels.iter().filter(|level| **level != SimdLevel::chosen().name());

@@ -119,7 +119,7 @@ impl World {
         let asked = asked(&words)?;
         let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
         let part =
-            render::Part::new(&self.world, &job, asked.shard()).map_err(|e| PyValueError::new_err(e.to_string()))?;
+            render::PartialRender::new(&self.world, &job, asked.shard()).map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Part(Arc::new(part)))
     }
 
@@ -218,7 +218,7 @@ impl World {
 
 /// What is made of a picture.
 #[pyclass(frozen, module = "durer._durer")]
-pub struct Part(Arc<render::Part>);
+pub struct Part(Arc<render::PartialRender>);
 
 /// A picture: name, width, height, values, and the share of each pixel that is seen, if not all of
 /// each.
@@ -229,7 +229,7 @@ impl Part {
     /// From the bytes of a file.
     #[staticmethod]
     fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
-        let part = py.detach(|| render::Part::read(bytes)).map_err(failed)?;
+        let part = py.detach(|| render::PartialRender::read(bytes)).map_err(failed)?;
         Ok(Part(Arc::new(part)))
     }
 
@@ -299,7 +299,7 @@ impl Part {
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
     let whole = py.detach(|| {
-        let read = |(name, bytes): (String, Vec<u8>)| match render::Part::read(&bytes) {
+        let read = |(name, bytes): (String, Vec<u8>)| match render::PartialRender::read(&bytes) {
             Ok(part) => Ok((name, part)),
             Err(error) => Err(failed(format!("`{name}` cannot be merged: {error}"))),
         };

@@ -15,7 +15,7 @@ use crate::format::{curve, ies, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
 use crate::integrator::{Method, Settings};
 use crate::math::Vec3;
-use crate::render::{Control, Job, Part, PartError, RenderOutcome, Shard};
+use crate::render::{Control, Job, PartError, PartialRender, RenderOutcome, Shard};
 use crate::scene::Staging;
 use crate::source::{Digest, Source};
 use crate::spectrum::Curve;
@@ -147,7 +147,7 @@ pub fn picture(data: &[u8], name: &str) {
 pub fn part(data: &[u8]) {
     let mut bytes = data.to_vec();
     bytes.extend(Digest::of(data).0);
-    match Part::read(&bytes) {
+    match PartialRender::read(&bytes) {
         Ok(part) => {
             assert!(part.write() == bytes);
             part.work();
@@ -202,7 +202,7 @@ pub fn ways(data: &[u8]) {
         let loaded = crate::load_text(&path, bytes, &options, &mut files, &mut diagnostics);
         let loaded = loaded.unwrap_or_else(|| panic!("what was written is not read: {diagnostics:?}\n{text}"));
         let world = loaded.compile(&options, &mut files, &mut diagnostics)?;
-        let part = Part::new(&world, &job, Shard::WHOLE).expect("the job is possible");
+        let part = PartialRender::new(&world, &job, Shard::WHOLE).expect("the job is possible");
         let control = Control { threads: Some(1), ..Control::default() };
         match part.render(&world, &control, &mut |_, _| {}).expect("it can be rendered") {
             RenderOutcome::Finished => Some(part.hash()),

@@ -7,7 +7,7 @@ use durer::dialect::Dialect;
 use durer::format::{course, json};
 use durer::integrator::{Method, Settings};
 use durer::math::Vec3;
-use durer::render::{Control, Job, Part, Shard, render};
+use durer::render::{Control, Job, PartialRender, Shard, render};
 use durer::world::World;
 use durer::{LoadOptions, Loaded, load, load_text};
 use std::fs;
@@ -134,7 +134,7 @@ fn scenes_are_the_same_as_json_and_in_the_words_that_come_of_it() {
         let again = again.compile(&LoadOptions::default(), &mut files, &mut found).unwrap();
         let job = Job { width: 8, height: 6, method: method(&loaded), ..Job::default() };
         let hash = |world: &World| {
-            let part = Part::new(world, &job, Shard::WHOLE).unwrap();
+            let part = PartialRender::new(world, &job, Shard::WHOLE).unwrap();
             part.render(world, &Control::default(), &mut |_, _| {}).unwrap();
             part.hash()
         };

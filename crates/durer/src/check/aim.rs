@@ -1,6 +1,6 @@
 //! Where the beams of lights go.
 
-use super::probes::{Probe, ProbeGrid, Seen};
+use super::probes::{Probe, ProbeGrid, ProbeHit};
 use crate::light::{Emitter as _, Light};
 use crate::math::{Ray, Vec3};
 use crate::world::World;
@@ -34,7 +34,7 @@ pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
 
 /// The places that are seen.
 pub(super) fn places(grid: &ProbeGrid) -> Vec<Vec3> {
-    grid.seen().map(|(probe, seen): (&Probe, &Seen)| probe.ray.at(seen.t)).collect()
+    grid.seen().map(|(probe, seen): (&Probe, &ProbeHit)| probe.ray.at(seen.t)).collect()
 }
 
 /// The share of them that is in the beam of a light.

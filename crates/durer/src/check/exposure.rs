@@ -4,7 +4,7 @@
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
 use super::lights::place;
-use super::probes::Seen;
+use super::probes::ProbeHit;
 use super::scene_probe::SceneProbe;
 use super::verdict::VISIBLE;
 use crate::diag::{Diagnostic, Severity};
@@ -91,7 +91,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
                 number(factor)
             ));
     // Where the lamps alone are too much, no material is to blame.
-    let local = |seen: &Seen| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
+    let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
     let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
     if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
         let severity = if over(far, MAX_FAR) { Severity::Warning } else { Severity::Note };

@@ -1,7 +1,7 @@
 //! Lenses and eyes: focus, aperture, shift, separation; and what is seen from its edge.
 
 use super::finding::{Finding, number};
-use super::probes::{Probe, Seen};
+use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
 use super::visibility::Visibility;
 use crate::camera::{Camera, Projection, ThinLensCamera};
@@ -24,7 +24,7 @@ const FURTHEST: f32 = 0.5;
 /// The discs that what is seen becomes, as shares of the picture's larger side, and its depths.
 fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scout.world().camera_frame().forward;
-    let depth = |(probe, seen): (&Probe, &Seen)| seen.t * probe.ray.dir.dot(forward);
+    let depth = |(probe, seen): (&Probe, &ProbeHit)| seen.t * probe.ray.dir.dot(forward);
     let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
     let width = 2.0 * (sine / cosine) as f32;
     let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);

@@ -50,12 +50,12 @@ pub(super) struct Probe {
     pub pixel: (u32, u32),
     pub ray: Ray,
     pub color: Color,
-    pub seen: Option<Seen>,
+    pub seen: Option<ProbeHit>,
 }
 
 /// The surface that a camera ray meets first, and the light on it.
 #[derive(Clone, Debug)]
-pub(super) struct Seen {
+pub(super) struct ProbeHit {
     pub object: u32,
     pub material: u32,
     pub t: f32,
@@ -133,7 +133,7 @@ impl<'a> ProbeGrid<'a> {
     }
 
     /// The rays that hit something.
-    pub(super) fn seen(&self) -> impl Iterator<Item = (&Probe, &Seen)> {
+    pub(super) fn seen(&self) -> impl Iterator<Item = (&Probe, &ProbeHit)> {
         self.probes.iter().filter_map(|probe| Some((probe, probe.seen.as_ref()?)))
     }
 
@@ -210,7 +210,7 @@ impl<'a> ProbeGrid<'a> {
     }
 }
 
-impl Seen {
+impl ProbeHit {
     /// What a light does here. Lights are told of in their order.
     pub fn by(&self, light: usize) -> Option<&Lit> {
         self.lit.get(light).filter(|lit| lit.light == light)
@@ -221,7 +221,7 @@ impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
         let mut probe = Probe { pixel, ray, color: tree.color(tree.root.value), seen: None };
         let TermKind::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
-        let mut seen = Seen {
+        let mut seen = ProbeHit {
             object: hit.object,
             material: hit.material,
             t: hit.t,

@@ -53,7 +53,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
         };
         // What is out of the picture may stand there for its shadow, or its light; not if next to
         // nothing is left.
-        let own = |(_, seen): &(_, &crate::check::probes::Seen)| {
+        let own = |(_, seen): &(_, &crate::check::probes::ProbeHit)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
         };
         let left = scout.seen().filter(own).count() * 50;

@@ -1,7 +1,7 @@
 //! What each light does to what is seen, and why it does nothing.
 
 use super::aim::Aim;
-use super::probes::{Lit, ProbeGrid, Seen};
+use super::probes::{Lit, ProbeGrid, ProbeHit};
 use super::within::around;
 use crate::camera::Projection;
 use crate::light::{Emitter as _, Light, PointLight};
@@ -97,7 +97,7 @@ fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
 fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let light = &grid.world().lights()[number];
     // Clear glass shows what is behind it, not the light that falls on it.
-    let clear = |seen: &Seen| match &grid.world().materials()[seen.material as usize] {
+    let clear = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
         Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
         Material::Solid(..) => false,
     };

@@ -48,7 +48,7 @@ impl SceneFlattener<'_, '_> {
 
     /// A piece of a solid that is apart from the others becomes an object of its own.
     fn piece(&mut self, piece: Solid, span: Span) {
-        if let Solid::Part(object) = piece {
+        if let Solid::Operand(object) = piece {
             return self.objects.push(Arc::unwrap_or_clone(object));
         }
         let (count, material) = {
@@ -94,14 +94,14 @@ impl SceneFlattener<'_, '_> {
             }
             Node::Primitive(shape) => {
                 self.check_shape(shape, part.span);
-                self.shape(part, to_world).map(|object| Solid::Part(Arc::new(object)))
+                self.shape(part, to_world).map(|object| Solid::Operand(Arc::new(object)))
             }
             Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {
                 let object = self.shape(part, to_world)?;
                 if let Node::Mesh(mesh) = &part.node {
                     self.check_mesh(&object, &mesh.obj_file.path, part.span);
                 }
-                Some(Solid::Part(Arc::new(object)))
+                Some(Solid::Operand(Arc::new(object)))
             }
         }
     }

@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 
 /// What the ray through a pixel's centre found.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct AovInput {
     /// Whether the camera sees anything through this pixel.
     pub covered: bool,
     /// What it met, if anything.
@@ -30,9 +30,9 @@ pub struct Seen {
     pub illuminance: f32,
 }
 
-impl Seen {
+impl AovInput {
     /// Where the camera sees nothing.
-    pub const NOTHING: Seen = Seen {
+    pub const NOTHING: AovInput = AovInput {
         covered: false,
         hit: None,
         albedo: Vec3::ZERO,
@@ -69,7 +69,7 @@ impl Sums<'_> {
 
 /// Those rules of a scene's dialect that say how values are shown.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Look {
+pub struct DisplayRules {
     /// Normals as colours.
     pub normals: NormalsPicture,
     /// Depth as grey.
@@ -78,10 +78,10 @@ pub struct Look {
     pub compat: CompatSet,
 }
 
-impl Look {
+impl DisplayRules {
     /// The look of some rules.
     pub fn new(rules: &Rules) -> Self {
-        Look { normals: rules.normals_picture, depth: rules.depth_picture, compat: rules.compat }
+        DisplayRules { normals: rules.normals_picture, depth: rules.depth_picture, compat: rules.compat }
     }
 
     /// Whether a compatibility is on.
@@ -94,7 +94,7 @@ impl Look {
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
     /// How values are shown.
-    pub look: Look,
+    pub look: DisplayRules,
     /// Depths that become black and white; `None`: least and greatest of the picture.
     pub depth_range: Option<(f32, f32)>,
     /// What false colours stand for.
@@ -109,7 +109,7 @@ pub struct Display {
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
     /// From the ray through the pixel's centre.
-    Ray(fn(&Seen) -> Vec3),
+    Ray(fn(&AovInput) -> Vec3),
     /// From the samples of the colour.
     Sums(fn(&Sums) -> Vec3),
 }
@@ -290,7 +290,7 @@ fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
     heat(value.x / display.all.max.x.max(1.0))
 }
 
-fn of_surface(seen: &Seen, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
+fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
     seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
 }
 

@@ -13,7 +13,7 @@ use crate::light::Illumination;
 use crate::math::{Color, Ray, Ray64, Vec3, fp, gamma, reflect};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Hit, Interaction, Material, Part, Phong, World};
+use crate::world::{HighlightModel, Hit, Interaction, Material, Phong, WeightedMaterial, World};
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -84,7 +84,7 @@ struct Path<'a> {
 
 /// One of the materials that make up a point, and what was worked out of it.
 struct Lit<'w> {
-    part: Part<'w>,
+    part: WeightedMaterial<'w>,
     /// A texture or noise is looked up once for all lights.
     diffuse: Color,
     /// What it scatters of the light that is asked for.
@@ -154,13 +154,15 @@ impl<'w> Whitted<'w> {
     /// share.
     #[inline]
     fn shade<T: TraceListener>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
-        let lit = |part: Part<'w>| {
+        let lit = |part: WeightedMaterial<'w>| {
             let diffuse = self.world.diffuse_color(part.phong, &at.surface);
             Lit { part, diffuse, scattered: Color::ZERO }
         };
         match &self.world.materials()[at.material as usize] {
             // Nearly always; what is known of one stays in registers.
-            Material::Phong(phong) => self.shade_all(at, &mut [lit(Part { phong, share: 1.0 })], passage, path, tally),
+            Material::Phong(phong) => {
+                self.shade_all(at, &mut [lit(WeightedMaterial { phong, share: 1.0 })], passage, path, tally)
+            }
             Material::Solid(..) => {
                 let mut all: SmallVec<[Lit; 2]> = self.world.parts(at).into_iter().map(lit).collect();
                 self.shade_all(at, &mut all, passage, path, tally)
@@ -360,7 +362,7 @@ impl<'w> Whitted<'w> {
             return None;
         }
         let blend = match &self.world.materials()[at.material as usize] {
-            Material::Phong(phong) => Blend::of(&[Part { phong, share: 1.0 }]),
+            Material::Phong(phong) => Blend::of(&[WeightedMaterial { phong, share: 1.0 }]),
             Material::Solid(..) => Blend::of(&self.world.parts(at)),
         };
         if blend.transparent == Color::ZERO {
@@ -449,10 +451,10 @@ pub(crate) struct Blend {
 
 impl Blend {
     #[inline]
-    pub(crate) fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a Part<'w>>) -> Self {
+    pub(crate) fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {
         let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
         let mut most = 0.0;
-        for &Part { phong, share } in parts {
+        for &WeightedMaterial { phong, share } in parts {
             blend.reflective += share * phong.reflective;
             blend.transparent += share * phong.transparent;
             if share > most {

@@ -27,7 +27,7 @@ fn hash(folder: &Path, name: &str, options: &LoadOptions) -> Digest {
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap().unwrap();
     let world = loaded.compile(options, &mut files, &mut diagnostics).unwrap();
     let job = crate::render::Job { width: 24, height: 16, ..crate::render::Job::default() };
-    let part = crate::render::Part::new(&world, &job, crate::render::Shard::WHOLE).unwrap();
+    let part = crate::render::PartialRender::new(&world, &job, crate::render::Shard::WHOLE).unwrap();
     part.render(&world, &crate::render::Control::default(), &mut |_, _| {}).unwrap();
     part.hash()
 }

@@ -15,7 +15,7 @@ use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use crate::shape::{Primitive, Surface};
-use crate::world::{Geometry, HighlightModel, Hit, Interaction, Part, Phong, World};
+use crate::world::{Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -431,7 +431,7 @@ impl<'w> Pupil<'w> {
     }
 
     /// Mirrored and transmitted light.
-    fn secondary(&self, at: &Interaction, parts: &[Part], passage: Passage, path: Path) -> Color {
+    fn secondary(&self, at: &Interaction, parts: &[WeightedMaterial], passage: Passage, path: Path) -> Color {
         let habits = self.habits.bounces;
         let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
         if reflective == Color::ZERO && transparent == Color::ZERO {

@@ -1,6 +1,6 @@
 //! Pictures larger than memory: made in bands of rows, which are written and forgotten.
 
-use super::{BLOCK, Control, Crop, Job, Part, RenderError, RenderOutcome, Shard, Statistics};
+use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
 use crate::image::{Format, ImageError, Strip, WriteOptions};
 use crate::source::Digest;
 use crate::world::World;
@@ -49,7 +49,7 @@ impl Bands {
         let window = job.window();
         let bytes = |rows: u32| {
             let crop = Crop { height: rows.min(window.height), ..window };
-            Part::bytes_needed(&Job { crop: Some(crop), ..job.clone() }, Shard::WHOLE)
+            PartialRender::bytes_needed(&Job { crop: Some(crop), ..job.clone() }, Shard::WHOLE)
         };
         let fitting = memory.min(ENOUGH) / bytes(1).max(1) / u64::from(BLOCK) * u64::from(BLOCK);
         match u32::try_from(fitting).unwrap_or(u32::MAX / BLOCK * BLOCK) {
@@ -60,7 +60,7 @@ impl Bands {
 
     /// Bytes that a band takes.
     pub fn bytes_needed(&self) -> u64 {
-        self.crops().first().map_or(0, |crop| Part::bytes_needed(&self.band(*crop), Shard::WHOLE))
+        self.crops().first().map_or(0, |crop| PartialRender::bytes_needed(&self.band(*crop), Shard::WHOLE))
     }
 
     /// The parts, from top to bottom. They end where blocks end in the whole picture.
@@ -80,7 +80,7 @@ impl Bands {
     }
 
     /// Makes the picture and writes it. What was counted comes back, and the hash that
-    /// [`Part::hash`] of all of it has, for formats whose top row comes first.
+    /// [`PartialRender::hash`] of all of it has, for formats whose top row comes first.
     ///
     /// # Errors
     /// [`BandsError`]; what was written is not whole then.
@@ -107,7 +107,7 @@ impl Bands {
         format.write_rows(strip, out, |rows| {
             let (mut statistics, mut hasher) = (Statistics::default(), blake3::Hasher::new());
             for crop in crops {
-                let part = Part::new(world, &self.band(crop), Shard::WHOLE)?;
+                let part = PartialRender::new(world, &self.band(crop), Shard::WHOLE)?;
                 match part.render(world, control, &mut |_, _| {})? {
                     RenderOutcome::Finished => {}
                     RenderOutcome::Cancelled | RenderOutcome::OutOfTime => return Err(RenderError::Cancelled.into()),

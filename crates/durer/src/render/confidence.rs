@@ -12,7 +12,7 @@
 //! 2011) it is an ordinary mean over samples. As there, light is taken to be smooth within the
 //! radius: at the sharp edge of a caustic about six tenths of the bias are found.
 
-use super::part::Part;
+use super::part::PartialRender;
 use super::pictures::place;
 use super::run::whole;
 use super::{Control, Job, RenderError};
@@ -96,7 +96,7 @@ pub(super) fn corrected(method: Method) -> Option<Method> {
     }
 }
 
-impl Part {
+impl PartialRender {
     /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]:
     /// the values, and a heat map of them up to 0.1. It is made beside the work, whose sums and
     /// hash it leaves alone. Photons are followed a second time for it.
@@ -129,9 +129,9 @@ impl Part {
 
     /// The bound of each pixel, with another part that has the same samples corrected; infinite
     /// where there are none.
-    fn error_bounds(&self, other: Option<&Part>) -> Vec<f32> {
+    fn error_bounds(&self, other: Option<&PartialRender>) -> Vec<f32> {
         let (window, gain) = (self.job.window(), self.gain());
-        let (state, other) = (self.state(), other.map(Part::state));
+        let (state, other) = (self.state(), other.map(PartialRender::state));
         let mut bounds = vec![f32::INFINITY; window.pixels() as usize];
         for (index, block) in state.samples.iter().enumerate() {
             let rect = self.blocks.rect(index);

@@ -21,7 +21,7 @@ pub struct Control {
     pub memory: Option<u64>,
     /// Set by the caller to stop.
     pub cancel: AtomicBool,
-    /// All samples and rays for data that are to be done; see [`super::Part::work`].
+    /// All samples and rays for data that are to be done; see [`super::PartialRender::work`].
     pub all: AtomicU64,
     /// How many of them are done.
     pub done: AtomicU64,

@@ -1,6 +1,6 @@
 //! The colour picture without its noise.
 
-use super::part::Part;
+use super::part::PartialRender;
 use super::{Control, Job, RenderError, render};
 use crate::film::aov::Aov;
 use crate::image::denoise::{Guides, denoise};
@@ -28,7 +28,7 @@ pub struct Noisy {
     pub variance: Vec<f32>,
 }
 
-impl Part {
+impl PartialRender {
     /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside
     /// the work, whose sums and hash it leaves alone.
     ///

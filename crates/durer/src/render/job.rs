@@ -174,7 +174,9 @@ impl Job {
     }
 
     /// The pictures that come from rays through the pixels' centres.
-    pub fn ray_aovs(&self) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::Seen) -> crate::math::Vec3)> {
+    pub fn ray_aovs(
+        &self,
+    ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> crate::math::Vec3)> {
         self.aovs.iter().filter_map(|aov| match aov.value {
             Value::Ray(value) => Some((*aov, value)),
             Value::Sums(_) => None,

@@ -1,7 +1,7 @@
 //! Shards into one picture.
 
 use super::blocks::{Shard, ShardBy};
-use super::part::{Part, Sampled};
+use super::part::{BlockSamples, PartialRender};
 use super::saved::PartError;
 use crate::film::Packed;
 use std::fmt::Write;
@@ -37,7 +37,7 @@ pub enum MergeError {
     Missing(String),
     /// What is merged would be too large.
     #[error(transparent)]
-    Part(#[from] PartError),
+    PartialRender(#[from] PartError),
 }
 
 /// How many places of what is missing are listed.
@@ -48,13 +48,14 @@ const LISTED: usize = 8;
 ///
 /// # Errors
 /// [`MergeError`]: parts of other pictures, work that is in two parts, work that is in none.
-pub fn merge(parts: &[(String, Part)]) -> Result<Part, MergeError> {
+pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeError> {
     let ((first, start), rest) = parts.split_first().ok_or(MergeError::NoParts)?;
     for (name, part) in rest {
         let foreign = |error| MergeError::Foreign { name: name.clone(), first: first.clone(), error };
         start.same_picture(part).map_err(foreign)?;
     }
-    let whole = Part::empty(start.job.clone(), Shard::WHOLE, start.scene, start.look).map_err(PartError::from)?;
+    let whole =
+        PartialRender::empty(start.job.clone(), Shard::WHOLE, start.scene, start.look).map_err(PartError::from)?;
     let mut missing = String::new();
     merge_samples(parts, &whole, &mut missing)?;
     merge_rays(parts, &whole, &mut missing)?;
@@ -65,13 +66,17 @@ pub fn merge(parts: &[(String, Part)]) -> Result<Part, MergeError> {
     }
 }
 
-fn merge_samples(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> Result<(), MergeError> {
+fn merge_samples(
+    parts: &[(String, PartialRender)],
+    whole: &PartialRender,
+    missing: &mut String,
+) -> Result<(), MergeError> {
     let mut gaps = Vec::new();
     let (samples, gain) = (whole.job.sampling.samples(), whole.gain());
     let mut state = whole.state();
     for (index, merged) in state.samples.iter_mut().enumerate() {
         // What each part has of the block, by its samples.
-        let mut pieces: Vec<(&str, Sampled)> = Vec::new();
+        let mut pieces: Vec<(&str, BlockSamples)> = Vec::new();
         for (name, part) in parts {
             let piece = part.state().samples[index].clone();
             pieces.extend((piece.to > piece.from).then_some((name.as_str(), piece)));
@@ -114,7 +119,11 @@ fn merge_samples(parts: &[(String, Part)], whole: &Part, missing: &mut String) -
     Ok(())
 }
 
-fn merge_rays(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> Result<(), MergeError> {
+fn merge_rays(
+    parts: &[(String, PartialRender)],
+    whole: &PartialRender,
+    missing: &mut String,
+) -> Result<(), MergeError> {
     let mut gaps = 0;
     let mut state = whole.state();
     for (index, merged) in state.rays.iter_mut().enumerate() {
@@ -137,7 +146,7 @@ fn merge_rays(parts: &[(String, Part)], whole: &Part, missing: &mut String) -> R
 }
 
 /// Which shards are missing or not finished, where all parts are shards of one splitting.
-fn shards_missing(parts: &[(String, Part)]) -> String {
+fn shards_missing(parts: &[(String, PartialRender)]) -> String {
     let Shard { count, by, .. } = parts[0].1.shard;
     let mut text = String::new();
     if parts.iter().all(|(_, part)| part.shard.count == count && part.shard.by == by) {

@@ -38,7 +38,7 @@ pub use eye::{camera_ray, center_ray, raster};
 pub use grid::grid_picture;
 pub use job::{Job, Sampling};
 pub use merge::{MergeError, merge};
-pub use part::{Part, Statistics};
+pub use part::{PartialRender, Statistics};
 pub use pictures::Rendered;
 pub use profile::{Profile, profile};
 pub use replay::replay;

@@ -3,7 +3,7 @@
 use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::{Crop, Job, Sampling, passes};
-use crate::film::aov::Look;
+use crate::film::aov::DisplayRules;
 use crate::film::{Film, Packed, Rejected};
 use crate::image::checked_count;
 use crate::math::Vec3;
@@ -16,11 +16,11 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 ///
 /// It is locked within, so it can be rendered by one thread while another looks at it.
 #[derive(Debug)]
-pub struct Part {
+pub struct PartialRender {
     pub(super) job: Job,
     pub(super) shard: Shard,
     pub(super) scene: Digest,
-    pub(super) look: Look,
+    pub(super) look: DisplayRules,
     /// The blocks of the colour's window, and of that of the rays through centres.
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
@@ -31,14 +31,14 @@ pub struct Part {
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
     /// The samples of each block of the colour's window.
-    pub(super) samples: Vec<Sampled>,
+    pub(super) samples: Vec<BlockSamples>,
     /// What the rays through the centres of each block's pixels saw, if they were traced.
-    pub(super) rays: Vec<Option<Box<Traced>>>,
+    pub(super) rays: Vec<Option<Box<BlockAovs>>>,
 }
 
 /// The samples of one block.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Sampled {
+pub(super) struct BlockSamples {
     /// The first sample of each pixel that is in the film, and one past the last.
     pub(super) from: u32,
     pub(super) to: u32,
@@ -48,7 +48,7 @@ pub(super) struct Sampled {
     pub(super) film: Option<Packed>,
 }
 
-impl Sampled {
+impl BlockSamples {
     /// The sums of a block of these pixels, if there are any.
     pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
         self.film.as_ref().map(|film| film.film([left, top, width, height]))
@@ -57,9 +57,9 @@ impl Sampled {
 
 /// What the rays through the centres of a block's pixels saw.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Traced {
+pub(super) struct BlockAovs {
     /// What each pixel's ray found.
-    pub(super) found: Vec<Found>,
+    pub(super) found: Vec<PrimaryHit>,
     /// The values of each picture, one picture after the other.
     pub(super) values: Vec<Vec3>,
     /// Rays traced for them.
@@ -69,7 +69,7 @@ pub(super) struct Traced {
 /// What a ray through a pixel's centre found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub(super) enum Found {
+pub(super) enum PrimaryHit {
     /// The camera has no ray there.
     Blind,
     /// Nothing was hit.
@@ -103,17 +103,17 @@ impl Statistics {
     }
 }
 
-impl Part {
+impl PartialRender {
     /// A part of a picture of a world of which nothing is made yet.
     ///
     /// # Errors
     /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
-        Part::empty(job.clone(), shard, world.digest(), Look::new(world.rules()))
+        PartialRender::empty(job.clone(), shard, world.digest(), DisplayRules::new(world.rules()))
     }
 
-    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: Look) -> Result<Self, RenderError> {
+    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {
         let window = job.window();
         let inside =
             |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);
@@ -127,10 +127,10 @@ impl Part {
         check_shard(&job, shard, blocks.count())?;
         let from = shard.range(job.sampling.samples()).0;
         let count = if job.wants_samples() { blocks.count() } else { 0 };
-        let sampled = Sampled { from, to: from, ..Sampled::default() };
+        let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
         let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
         let state = Mutex::new(State { samples: vec![sampled; count], rays });
-        Ok(Part { job, shard, scene, look, blocks, ray_blocks, state })
+        Ok(PartialRender { job, shard, scene, look, blocks, ray_blocks, state })
     }
 
     /// What decides the picture.
@@ -158,7 +158,7 @@ impl Part {
     }
 
     /// Whether a block has all samples that it will get, given the size of the samples' weights.
-    pub(super) fn is_done(&self, index: usize, block: &Sampled, gain: f32) -> bool {
+    pub(super) fn is_done(&self, index: usize, block: &BlockSamples, gain: f32) -> bool {
         let end = self.shard.range(self.job.sampling.samples()).1;
         let rect = self.blocks.rect(index);
         let enough = |film: Film| self.job.is_done(&film, rect, block.to, gain);

@@ -1,7 +1,7 @@
 //! From sums and values to pictures.
 
 use super::error::RenderError;
-use super::part::{Found, Part, State, Statistics, job_text};
+use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
 use super::{Blocks, Crop};
 use crate::dialect::Compat;
 use crate::film::Film;
@@ -27,7 +27,7 @@ pub struct Rendered {
     pub attributes: Vec<(&'static str, String)>,
 }
 
-impl Part {
+impl PartialRender {
     /// The pictures of what is made so far. Pixels of which nothing is made are black.
     ///
     /// # Errors
@@ -52,8 +52,9 @@ impl Part {
                 Value::Sums(value) => self.summed(&state, value),
             };
             let (pictures, scale) = self.shown(aov, &values);
-            let (values, found): (Vec<Vec3>, Vec<Found>) = values.into_iter().unzip();
-            let coverage: Vec<f32> = found.iter().map(|found| f32::from(u8::from(*found != Found::Blind))).collect();
+            let (values, found): (Vec<Vec3>, Vec<PrimaryHit>) = values.into_iter().unzip();
+            let coverage: Vec<f32> =
+                found.iter().map(|found| f32::from(u8::from(*found != PrimaryHit::Blind))).collect();
             let from = if matches!(aov.value, Value::Ray(_)) { job.ray_window() } else { window };
             let coverage = cut(coverage, from, window);
             let layer = |pixels| -> Result<Layer, RenderError> {
@@ -98,7 +99,7 @@ impl Part {
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
         // What has too few samples to know is as uncertain as it is bright.
-        let sure = |(value, color): (&(Vec3, Found), &Color)| match value.0.x.is_finite() {
+        let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),
         };
@@ -107,13 +108,13 @@ impl Part {
     }
 
     /// The values of a picture that comes from the samples.
-    fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, Found)> {
+    fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
         let gain = self.gain();
         let none = value(&Sums { pixel: None, gain });
-        let mut pixels = vec![(none, Found::Blind); self.job.window().pixels() as usize];
+        let mut pixels = vec![(none, PrimaryHit::Blind); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
             let sums = Sums { pixel: Some((film, x, y)), gain };
-            pixels[index] = (value(&sums), Found::Hit);
+            pixels[index] = (value(&sums), PrimaryHit::Hit);
         });
         pixels
     }
@@ -130,9 +131,9 @@ impl Part {
     }
 
     /// The values of one of the pictures that come from rays.
-    fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, Found)> {
+    fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, PrimaryHit)> {
         let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
-        let mut pixels = vec![(Vec3::ZERO, Found::Blind); window.pixels() as usize];
+        let mut pixels = vec![(Vec3::ZERO, PrimaryHit::Blind); window.pixels() as usize];
         for (index, block) in state.rays.iter().enumerate() {
             let Some(block) = block else { continue };
             let values = &block.values[number * block.found.len()..];
@@ -144,22 +145,22 @@ impl Part {
     }
 
     /// Values as colours, and what false colours stand for.
-    fn shown(&self, aov: &Aov, values: &[(Vec3, Found)]) -> (Vec<Color>, LightScale) {
+    fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
             look: self.look,
             depth_range: self.job.depth_range,
             light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
-            hits: Aabb::around(values.iter().filter(|value| value.1 == Found::Hit).map(|value| value.0)),
+            hits: Aabb::around(values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)),
             all: Aabb::around(values.iter().map(|value| value.0)),
         };
-        let color = |&(value, found): &(Vec3, Found)| match found {
-            Found::Blind => Vec3::ZERO,
-            _ => (aov.picture)(value, found == Found::Hit, &display),
+        let color = |&(value, found): &(Vec3, PrimaryHit)| match found {
+            PrimaryHit::Blind => Vec3::ZERO,
+            _ => (aov.picture)(value, found == PrimaryHit::Hit, &display),
         };
         let mut picture: Vec<Color> = values.iter().map(color).collect();
         if aov.name == "normals" && self.look.has(Compat::StaleNormals) {
-            let hits: Vec<bool> = values.iter().map(|value| value.1 == Found::Hit).collect();
+            let hits: Vec<bool> = values.iter().map(|value| value.1 == PrimaryHit::Hit).collect();
             fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
         }
         (picture, display.light_scale)

@@ -52,7 +52,7 @@ impl TraceListener for RayLog {
 /// # Errors
 /// [`RenderError`] for a job that is not possible.
 pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, RenderError> {
-    super::Part::new(world, job, super::Shard::WHOLE)?;
+    super::PartialRender::new(world, job, super::Shard::WHOLE)?;
     if !job.sampling.is_local() || !job.color {
         return Ok(None);
     }

@@ -1,10 +1,10 @@
 //! The values that come from one ray through each pixel's centre.
 
-use super::part::{Found, Traced};
-use super::samples::{At, Samples, Stopped};
+use super::part::{BlockAovs, PrimaryHit};
+use super::samples::{SampleCursor, Samples, Stopped};
 use super::{Crop, Job, center_ray, raster};
 use crate::bvh::{RayCount, TraversalStats};
-use crate::film::aov::Seen;
+use crate::film::aov::AovInput;
 use crate::film::luminance_of;
 use crate::integrator::Path;
 use crate::math::Vec3;
@@ -12,7 +12,13 @@ use crate::sampler::SampleId;
 use crate::world::World;
 
 /// Traces the rays of a block.
-pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at: &At) -> Result<Traced, Stopped> {
+pub(super) fn trace(
+    world: &World,
+    job: &Job,
+    samples: &Samples,
+    rect: Crop,
+    at: &SampleCursor,
+) -> Result<BlockAovs, Stopped> {
     let raster = raster(world, job.width, job.height);
     let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
     let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
@@ -23,7 +29,7 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
         samples.check()?;
         at.set((x, y, None));
         let Some(ray) = center_ray(world, &raster, (x, y)) else {
-            seen.push(Seen::NOTHING);
+            seen.push(AovInput::NOTHING);
             continue;
         };
         let hit = world.intersect(&ray, &mut rays);
@@ -46,16 +52,16 @@ pub(super) fn trace(world: &World, job: &Job, samples: &Samples, rect: Crop, at:
             _ => 0.0,
         };
         rays.0 += counts.rays;
-        seen.push(Seen { covered: true, hit, albedo, counts, illuminance });
+        seen.push(AovInput { covered: true, hit, albedo, counts, illuminance });
     }
     samples.check()?;
     // What is no number is shown as nothing.
     let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
     let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value).map(finite)).collect();
-    let found = |seen: &Seen| match (seen.covered, seen.hit.is_some()) {
-        (false, _) => Found::Blind,
-        (true, false) => Found::Nothing,
-        (true, true) => Found::Hit,
+    let found = |seen: &AovInput| match (seen.covered, seen.hit.is_some()) {
+        (false, _) => PrimaryHit::Blind,
+        (true, false) => PrimaryHit::Nothing,
+        (true, true) => PrimaryHit::Hit,
     };
-    Ok(Traced { found: seen.iter().map(found).collect(), values, rays: rays.0 })
+    Ok(BlockAovs { found: seen.iter().map(found).collect(), values, rays: rays.0 })
 }

@@ -1,8 +1,8 @@
 //! One pixel or sample alone: to look into an error in this program, or a sample that was left out.
 
 use super::error::RenderError;
-use super::samples::{At, Samples};
-use super::{Control, Crop, Job, Part, Shard, rays};
+use super::samples::{SampleCursor, Samples};
+use super::{Control, Crop, Job, PartialRender, Shard, rays};
 use crate::bvh::RayCount;
 use crate::math::Color;
 use crate::threads;
@@ -25,7 +25,7 @@ pub fn replay(
     sample: Option<u32>,
 ) -> Result<Option<Color>, RenderError> {
     // Refuses impossible jobs.
-    Part::new(world, job, Shard::WHOLE)?;
+    PartialRender::new(world, job, Shard::WHOLE)?;
     if !job.window().holds(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));
     }
@@ -33,7 +33,7 @@ pub fn replay(
         return Err(RenderError::Shard(format!("a pixel has samples from 0 to {}", job.sampling.samples() - 1)));
     }
     let work = || {
-        let (stop, at): (_, At) = (AtomicBool::new(false), Cell::new((x, y, sample)));
+        let (stop, at): (_, SampleCursor) = (AtomicBool::new(false), Cell::new((x, y, sample)));
         let samples = Samples::new(world, job, &stop);
         let (pixel, mut count) = (Crop::pixel((x, y)), RayCount::default());
         match sample {

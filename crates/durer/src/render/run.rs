@@ -1,12 +1,12 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
 use super::error::{Panicked, RenderError};
-use super::part::{Part, Sampled, Traced, film_of, pass_ends};
-use super::samples::{At, Samples, Stopped, kept_bytes};
+use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, pass_ends};
+use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::RayCount;
 use crate::film::Packed;
-use crate::film::aov::Look;
+use crate::film::aov::DisplayRules;
 use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
@@ -65,8 +65,8 @@ pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, R
 }
 
 /// The same before it becomes pictures.
-pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Part, RenderError> {
-    let part = Part::new(world, job, Shard::WHOLE)?;
+pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
+    let part = PartialRender::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
         RenderOutcome::Finished | RenderOutcome::OutOfTime => Ok(part),
         RenderOutcome::Cancelled => Err(RenderError::Cancelled),
@@ -74,7 +74,7 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Part,
     }
 }
 
-impl Part {
+impl PartialRender {
     /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
     ///
     /// `watch` is called in the calling thread at the end of each pass and when it is time to save,
@@ -87,15 +87,15 @@ impl Part {
         &self,
         world: &World,
         control: &Control,
-        watch: &mut dyn FnMut(&Part, RenderEvent),
+        watch: &mut dyn FnMut(&PartialRender, RenderEvent),
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.look != Look::new(world.rules()) {
+        if self.scene != world.digest() || self.look != DisplayRules::new(world.rules()) {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         let kept = kept_bytes(&self.job, tile).saturating_mul(threads as u64);
-        let needed = Part::bytes_needed(&self.job, self.shard).saturating_add(kept);
+        let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(kept);
         if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
             return Err(RenderError::Memory { needed, allowed });
         }
@@ -175,7 +175,7 @@ struct Clock<'a> {
 }
 
 impl Clock<'_> {
-    fn look(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent)) {
+    fn look(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         if self.control.cancel.load(Relaxed) {
             self.stop.store(true, Relaxed);
         }
@@ -188,7 +188,7 @@ impl Clock<'_> {
         }
     }
 
-    fn passed(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent)) {
+    fn passed(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
         self.whole = true;
         self.look(part, watch);
         if self.last.elapsed() >= self.pause {
@@ -196,7 +196,7 @@ impl Clock<'_> {
         }
     }
 
-    fn call(&mut self, part: &Part, watch: &mut dyn FnMut(&Part, RenderEvent), moment: RenderEvent) {
+    fn call(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent), moment: RenderEvent) {
         // Who wants to stop does not want to wait for this; all is saved in the end.
         if self.stop.load(Relaxed) {
             return;
@@ -213,7 +213,7 @@ type Alone<'a> = Option<&'a mut dyn FnMut()>;
 
 /// What the working threads share.
 struct Work<'a> {
-    part: &'a Part,
+    part: &'a PartialRender,
     world: &'a World,
     control: &'a Control,
     samples: Samples<'a>,
@@ -228,7 +228,7 @@ impl Work<'_> {
     /// Traces the rays through the centres of pixels where that was not done.
     fn rays(&self, alone: Alone) {
         let part = self.part;
-        let open = |(index, block): (usize, &Option<Box<Traced>>)| {
+        let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
             (block.is_none() && part.shard.has_rays(index)).then_some(index)
         };
         let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
@@ -254,7 +254,7 @@ impl Work<'_> {
             self.samples.integrator.prepare(end - 1);
         }
         let (part, gain) = (self.part, self.samples.gain());
-        let open = |(index, block): (usize, &Sampled)| {
+        let open = |(index, block): (usize, &BlockSamples)| {
             let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
             wanted.then_some(index)
         };
@@ -266,7 +266,7 @@ impl Work<'_> {
     }
 
     /// Adds samples to the blocks of a tile.
-    fn sample(&self, tile: &[usize], end: u32, at: &At) -> Result<(), Stopped> {
+    fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Stopped> {
         let part = self.part;
         let mut made = Vec::with_capacity(tile.len());
         let (mut taken, mut traced) = (0, 0);
@@ -288,7 +288,7 @@ impl Work<'_> {
 
     /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it
     /// is a rectangle, else block by block.
-    fn finish(&self, tile: &[usize], at: &At) -> Result<(), Stopped> {
+    fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Stopped> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
         let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
@@ -307,14 +307,14 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            made.push(Sampled { from: 0, to: 1, rays: rays.0 - before, film: Some(Packed::new(film)) });
+            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film: Some(Packed::new(film)) });
             before = rays.0;
         }
         self.keep(tile, made, around.pixels(), rays.0);
         Ok(())
     }
 
-    fn keep(&self, tile: &[usize], made: Vec<Sampled>, done: u64, rays: u64) {
+    fn keep(&self, tile: &[usize], made: Vec<BlockSamples>, done: u64, rays: u64) {
         let mut state = self.part.state();
         for (&index, block) in tile.iter().zip(made) {
             state.samples[index] = block;
@@ -329,13 +329,18 @@ impl Work<'_> {
 
     /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that
     /// knows its sample.
-    fn each(&self, tiles: &[Vec<usize>], alone: Alone, make: impl Fn(&[usize], &At) -> Result<(), Stopped> + Sync) {
+    fn each(
+        &self,
+        tiles: &[Vec<usize>],
+        alone: Alone,
+        make: impl Fn(&[usize], &SampleCursor) -> Result<(), Stopped> + Sync,
+    ) {
         let one = |tile: &Vec<usize>| {
             if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
                 self.stop.store(true, Relaxed);
             }
             self.samples.check()?;
-            let at: At = Cell::new((0, 0, None));
+            let at: SampleCursor = Cell::new((0, 0, None));
             catch_unwind(AssertUnwindSafe(|| make(tile, &at))).unwrap_or_else(|payload| {
                 let (x, y, sample) = at.get();
                 let text = payload.downcast_ref::<String>().map(String::as_str);

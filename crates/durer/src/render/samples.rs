@@ -23,7 +23,7 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 pub(super) struct Stopped;
 
 /// Column, row and number of the sample that a thread is at.
-pub(super) type At = Cell<(u32, u32, Option<u32>)>;
+pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
 
 /// Where the samples of a job lie, with their colours: for its diagram.
 ///
@@ -152,7 +152,7 @@ impl<'a> Samples<'a> {
         film: &mut Film,
         part: Crop,
         range: Range<u32>,
-        at: &At,
+        at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
@@ -171,7 +171,13 @@ impl<'a> Samples<'a> {
     }
 
     /// Adds some samples, of which there are none left then.
-    fn add_batch(&self, film: &mut Film, batch: &mut Batch, at: &At, rays: &mut RayCount) -> Result<(), Stopped> {
+    fn add_batch(
+        &self,
+        film: &mut Film,
+        batch: &mut Batch,
+        at: &SampleCursor,
+        rays: &mut RayCount,
+    ) -> Result<(), Stopped> {
         if batch.is_empty() {
             return Ok(());
         }
@@ -209,7 +215,12 @@ impl<'a> Samples<'a> {
 
     /// The finished pixels of a part with their coverage, for samplings whose samples count for
     /// other pixels too. Samples around the part that are needed for it are taken for it alone.
-    pub(super) fn finished(&self, part: Crop, at: &At, rays: &mut RayCount) -> Result<Vec<(Color, f32)>, Stopped> {
+    pub(super) fn finished(
+        &self,
+        part: Crop,
+        at: &SampleCursor,
+        rays: &mut RayCount,
+    ) -> Result<Vec<(Color, f32)>, Stopped> {
         let show = Show::default();
         let colors = self.shown(&show, part, at, rays)?;
         if !show.blind.get() {
@@ -219,7 +230,7 @@ impl<'a> Samples<'a> {
         Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
     }
 
-    fn shown(&self, show: &Show, part: Crop, at: &At, rays: &mut RayCount) -> Result<Vec<Color>, Stopped> {
+    fn shown(&self, show: &Show, part: Crop, at: &SampleCursor, rays: &mut RayCount) -> Result<Vec<Color>, Stopped> {
         match self.job.sampling {
             Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
                 self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
@@ -242,7 +253,7 @@ impl<'a> Samples<'a> {
         part: Crop,
         sampling: (Sampler, u32),
         filter: CourseFilter,
-        at: &At,
+        at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<Vec<Color>, Stopped> {
         let around = part.grown(filter.support(), self.job.whole());
@@ -257,7 +268,7 @@ impl<'a> Samples<'a> {
         show: &Show,
         part: Crop,
         sampling: (Sampler, u32),
-        at: &At,
+        at: &SampleCursor,
         counted: impl Fn(u32, u32) -> bool,
         rays: &mut RayCount,
     ) -> Result<StoredSamples, Stopped> {
@@ -279,7 +290,7 @@ impl<'a> Samples<'a> {
         show: &Show,
         part: Crop,
         (jitter, blurred): (bool, bool),
-        at: &At,
+        at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<Vec<Color>, Stopped> {
         let grid = SubPixels::new(self.job, part, jitter, blurred);

@@ -15,7 +15,7 @@
 //!
 //! Numbers are those of [`crate::film::bytes`]; a text is its length and its bytes.
 
-use super::part::{Found, Part, Sampled, Traced, film_of, job_text};
+use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
 use super::{Job, RenderError, Shard};
 use crate::film::Packed;
 use crate::film::bytes::{Bytes, put};
@@ -67,7 +67,7 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
 /// Blocks that are written at once: what works meanwhile waits for no more.
 const CHUNK: usize = 256;
 
-impl Content for Part {
+impl Content for PartialRender {
     /// Its bytes, made a few at a time: a second copy of all of them would need as much memory
     /// again.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
@@ -97,13 +97,13 @@ impl Content for Part {
     }
 }
 
-impl Content for &Part {
+impl Content for &PartialRender {
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        Part::write_to(self, out)
+        PartialRender::write_to(self, out)
     }
 }
 
-impl Part {
+impl PartialRender {
     /// How files of parts begin.
     pub const MAGIC: &[u8; 8] = b"DURERPRT";
 
@@ -115,7 +115,7 @@ impl Part {
     }
 
     fn head(&self) -> Vec<u8> {
-        let mut out = Part::MAGIC.to_vec();
+        let mut out = PartialRender::MAGIC.to_vec();
         put(&mut out, FORMAT.into());
         put_text(&mut out, VERSION);
         out.extend(self.scene.0);
@@ -156,17 +156,17 @@ impl Part {
     /// Reads a part.
     ///
     /// # Errors
-    /// [`PartError`] for anything but what [`Part::write`] of this version gives.
-    pub fn read(bytes: &[u8]) -> Result<Part, PartError> {
-        if !bytes.starts_with(Part::MAGIC) {
-            return Err(if Part::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
+    /// [`PartError`] for anything but what [`PartialRender::write`] of this version gives.
+    pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
+        if !bytes.starts_with(PartialRender::MAGIC) {
+            return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
         }
         let (content, digest) = bytes.split_last_chunk::<32>().ok_or(PartError::Damaged)?;
         if Digest::of(content).0 != *digest {
             return Err(PartError::Damaged);
         }
         let malformed = |what: &str| PartError::Malformed(what.into());
-        let mut rest = Bytes(&content[Part::MAGIC.len().min(content.len())..]);
+        let mut rest = Bytes(&content[PartialRender::MAGIC.len().min(content.len())..]);
         let (format, version): (Option<u32>, _) = (rest.whole(), text(&mut rest));
         match (format, version) {
             (Some(FORMAT), Some(VERSION)) => {}
@@ -181,7 +181,7 @@ impl Part {
         let shard: Shard = serde_json::from_str(shard).map_err(wrong)?;
         let look = serde_json::from_str(look).map_err(wrong)?;
         // A picture for which there are too few bytes would take memory for nothing.
-        let part = Part::empty(job, shard, Digest(scene), look)?;
+        let part = PartialRender::empty(job, shard, Digest(scene), look)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
         // Numbers, texts and orders of blocks could be written in other ways, but never are.
         if part.write() != bytes {
@@ -199,18 +199,20 @@ impl Part {
                 return None;
             }
             let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
-            *block = Sampled { from, to, rays, film: Some(Packed::new(film)) };
+            *block = BlockSamples { from, to, rays, film: Some(Packed::new(film)) };
         }
         let pictures = self.job.ray_aovs().count();
         while let number @ 1.. = rest.whole::<usize>()? {
             let block = state.rays.get_mut(number - 1).filter(|block| block.is_none())?;
             let rays = rest.whole()?;
             let pixels = self.ray_blocks.rect(number - 1).pixels() as usize;
-            let found = |&byte: &u8| [Found::Blind, Found::Nothing, Found::Hit].into_iter().find(|f| *f as u8 == byte);
+            let found = |&byte: &u8| {
+                [PrimaryHit::Blind, PrimaryHit::Nothing, PrimaryHit::Hit].into_iter().find(|f| *f as u8 == byte)
+            };
             let found = rest.take(pixels)?.iter().map(found).collect::<Option<_>>()?;
             let mut value = || Some(Vec3::new(rest.float()?, rest.float()?, rest.float()?));
             let values = (0..pixels * pictures).map(|_| value().filter(|v| v.is_finite())).collect::<Option<_>>()?;
-            *block = Some(Box::new(Traced { found, values, rays }));
+            *block = Some(Box::new(BlockAovs { found, values, rays }));
         }
         rest.0.is_empty().then_some(())
     }
@@ -219,7 +221,7 @@ impl Part {
     ///
     /// # Errors
     /// [`PartError::OtherScene`], [`PartError::OtherJob`].
-    pub fn same_work(&self, other: &Part) -> Result<(), PartError> {
+    pub fn same_work(&self, other: &PartialRender) -> Result<(), PartError> {
         self.same_picture(other)?;
         if self.shard != other.shard {
             return Err(PartError::OtherJob(format!("it is shard {}, and wanted is {}", other.shard, self.shard)));
@@ -228,7 +230,7 @@ impl Part {
     }
 
     /// Whether another part belongs to the same picture.
-    pub(super) fn same_picture(&self, other: &Part) -> Result<(), PartError> {
+    pub(super) fn same_picture(&self, other: &PartialRender) -> Result<(), PartError> {
         if self.scene != other.scene || self.look != other.look {
             return Err(PartError::OtherScene);
         }

@@ -58,7 +58,7 @@ fn jobs() -> Vec<Job> {
     jobs
 }
 
-fn all(world: &World, job: &Job) -> Part {
+fn all(world: &World, job: &Job) -> PartialRender {
     Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
@@ -167,7 +167,7 @@ fn what_does_not_fit_is_not_merged() {
     let job = Job { sampling: filtered(4), aovs: vec![Aov::from_name("depth").unwrap()], ..small() };
     let make = |job: &Job, index, count, by| {
         let shard = Shard { index, count, by };
-        let part = Part::new(&world, job, shard).unwrap();
+        let part = PartialRender::new(&world, job, shard).unwrap();
         part.render(&world, &Control::default(), &mut |_, _| {}).unwrap();
         (format!("{shard}"), part)
     };
@@ -189,7 +189,7 @@ fn what_does_not_fit_is_not_merged() {
     let message = merge(&foreign).unwrap_err().to_string();
     assert!(message.contains("`seed` is 1, and wanted is 0"), "{message}");
     assert!(matches!(merge(&[]), Err(MergeError::NoParts)));
-    let unfinished = [("x".to_string(), Part::new(&world, &job, Shard::WHOLE).unwrap())];
+    let unfinished = [("x".to_string(), PartialRender::new(&world, &job, Shard::WHOLE).unwrap())];
     let message = merge(&unfinished).unwrap_err().to_string();
     assert!(message.contains("`x` is not finished: 0 of"), "{message}");
 }
@@ -197,7 +197,7 @@ fn what_does_not_fit_is_not_merged() {
 #[test]
 fn work_that_cannot_be_split_is_refused() {
     let world = world();
-    let refused = |job: &Job, index, count, by| Part::new(&world, job, Shard { index, count, by }).is_err();
+    let refused = |job: &Job, index, count, by| PartialRender::new(&world, job, Shard { index, count, by }).is_err();
     let (tiles, samples) = (ShardBy::Tiles, ShardBy::Samples);
     let local = Job { sampling: filtered(4), ..small() };
     assert!(!refused(&local, 4, 4, samples) && refused(&local, 5, 5, samples) && refused(&local, 0, 4, samples));
@@ -214,18 +214,18 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
     let job = Job { sampling: filtered(2), aovs: AOVS.iter().collect(), width: 12, height: 9, ..Job::default() };
     let part = all(&world, &job);
     let bytes = part.write();
-    let back = Part::read(&bytes).unwrap();
+    let back = PartialRender::read(&bytes).unwrap();
     assert_eq!((back.hash(), back.write() == bytes, back.identity()), (part.hash(), true, part.identity()));
     // Cut or changed anywhere, the checksum tells.
     for length in 0..bytes.len() {
-        assert!(matches!(Part::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
+        assert!(matches!(PartialRender::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
     }
     for at in 8..bytes.len() {
         let mut changed = bytes.clone();
         changed[at] ^= 1 << (at % 8);
-        assert!(matches!(Part::read(&changed), Err(PartError::Damaged)), "{at}");
+        assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
-    assert!(matches!(Part::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
+    assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
     // With a right checksum, anything may be in it: an error, or a part as it is always written,
     // whose pictures can be made.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
@@ -233,7 +233,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
             let mut changed = bytes[..bytes.len() - 32].to_vec();
             changed[at] = new;
             changed.extend(Digest::of(&changed).0);
-            if let Ok(read) = Part::read(&changed) {
+            if let Ok(read) = PartialRender::read(&changed) {
                 assert!(read.write() == changed, "{at}: written in another way");
                 // But for the estimate of what one sample cannot tell, all is finite.
                 let rendered = read.pictures().unwrap();
@@ -249,8 +249,8 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
 #[test]
 fn work_is_gone_on_with_only_where_it_is_the_same() {
     let (world, job) = (world(), Job { sampling: filtered(2), ..small() });
-    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
-    let other = |world: &World, job: &Job, shard| part.same_work(&Part::new(world, job, shard).unwrap());
+    let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
+    let other = |world: &World, job: &Job, shard| part.same_work(&PartialRender::new(world, job, shard).unwrap());
     assert!(other(&world, &job, Shard::WHOLE).is_ok());
     let moved = testing::read(&TEXT.replace("radius 1", "radius 1.0001"));
     assert!(matches!(other(&moved, &job, Shard::WHOLE), Err(PartError::OtherScene)));
@@ -266,7 +266,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
     let content = bytes.len() - 32;
     let digest = Digest::of(&bytes[..content]);
     bytes[content..].copy_from_slice(&digest.0);
-    assert!(matches!(Part::read(&bytes), Err(PartError::OtherVersion(_))));
+    assert!(matches!(PartialRender::read(&bytes), Err(PartError::OtherVersion(_))));
 }
 
 #[test]
@@ -277,7 +277,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(crate::bvh::Bvh::build(&boxes));
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
-    let part = Part::new(&broken, &job, Shard::WHOLE).unwrap();
+    let part = PartialRender::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };
     let RenderOutcome::Panicked(panicked) = part.render(&broken, &control, &mut |_, _| {}).unwrap() else {
         panic!("the sphere is seen");
@@ -293,7 +293,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     assert!(alone(0, 0).unwrap().unwrap());
     // Tiles before it are kept; with the error mended, the film is as it should be.
     assert!(part.work().1 > 0);
-    let mended = Part::read(&part.write()).unwrap();
+    let mended = PartialRender::read(&part.write()).unwrap();
     mended.render(&world(), &control, &mut |_, _| {}).unwrap();
     assert_eq!(mended.hash(), all(&world(), &job).hash());
 }
@@ -303,11 +303,11 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     let world = world();
     let job = Job { sampling: filtered(1 << 20), width: 64, height: 64, ..Job::default() };
     let (mut passes, mut saves) = (0, 0);
-    let mut watch = |part: &Part, moment| {
+    let mut watch = |part: &PartialRender, moment| {
         assert!(part.work().1 > 0);
         *if moment == RenderEvent::PassDone { &mut passes } else { &mut saves } += 1;
     };
-    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     for save_every in [None, Some(Duration::from_millis(20))] {
         let control = Control { time: Some(Duration::from_millis(300)), save_every, ..Control::default() };
         assert_eq!(part.render(&world, &control, &mut watch).unwrap(), RenderOutcome::OutOfTime);
@@ -315,7 +315,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
     // No time at all is enough for a picture without holes, and for no more.
-    let hasty = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time: Some(Duration::ZERO), ..Control::default() };
     assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
     assert!(hasty.is_whole() && !hasty.is_finished());
@@ -336,17 +336,17 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
 #[test]
 fn memory_is_estimated_before_it_is_taken() {
     let (world, job) = (world(), Job { width: 4000, height: 4000, sampling: filtered(4), ..Job::default() });
-    let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+    let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { memory: Some(1 << 30), ..Control::default() };
     let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
     assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
     // Of a shard by tiles only the sums of its own pixels are kept.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
-    assert!(Part::bytes_needed(&job, shard) < Part::bytes_needed(&job, Shard::WHOLE));
+    assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
     // What is kept of the course's samples counts too.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
-    let part = Part::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
+    let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
     assert!(matches!(part.render(&world, &control, &mut |_, _| {}), Err(RenderError::Memory { .. })));
 }
 
@@ -384,7 +384,8 @@ fn a_picture_made_in_bands_is_the_same() {
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
     for job in [Job { sampling: filtered(3), ..small() }, Job { sampling: filtered(3), crop, ..small() }, small()] {
         let window = job.window();
-        let one = Part::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
+        let one =
+            PartialRender::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
         let whole = all(&world, &job);
         let layer = whole.pictures().unwrap().pictures;
         // Two rows of blocks, and all at once.

@@ -1,6 +1,6 @@
 //! One picture made in many ways: threads, tiles, shards, interruptions, structures.
 
-use super::{Control, Job, MergeError, Part, PartError, RenderError, RenderOutcome, Shard, ShardBy, merge};
+use super::{Control, Job, MergeError, PartError, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, merge};
 use crate::sampler::hash;
 use crate::source::Digest;
 use crate::world::World;
@@ -42,7 +42,7 @@ pub enum WayError {
     Render(#[from] RenderError),
     /// What was saved could not be read.
     #[error("what was saved cannot be read: {0}")]
-    Part(#[from] PartError),
+    PartialRender(#[from] PartError),
     /// Shards could not be merged.
     #[error("shards cannot be merged: {0}")]
     Merge(#[from] MergeError),
@@ -79,7 +79,7 @@ impl Way {
     ///
     /// # Errors
     /// [`WayError`].
-    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<Part, WayError> {
+    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
         let mut parts = Vec::new();
         for index in 1..=self.shards {
             let shard = Shard { index, count: self.shards, by: self.by };
@@ -92,8 +92,8 @@ impl Way {
 
     /// Makes a shard, stopped a few times after some tiles, and goes on each time with what was
     /// saved.
-    fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<Part, WayError> {
-        let mut part = Part::new(world, job, shard)?;
+    fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
+        let mut part = PartialRender::new(world, job, shard)?;
         for round in (0..=self.interruptions).rev() {
             if cancel.load(Relaxed) {
                 return Err(WayError::Cancelled);
@@ -109,7 +109,7 @@ impl Way {
             if let RenderOutcome::Panicked(panicked) = part.render(world, &control, &mut |_, _| {})? {
                 return Err(RenderError::Panic(panicked).into());
             }
-            part = Part::read(&part.write())?;
+            part = PartialRender::read(&part.write())?;
         }
         Ok(part)
     }
@@ -127,7 +127,7 @@ pub struct Difference {
 }
 
 /// Compares two films of the same job.
-pub fn compare(expected: &Part, found: &Part) -> Option<Difference> {
+pub fn compare(expected: &PartialRender, found: &PartialRender) -> Option<Difference> {
     let (one, other) = (expected.hash(), found.hash());
     if one == other {
         return None;

@@ -15,7 +15,7 @@
 //! The `part` of a hit is the number of a triangle or shape among those of all parts, with two
 //! bits: whether the surface is turned inside out, and whether the ray enters the solid.
 
-use super::solid::{Rule, Solid};
+use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, PlacementQuirks};
 use crate::bvh::{Bvh, TraversalCounter};
 use crate::math::{Aabb, Ray, Ray64, Vec2, Vec3};
@@ -70,7 +70,7 @@ struct Edge {
 
 #[derive(Debug)]
 struct Join {
-    rule: Rule,
+    rule: BoolOp,
     edges: u32,
     /// `None` for the whole.
     edge: Option<Edge>,
@@ -79,9 +79,9 @@ struct Join {
 impl Join {
     fn value(&self, holding: u32) -> bool {
         match self.rule {
-            Rule::Any => holding > 0,
-            Rule::All => holding == self.edges,
-            Rule::Odd => holding % 2 == 1,
+            BoolOp::Any => holding > 0,
+            BoolOp::All => holding == self.edges,
+            BoolOp::Odd => holding % 2 == 1,
         }
     }
 }
@@ -135,7 +135,7 @@ impl Csg {
         };
         // A single part is a join of one.
         let solid = match solid {
-            Solid::Part(_) => Solid::Join { rule: Rule::Any, parts: vec![solid], cut: Vec::new() },
+            Solid::Operand(_) => Solid::Join { rule: BoolOp::Any, parts: vec![solid], cut: Vec::new() },
             join => join,
         };
         csg.add(solid, None);
@@ -156,12 +156,12 @@ impl Csg {
 
     fn add(&mut self, solid: Solid, edge: Option<Edge>) {
         match (solid, edge) {
-            (Solid::Part(object), Some(edge)) => {
+            (Solid::Operand(object), Some(edge)) => {
                 let first = self.leaves.last().map_or(0, |last| last.first + last.object.parts());
                 let slack = slack_of(&object);
                 self.leaves.push(Leaf { object, edge, first, slack });
             }
-            (Solid::Part(_), None) => {}
+            (Solid::Operand(_), None) => {}
             (Solid::Join { rule, parts, cut }, edge) => {
                 let join = self.joins.len() as u32;
                 self.joins.push(Join { rule, edges: (parts.len() + cut.len()) as u32, edge });
@@ -267,7 +267,7 @@ impl Csg {
         // place is off by is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
-        let shrink = shrink && self.joins[0].rule == Rule::Any;
+        let shrink = shrink && self.joins[0].rule == BoolOp::Any;
         let mut complete = f32::INFINITY;
         bvh.traverse(&wide, counter, |item, t_max, counter| {
             let (i, from) = (self.bounded[bvh.primitive_indices()[item] as usize], events.len());

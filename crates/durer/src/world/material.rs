@@ -135,7 +135,7 @@ pub struct Phong {
 
 /// One of the materials that make up a surface point.
 #[derive(Clone, Copy, Debug)]
-pub struct Part<'w> {
+pub struct WeightedMaterial<'w> {
     /// Its numbers.
     pub phong: &'w Phong,
     /// Its share: those of all parts sum to 1.
@@ -143,7 +143,7 @@ pub struct Part<'w> {
 }
 
 /// All of them: mostly one.
-pub type Parts<'w> = SmallVec<[Part<'w>; 2]>;
+pub type MaterialMix<'w> = SmallVec<[WeightedMaterial<'w>; 2]>;
 
 impl Default for Phong {
     fn default() -> Self {

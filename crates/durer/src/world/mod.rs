@@ -22,7 +22,7 @@ pub use contents::{Assets, Contents};
 pub use emitters::Emitters;
 use glam::DVec3;
 pub use interaction::Interaction;
-pub use material::{Emission, HighlightModel, Map, Maps, Material, Part, Parts, Phong, Principled};
+pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
 
@@ -323,15 +323,15 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
-    pub fn parts(&self, at: &Interaction) -> Parts<'_> {
-        let mut parts = Parts::new();
+    pub fn parts(&self, at: &Interaction) -> MaterialMix<'_> {
+        let mut parts = MaterialMix::new();
         self.mix(at.material, at.surface.position, 1.0, &mut parts);
         parts
     }
 
-    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut Parts<'w>) {
+    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
-            Material::Phong(phong) => parts.push(Part { phong, share }),
+            Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
                 let weight = solid.weight(q);

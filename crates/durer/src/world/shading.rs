@@ -1,6 +1,6 @@
 //! How a surface point scatters light, and what it shines, as a path tracer sees it.
 
-use super::{Geometry, Interaction, Material, Object, Part, Phong, World};
+use super::{Geometry, Interaction, Material, Object, Phong, WeightedMaterial, World};
 use crate::bsdf::layers::{self, View};
 use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
@@ -86,7 +86,7 @@ impl World {
 
     /// The frame around a normal: along u, and turned from there, where the highlight of a part is
     /// longer than wide.
-    fn frame(&self, parts: &[Part], at: &Interaction, n: Vec3) -> Frame {
+    fn frame(&self, parts: &[WeightedMaterial], at: &Interaction, n: Vec3) -> Frame {
         // No picture makes anything of 0.
         let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
         let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
@@ -258,7 +258,7 @@ impl World {
 /// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
 /// Phong's highlight, and single directions for mirror and glass. What would give back more than it
 /// gets is scaled down as a whole.
-fn phong_lobes(bsdf: &mut Bsdf, part: &Part, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) {
+fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) {
     let phong = part.phong;
     let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
     let [color, strength, reflective, transparent] =

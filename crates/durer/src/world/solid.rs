@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// When a point is inside, by how many parts it is inside of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Rule {
+pub enum BoolOp {
     /// At least one.
     Any,
     /// All of them, and none of those that are cut away.
@@ -24,14 +24,14 @@ pub enum Rule {
 #[derive(Clone, Debug)]
 pub enum Solid {
     /// A closed shape or mesh, placed in the world.
-    Part(Arc<Object>),
+    Operand(Arc<Object>),
     /// Several of them.
     Join {
         /// How they are combined.
-        rule: Rule,
+        rule: BoolOp,
         /// In the order of writing.
         parts: Vec<Solid>,
-        /// What is cut away; only of [`Rule::All`].
+        /// What is cut away; only of [`BoolOp::All`].
         cut: Vec<Solid>,
     },
 }
@@ -48,12 +48,12 @@ type Piece = (Solid, Option<Aabb>);
 impl Solid {
     /// What is in some solid of several. One without any is nothing.
     pub fn any(parts: Vec<Solid>) -> Solid {
-        Solid::join(Rule::Any, parts)
+        Solid::join(BoolOp::Any, parts)
     }
 
     /// What is in an odd number of several.
     pub fn odd(parts: Vec<Solid>) -> Solid {
-        Solid::join(Rule::Odd, parts)
+        Solid::join(BoolOp::Odd, parts)
     }
 
     /// What is in all of several, and in none of others. Neither "in all" nor "in none" changes by
@@ -62,7 +62,7 @@ impl Solid {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
             match part {
-                Solid::Join { rule: Rule::All, parts, cut } => {
+                Solid::Join { rule: BoolOp::All, parts, cut } => {
                     flat.extend(parts);
                     flat_cut.extend(cut);
                 }
@@ -71,17 +71,17 @@ impl Solid {
         }
         for part in cut {
             match part {
-                Solid::Join { rule: Rule::Any, parts, .. } => flat_cut.extend(parts),
+                Solid::Join { rule: BoolOp::Any, parts, .. } => flat_cut.extend(parts),
                 other => flat_cut.push(other),
             }
         }
         match (flat.len(), flat_cut.len()) {
             (1, 0) => flat.remove(0),
-            _ => Solid::Join { rule: Rule::All, parts: flat, cut: flat_cut },
+            _ => Solid::Join { rule: BoolOp::All, parts: flat, cut: flat_cut },
         }
     }
 
-    fn join(rule: Rule, parts: Vec<Solid>) -> Solid {
+    fn join(rule: BoolOp, parts: Vec<Solid>) -> Solid {
         let mut flat = Vec::with_capacity(parts.len());
         for part in parts {
             match part {
@@ -95,8 +95,8 @@ impl Solid {
     /// The box around it, as tight as the operation tells: `None` where it has no end.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
-            Solid::Part(object) => object.bounds(),
-            Solid::Join { rule: Rule::All, parts, .. } => parts
+            Solid::Operand(object) => object.bounds(),
+            Solid::Join { rule: BoolOp::All, parts, .. } => parts
                 .iter()
                 .filter_map(Solid::bounds)
                 .reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }),
@@ -109,7 +109,7 @@ impl Solid {
     /// All shapes and meshes in it.
     pub fn parts(&self) -> Vec<&Object> {
         match self {
-            Solid::Part(object) => vec![object],
+            Solid::Operand(object) => vec![object],
             Solid::Join { parts, cut, .. } => parts.iter().chain(cut).flat_map(Solid::parts).collect(),
         }
     }
@@ -122,8 +122,8 @@ impl Solid {
 
     fn boxed_pieces(self) -> Vec<Piece> {
         match self {
-            Solid::Part(_) => vec![boxed(self)],
-            Solid::Join { rule: Rule::All, parts, cut } => intersected(parts, cut),
+            Solid::Operand(_) => vec![boxed(self)],
+            Solid::Join { rule: BoolOp::All, parts, cut } => intersected(parts, cut),
             Solid::Join { rule, parts, .. } => {
                 // Each piece keeps the number of the part that it comes from.
                 let pieces: Vec<(usize, Piece)> = parts
@@ -149,7 +149,7 @@ fn boxed(solid: Solid) -> Piece {
 }
 
 /// One solid of the pieces of several parts; pieces of the same part are apart from each other.
-fn rejoined(rule: Rule, cluster: Vec<(usize, Solid)>) -> Solid {
+fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
     let mut parts: Vec<(usize, Vec<Solid>)> = Vec::new();
     for (part, solid) in cluster {
         match parts.last_mut().filter(|last| last.0 == part) {

@@ -79,7 +79,7 @@ fn pictures_and_explanations_tell_the_same_error_on_any_number_of_threads() {
     for method in [photons(3000, 0.2), Method::PATH] {
         let job = job(method, 12, 4, 1);
         let of = |threads| {
-            let part = Part::new(&world, &job, Shard::WHOLE).unwrap();
+            let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
             part.render(&world, &Control { threads: Some(threads), ..Control::default() }, &mut |_, _| ()).unwrap();
             let hash = part.hash();
             let [values, shown] = part.error(&world, Some(threads)).unwrap();
@@ -96,10 +96,10 @@ fn pictures_and_explanations_tell_the_same_error_on_any_number_of_threads() {
         }
         assert_eq!(biased > 0, method != Method::PATH);
         // Without a picture of colour, samples are taken for it.
-        let alone = Part::new(&world, &Job { color: false, ..job.clone() }, Shard::WHOLE).unwrap();
+        let alone = PartialRender::new(&world, &Job { color: false, ..job.clone() }, Shard::WHOLE).unwrap();
         assert_eq!(alone.error(&world, None).unwrap()[0], values);
     }
     let noisy = Job { noise: Some(0.1), ..job(photons(300, 0.2), 12, 4, 1) };
-    let part = Part::new(&world, &noisy, Shard::WHOLE).unwrap();
+    let part = PartialRender::new(&world, &noisy, Shard::WHOLE).unwrap();
     assert!(matches!(part.error(&world, None), Err(RenderError::Diagram(_))));
 }

@@ -6,7 +6,7 @@ use crate::image::compare::picture::Scale;
 use crate::math::Vec3;
 
 /// Looks for one mistake in the reference, the picture and samples of both.
-type Part = fn(&View, &View, &[Sample]) -> Option<Finding>;
+type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
 /// The vector that a colour shows.
 type Decode = fn(Vec3) -> Vec3;
 
@@ -37,7 +37,7 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
 
 /// The part of a picture that explains nearly all of the difference, if there is one.
 pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
-    let all: [Part; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
+    let all: [Detector; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
