@@ -91,7 +91,7 @@ fn bad_options_of_render() {
         ("--size 0x5", "at least one pixel"),
         ("--size 5", "640x480"),
         ("--size 99999999999x1", "640x480"),
-        ("--size 100000x100000 -o p.exr", "bands of rows"),
+        ("--size 100000x100000 -o p.bmp", "bands of rows"),
         ("--size 4294967295x4294967295", "needs about"),
         ("--size 70000x1 -o p.tga", "65535"),
         ("--crop 0,0,513x1", "crop"),

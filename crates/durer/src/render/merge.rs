@@ -5,6 +5,7 @@ use super::part::{BlockSamples, PartialRender};
 use super::saved::PartError;
 use crate::film::Packed;
 use std::fmt::Write;
+use std::sync::Arc;
 
 /// Why parts do not make a picture. Parts are told by their names.
 #[derive(Debug, thiserror::Error)]
@@ -98,7 +99,7 @@ fn merge_samples(
             match (merged.film(rect), piece.film(rect)) {
                 (Some(mut film), Some(other)) => {
                     film.merge(&other).expect("a block of the same picture has the same pixels");
-                    merged.film = Some(Packed::new(film));
+                    merged.film = Some(Arc::new(Packed::new(film)));
                 }
                 _ => merged.film = piece.film,
             }

@@ -2,14 +2,15 @@
 
 use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
-use super::{Crop, Job, Sampling, passes};
+use super::passes::{self, Passes};
+use super::{Crop, Job, Sampling};
 use crate::film::aov::DisplayRules;
 use crate::film::{Film, Packed, Rejected};
 use crate::image::checked_count;
 use crate::math::Vec3;
 use crate::source::Digest;
 use crate::world::World;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// A picture in the making, or a shard of one: rendered from time to time, saved, read again,
 /// merged with others.
@@ -44,8 +45,9 @@ pub(super) struct BlockSamples {
     pub(super) to: u32,
     /// Rays traced for them.
     pub(super) rays: u64,
-    /// Their sums, if there are any.
-    pub(super) film: Option<Packed>,
+    /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as a
+    /// count takes.
+    pub(super) film: Option<Arc<Packed>>,
 }
 
 impl BlockSamples {
@@ -307,12 +309,15 @@ pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// The ends of the passes of a shard. Photons are made anew for each sample, and so each is a pass.
-pub(super) fn pass_ends(job: &Job, shard: Shard) -> impl Iterator<Item = u32> {
+/// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
+/// so each is a pass.
+pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
     let singly = job.method.prepares() && job.sampling.is_local();
     let ends: Box<dyn Iterator<Item = u32>> =
         if singly { Box::new(1..=samples) } else { Box::new(passes::ends(samples)) };
-    ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to))
+    let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
+    // Where noise decides, it does so at the end of each.
+    Passes::new(ends, from, !singly && job.noise.is_none())
 }

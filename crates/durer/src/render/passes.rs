@@ -2,6 +2,8 @@
 
 use super::crop::Crop;
 use crate::film::{Film, luminance_of};
+use std::iter::Peekable;
+use std::time::{Duration, Instant};
 
 /// Samples before which nothing is decided about a block.
 pub const LEAST: u32 = 16;
@@ -18,6 +20,43 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
         [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
     });
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
+}
+
+/// Passes one after the other. If it changes nothing what they are, those that would end before
+/// somebody could see it are joined: a pass packs and unpacks every block.
+pub struct Passes<I: Iterator<Item = u32>> {
+    ends: Peekable<I>,
+    joins: bool,
+    /// Where the pass that was given last ends, how many samples it has, and when it began.
+    last: (u32, u32, Instant),
+}
+
+/// Passes that end sooner are joined.
+const SOON: Duration = Duration::from_millis(100);
+
+impl<I: Iterator<Item = u32>> Passes<I> {
+    /// By their ends, the first from some sample on.
+    pub fn new(ends: I, from: u32, joins: bool) -> Self {
+        Passes { ends: ends.peekable(), joins, last: (from, 0, Instant::now()) }
+    }
+}
+
+impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
+    type Item = u32;
+
+    fn next(&mut self) -> Option<u32> {
+        let (done, samples, began) = self.last;
+        let now = Instant::now();
+        let mut end = self.ends.next()?;
+        if self.joins && samples > 0 {
+            let each = (now - began) / samples;
+            while let Some(next) = self.ends.next_if(|next| each.saturating_mul(next - done) < SOON) {
+                end = next;
+            }
+        }
+        self.last = (end, end - done, now);
+        Some(end)
+    }
 }
 
 /// The estimated error of a block as it is seen: the root of the mean square over its pixels of the
@@ -48,6 +87,20 @@ mod tests {
         assert_eq!(ends(5), [1, 2, 4, 5]);
         assert_eq!(ends(100), [1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 100]);
         assert!(ends(u32::MAX).windows(2).all(|w| w[0] < w[1]));
+    }
+
+    #[test]
+    fn short_passes_are_joined_unless_they_decide_something() {
+        let of = |joins| Passes::new(ends(100), 0, joins).collect::<Vec<_>>();
+        assert_eq!(of(false), ends(100).collect::<Vec<_>>());
+        // Nothing is done in them.
+        assert_eq!(of(true), [1, 100]);
+        let mut slow = Passes::new(ends(8), 0, true);
+        let mut next = || {
+            std::thread::sleep(SOON);
+            slow.next()
+        };
+        assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
     }
 
     /// The estimate against the truth: the mean of n uniform numbers has the variance 1 / (12 n).

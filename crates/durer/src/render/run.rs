@@ -1,7 +1,7 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
 use super::error::{Panicked, RenderError};
-use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, pass_ends};
+use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::bvh::RayCount;
@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
 /// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are
@@ -126,7 +126,7 @@ impl PartialRender {
                 let work = &work;
                 scope.spawn(move |_| {
                     work.rays(None);
-                    for end in pass_ends(&self.job, self.shard) {
+                    for end in passes_of(&self.job, self.shard) {
                         work.pass(end, None);
                         // Nobody listens after the end.
                         let _ = finished.send(());
@@ -144,7 +144,7 @@ impl PartialRender {
             // The calling thread does it all, and looks up between tiles.
             None => {
                 work.rays(Some(&mut || clock.look(self, watch)));
-                for end in pass_ends(&self.job, self.shard) {
+                for end in passes_of(&self.job, self.shard) {
                     work.pass(end, Some(&mut || clock.look(self, watch)));
                     clock.passed(self, watch);
                 }
@@ -270,16 +270,15 @@ impl Work<'_> {
         let part = self.part;
         let mut made = Vec::with_capacity(tile.len());
         let (mut taken, mut traced) = (0, 0);
-        for &index in tile {
+        for (&index, mut block) in tile.iter().zip(self.taken(tile)) {
             let rect = part.blocks.rect(index);
-            let mut block = part.state().samples[index].clone();
             let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
             let mut rays = RayCount::default();
             self.samples.add(&mut film, rect, block.to..end, at, &mut rays)?;
             taken += rect.pixels() * u64::from(end - block.to);
             traced += rays.0;
             block.rays += rays.0;
-            (block.to, block.film) = (end, Some(Packed::new(film)));
+            (block.to, block.film) = (end, Some(Arc::new(Packed::new(film))));
             made.push(block);
         }
         self.keep(tile, made, taken, traced);
@@ -307,18 +306,26 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film: Some(Packed::new(film)) });
+            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film: Some(Arc::new(Packed::new(film))) });
             before = rays.0;
         }
         self.keep(tile, made, around.pixels(), rays.0);
         Ok(())
     }
 
-    fn keep(&self, tile: &[usize], made: Vec<BlockSamples>, done: u64, rays: u64) {
+    /// The blocks of a tile as they are.
+    fn taken(&self, tile: &[usize]) -> Vec<BlockSamples> {
+        let state = self.part.state();
+        tile.iter().map(|&index| state.samples[index].clone()).collect()
+    }
+
+    fn keep(&self, tile: &[usize], mut made: Vec<BlockSamples>, done: u64, rays: u64) {
         let mut state = self.part.state();
-        for (&index, block) in tile.iter().zip(made) {
-            state.samples[index] = block;
+        for (&index, block) in tile.iter().zip(&mut made) {
+            std::mem::swap(&mut state.samples[index], block);
         }
+        // What was replaced is freed without the lock.
+        drop(state);
         self.count(done, rays);
     }
 

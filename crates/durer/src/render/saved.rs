@@ -24,6 +24,7 @@ use crate::math::Vec3;
 use crate::source::Digest;
 use std::io::{self, Write};
 use std::ops::Range;
+use std::sync::Arc;
 
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -199,7 +200,7 @@ impl PartialRender {
                 return None;
             }
             let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
-            *block = BlockSamples { from, to, rays, film: Some(Packed::new(film)) };
+            *block = BlockSamples { from, to, rays, film: Some(Arc::new(Packed::new(film))) };
         }
         let pictures = self.job.ray_aovs().count();
         while let number @ 1.. = rest.whole::<usize>()? {
