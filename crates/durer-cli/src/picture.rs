@@ -167,7 +167,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     match target {
         None => keeper.save(&part)?,
         Some(target) => {
-            let mut rendered = part.pictures().map_err(failed)?;
+            let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(failed)?;
             diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
                 .map_err(failed)?;
             if shows_error {
@@ -184,7 +184,8 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
                 rendered.layers.push(clean);
             }
             let display = args.display.display()?;
-            output::save(&target.files(&rendered, display)?, args.quiet)?;
+            let files = durer::threads::install(threads, || target.files(&rendered, display))?;
+            output::save(&files, args.quiet)?;
             keeper.done(&part, finished);
             if finished && !args.quiet {
                 check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics, display);

@@ -20,7 +20,9 @@ pub use rows::{RowFormat, RowWriter, Strip};
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
+use crate::math::Vec3;
 use crate::panics::caught;
+use rayon::prelude::*;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
@@ -212,16 +214,31 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
 /// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first;
 /// `None` where it is opaque.
 fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
-    let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
-    Strip::of(layer, options).eight_bit(&layer.image.pixels, layer.coverage.as_ref()?, |rgba| bytes.extend(rgba));
-    Some(bytes)
+    Some(side_by_side(&Strip::of(layer, options), &layer.image.pixels, layer.coverage.as_ref()?, |rgba| rgba))
 }
 
 /// The bytes of an eight-bit picture: red, green and blue, the top row first.
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
-    let mut bytes = Vec::with_capacity(3 * layer.image.pixels.len());
     let strip = Strip { alpha: false, ..Strip::of(layer, options) };
-    strip.eight_bit(&layer.image.pixels, &[], |[r, g, b, _]| bytes.extend([r, g, b]));
+    side_by_side(&strip, &layer.image.pixels, &[], |[r, g, b, _]| [r, g, b])
+}
+
+/// The bytes of all pixels, made by all threads.
+fn side_by_side<const N: usize>(
+    strip: &Strip,
+    pixels: &[Vec3],
+    coverage: &[f32],
+    of: impl Fn([u8; 4]) -> [u8; N] + Sync,
+) -> Vec<u8> {
+    const STEP: usize = 1 << 14;
+    let mut bytes = vec![0_u8; N * pixels.len()];
+    bytes.as_chunks_mut::<N>().0.par_chunks_mut(STEP).enumerate().for_each(|(i, made)| {
+        let range = i * STEP..i * STEP + made.len();
+        let mut made = made.iter_mut();
+        strip.eight_bit(&pixels[range.clone()], coverage.get(range).unwrap_or_default(), |rgba| {
+            made.by_ref().take(1).for_each(|pixel| *pixel = of(rgba));
+        });
+    });
     bytes
 }
 

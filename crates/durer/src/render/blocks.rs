@@ -9,6 +9,7 @@ use super::Crop;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::ops::Range;
 use std::str::FromStr;
 
 /// Pixels across and down a block.
@@ -48,6 +49,12 @@ impl Blocks {
         let (left, width) = side(column, self.window.left, self.window.width);
         let (top, height) = side(row, self.window.top, self.window.height);
         Crop { left, top, width, height }
+    }
+
+    /// The numbers of the blocks of each row of them.
+    pub fn rows(&self) -> impl Iterator<Item = Range<usize>> {
+        let columns = self.columns as usize;
+        (0..self.count() / columns.max(1)).map(move |row| row * columns..(row + 1) * columns)
     }
 
     /// The number of the block that holds a pixel of the window.

@@ -9,6 +9,7 @@ use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
 use crate::film::false_color::LightScale;
 use crate::image::{Image, Layer};
 use crate::math::{Aabb, Color, Vec3};
+use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Pictures and what was counted on the way.
@@ -85,10 +86,24 @@ impl PartialRender {
 
     /// Colours and coverage; what is not made yet is transparent.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
-        let count = self.job.window().pixels() as usize;
+        let window = self.job.window();
+        let count = window.pixels() as usize;
         let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; count]);
-        self.each_sampled(state, |index, film, x, y| {
-            (colors[index], coverage[index]) = (film.resolve(x, y), film.coverage(x, y));
+        let (mut free_colors, mut free_coverage) = (&mut colors[..], &mut coverage[..]);
+        // A row of blocks is some whole rows of pixels.
+        let strips = self.blocks.rows().filter_map(|blocks| {
+            let pixels = (self.blocks.rect(blocks.start).height * window.width) as usize;
+            Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..pixels)?))
+        });
+        strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
+            for index in blocks {
+                let rect = self.blocks.rect(index);
+                let Some(film) = state.samples[index].film(rect) else { continue };
+                for (x, y) in rect.places() {
+                    let at = place(Crop { top: rect.top, ..window }, x, y);
+                    (colors[at], coverage[at]) = (film.resolve(x, y), film.coverage(x, y));
+                }
+            }
         });
         (colors, coverage)
     }
