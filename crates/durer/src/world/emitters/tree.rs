@@ -64,6 +64,10 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
+/// How much the cosines at the middle of a node count for all of it, beside the greatest anywhere in
+/// it: these alone are far too much for wide nodes that are seen from the side.
+const CENTER: f32 = 0.8;
+
 /// Children of a node.
 const WIDTH: usize = 8;
 
@@ -74,9 +78,9 @@ type Eight = [Vec4; 2];
 #[derive(Clone, Debug)]
 struct Node {
     middle: [Eight; 3],
-    /// The square of the radius around the middle, and the least square of a distance that counts.
+    /// The square of the radius around the middle, and what of it is added to that of a distance.
     radius2: Eight,
-    near2: Eight,
+    spread2: Eight,
     /// 0 where there is no child.
     power: Eight,
     axis: [Eight; 3],
@@ -107,8 +111,9 @@ impl Node {
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
             radius2: of(&radius2),
-            // From inside and nearby distance says little.
-            near2: of(&|b| (0.5 * radius2(b).sqrt()).max(f32::MIN_POSITIVE)),
+            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 / (d^2
+            // + r^2). A square whose corners are at the radius has 0.64 of the area of such a disc.
+            spread2: of(&|b| (0.64 * radius2(b)).max(f32::MIN_POSITIVE)),
             power: of(&|b| b.power),
             axis: [0, 1, 2].map(|axis| of(&|b| b.axis[axis])),
             cos_normals: of(&|b| b.cos_normals),
@@ -137,11 +142,12 @@ impl Node {
         // The least angle to a normal, and from that to the point, over all that the bounds hold.
         let least = minus((cosine, sine(cosine)), (self.cos_normals[half], self.sin_normals[half]));
         let (cos_least, _) = minus(least, bounds);
-        let mut importance = self.power[half] * cos_least / distance2.max(self.near2[half]);
+        let usual = |center: Vec4, most: Vec4| CENTER * center.max(zero) + (1.0 - CENTER) * most;
+        let mut importance = self.power[half] * usual(least.0, cos_least) / (distance2 + self.spread2[half]);
         if n != Vec3::ZERO {
             let arriving = dot(n.to_array().map(Vec4::splat)).abs();
             let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
-            importance *= cos_arriving.max(zero);
+            importance *= usual(arriving, cos_arriving.max(zero));
         }
         Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero))
     }
