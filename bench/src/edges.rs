@@ -58,7 +58,8 @@ fn sphere(center: Vec3, radius: f32) -> Mesh {
     Mesh { name: "sphere".into(), vertices, triangles }
 }
 
-/// Ray number `i`: aimed at each triangle in turn, from inside or from outside where the triangle faces it.
+/// Ray number `i`: aimed at each triangle in turn, from inside or from outside where the triangle
+/// faces it.
 fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool) {
     let [a, b, c] = mesh.corners(i % mesh.triangles.len() as u32);
     let unit = random_2d(4, i, aim as u32, 0, 0).x;

@@ -153,7 +153,8 @@ fn numbers<T>(path: &Path, number: impl Fn([u8; 4]) -> T) -> Result<Vec<T>> {
     Ok(bytes.as_chunks().0.iter().map(|&bytes| number(bytes)).collect())
 }
 
-/// Millions of rays a second through our batches, of a mesh and rays that another program wrote: what its own way to them costs.
+/// Millions of rays a second through our batches, of a mesh and rays that another program wrote:
+/// what its own way to them costs.
 pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
     let floats = |name: &str| numbers(&folder.join(name), f32::from_le_bytes);
     let points =

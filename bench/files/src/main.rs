@@ -1,4 +1,5 @@
-//! Reads files of meshes that are in memory already, by other crates: `cargo xtask bench-files` starts it.
+//! Reads files of meshes that are in memory already, by other crates: `cargo xtask bench-files`
+//! starts it.
 
 use std::time::{Duration, Instant};
 

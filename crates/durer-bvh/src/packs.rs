@@ -91,8 +91,8 @@ impl PrimitivePacks {
         (found.number != u32::MAX).then_some(found)
     }
 
-    /// The first hits of eight rays, as [`PrimitivePacks::closest`] has them one by one: the rays are
-    /// side by side, and things are tested one after the other. So it pays where there are few.
+    /// The first hits of eight rays, as [`PrimitivePacks::closest`] has them one by one: the rays
+    /// are side by side, and things are tested one after the other. So it pays where there are few.
     pub fn closest_of_eight(&self, rays: &[Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
         let found = self.level.run(Together { packs: self, rays });
         found.map(|hit| (hit.number != u32::MAX).then_some(hit))

@@ -55,7 +55,8 @@ fn models_written_in_words_make_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
     let place = Place::new();
-    // Pictures that are turned and repeat, vertex colours, tangents, bones, films, glass, instances.
+    // Pictures that are turned and repeat, vertex colours, tangents, bones, films, glass,
+    // instances.
     for name in MODELS {
         let model = models.join(name);
         let picture = |path: &str| {

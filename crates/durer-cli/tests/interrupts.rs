@@ -105,7 +105,8 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
             // It may have come when all was done.
             Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
-            // Before it is heard at all, the system ends the program; if it has ended already, nothing does.
+            // Before it is heard at all, the system ends the program; if it has ended already,
+            // nothing does.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }
         assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));

@@ -57,8 +57,8 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) / (1 +
-    // F).
+    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) /
+    // (1 + F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
@@ -234,8 +234,8 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
         }
     }
-    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in the
-    // same colour.
+    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in
+    // the same colour.
     let shown = |lights: &str, things: &str| -> Vec<f64> {
         place.put(
             "t.txt",

@@ -154,7 +154,8 @@ fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
-        // 330 pixels are true, and 660 may be; one is of a lens longer than any, one is divided by zero.
+        // 330 pixels are true, and 660 may be; one is of a lens longer than any, one is divided by
+        // zero.
         let (millimetres, pixels) = match i {
             0 => ([5, 1], [1_000_000_000, 1]),
             1 => ([5, 0], [1000, 1]),
@@ -393,8 +394,8 @@ fn a_thing_sits_in_a_photograph_of_others() {
             [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
         })
     };
-    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies too,
-    // the seat is darker.
+    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies
+    // too, the seat is darker.
     let [now, before] = luma(120, 140, 220, 230);
     assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
     for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {

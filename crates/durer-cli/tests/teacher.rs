@@ -239,7 +239,8 @@ Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
 Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }
 ";
-    // One foreign word does not make another dialect of a file; it is named, and so is its counterpart.
+    // One foreign word does not make another dialect of a file; it is named, and so is its
+    // counterpart.
     place.put("nodes.txt", nodes);
     let told = place.run("check nodes.txt").out;
     assert!(told.contains("`angle` is not a word of f23") && told.contains("in f23 it is `fov`"), "{told}");

@@ -277,8 +277,8 @@ fn limits_of_the_system_are_errors_with_a_name() {
 #[test]
 fn without_threads_the_calling_thread_does_it_all() {
     let place = Place::new();
-    // The limit does not hold for the superuser, who becomes nobody, in a folder that nobody may write
-    // to.
+    // The limit does not hold for the superuser, who becomes nobody, in a folder that nobody may
+    // write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
     if usable.code != Some(0) {

@@ -59,8 +59,8 @@ fn info_as_text_and_json() {
             .replace("numObjects 2", "numObjects 3"),
     );
     let json: serde_json::Value = serde_json::from_str(&place.gives(0, "info mesh.txt --json").out).unwrap();
-    // One leaf: the root and the one box in it, which is as large. 36 bytes of corners, 4 of a number,
-    // 256 of a node, and a leaf's room of 320 behind.
+    // One leaf: the root and the one box in it, which is as large. 36 bytes of corners, 4 of a
+    // number, 256 of a node, and a leaf's room of 320 behind.
     assert_eq!((json["tree_cost"].as_f64(), json["bytes_per_triangle"].as_f64()), (Some(2.0), Some(616.0)));
 }
 

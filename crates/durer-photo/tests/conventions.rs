@@ -32,8 +32,8 @@ fn files() -> Vec<Case> {
         "viewTransform": {"rows": [[0, -1, 0, 0.5], [-1, 0, 0, -1], [0, 0, -1, -5], [0, 0, 0, 1]]}}"#;
     let ply = "ply\nformat ascii 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n1 2 3 10 20 30\n-1 0.5 -5 255 0 0\n";
-    // A camera within a node that is moved, turned by a half turn about x and twice as large; and 1, 2,
-    // 3 as floats, 10, 20, 30 as bytes.
+    // A camera within a node that is moved, turned by a half turn about x and twice as large; and
+    // 1, 2, 3 as floats, 10, 20, 30 as bytes.
     let data = "AACAPwAAAEAAAEBAChQe/w==";
     let gltf = format!(
         r#"{{"asset": {{"version": "2.0"}}, "nodes": [
@@ -171,8 +171,8 @@ fn what_is_written_for_other_programs_means_what_the_table_says() {
         value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect::<Vec<f64>>()
     };
     assert!((Vector3::from_iterator(numbers(&node["translation"])) - Vector3::from(CENTER)).norm() < 1e-12);
-    // From the camera's frame to the world: its -z is the world's z, its x the world's -y, and its y
-    // the world's -x.
+    // From the camera's frame to the world: its -z is the world's z, its x the world's -y, and its
+    // y the world's -x.
     let q = numbers(&node["rotation"]);
     let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]));
     for (axis, there) in [(-Vector3::z(), Vector3::z()), (Vector3::x(), -Vector3::y()), (Vector3::y(), -Vector3::x())] {
@@ -321,8 +321,8 @@ fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
     assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
-    // It looks along -z: what is there and to the right, and higher, is right of the middle and above
-    // it.
+    // It looks along -z: what is there and to the right, and higher, is right of the middle and
+    // above it.
     let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
     assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
     let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();

@@ -190,8 +190,8 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
     assert!(apart(solved, &one) < 0.005, "{}", apart(solved, &one));
-    // So does what it saw with its lenses and least squares, but for the few observations that are more
-    // than two pixels off.
+    // So does what it saw with its lenses and least squares, but for the few observations that are
+    // more than two pixels off.
     let mut clean = bundler.clone();
     let mut dropped = 0;
     for (point, known) in clean.points.iter_mut().zip(&one.points) {
@@ -286,8 +286,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     let Some(folder) = samples() else { return };
     let all = read(&folder.join("fspy/json_export.json")).unwrap();
     let (lens, pose) = (all.lenses[0], all.views[0].pose.unwrap());
-    // The file: -x leads to (1.605, 0.001), z to (-0.652, 0.003), y to (-0.375, -436), where the longer
-    // side is from -1 to 1.
+    // The file: -x leads to (1.605, 0.001), z to (-0.652, 0.003), y to (-0.375, -436), where the
+    // longer side is from -1 to 1.
     for (axis, x, y) in [
         (-nalgebra::Vector3::x(), 1.6051650133994935_f64, 0.001021010320067342_f64),
         (nalgebra::Vector3::z(), -0.652074716204382, 0.0029610261811691915),

@@ -209,7 +209,8 @@ impl Sequence {
     }
 
     /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
-    /// one by one: first coordinates, then second ones. Side by side, for compilers to make SIMD of.
+    /// one by one: first coordinates, then second ones. Side by side, for compilers to make SIMD
+    /// of.
     #[inline]
     pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
         let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);

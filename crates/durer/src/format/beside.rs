@@ -41,7 +41,8 @@ struct Put<'a> {
     folder: &'a str,
     source: &'a Source,
     files: Vec<Beside>,
-    /// Names of files and textures that are given, in lower case: some systems tell no others apart.
+    /// Names of files and textures that are given, in lower case: some systems tell no others
+    /// apart.
     taken: BTreeSet<String>,
     /// The new names of meshes and of pictures' files, by the old.
     known: BTreeMap<(&'static str, String), String>,

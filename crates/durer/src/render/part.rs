@@ -45,8 +45,8 @@ pub(super) struct BlockSamples {
     pub(super) to: u32,
     /// Rays traced for them.
     pub(super) rays: u64,
-    /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as a
-    /// count takes.
+    /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as
+    /// a count takes.
     pub(super) film: Option<Arc<Packed>>,
 }
 

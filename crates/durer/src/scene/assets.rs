@@ -36,13 +36,15 @@ described_words! {
 }
 
 described_words! {
-    /// What is shown where many texels are seen at once: some of them, whose mean over a pixel's samples is right, or a smaller version of the picture,
-    /// which has less noise and is a little blurred.
+    /// What is shown where many texels are seen at once: some of them, whose mean over a pixel's
+    /// samples is right, or a smaller version of the picture, which has less noise and is a little
+    /// blurred.
     Minified { Texels = "texels", Mipmaps = "mipmaps" }
 }
 
 described! {
-    /// A picture with a name, and how it lies on surfaces. What takes a picture in a `PrincipledMaterial` takes that name.
+    /// A picture with a name, and how it lies on surfaces. What takes a picture in a
+    /// `PrincipledMaterial` takes that name.
     NamedTexture ["Texture" in set::DURER] {
         /// Its name.
         name: FileName = FileName::default(), required, Rule::Any, ["name" in set::DURER];
@@ -52,20 +54,24 @@ described! {
         wrap_u: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapU" in set::DURER];
         /// What is beyond its upper and lower border.
         wrap_v: Wrap = Wrap::Repeat, optional, Rule::Any, ["wrapV" in set::DURER];
-        /// Whether the four texels around a point are mixed (`linear`), or the `nearest` counts alone.
+        /// Whether the four texels around a point are mixed (`linear`), or the `nearest` counts
+        /// alone.
         texels: Texels = Texels::Linear, optional, Rule::Any, ["texels" in set::DURER];
-        /// What is shown where a sample sees many texels at once, under paths: some of them (`texels`), or a smaller version of the picture (`mipmaps`).
+        /// What is shown where a sample sees many texels at once, under paths: some of them
+        /// (`texels`), or a smaller version of the picture (`mipmaps`).
         minified: Minified = Minified::Texels, optional, Rule::Any, ["minified" in set::DURER];
         /// The set of a mesh's texture coordinates: 0, or 1 for the second.
         uv_set: u32 = 0, optional, Rule::AtMost(1), ["uvSet" in set::DURER];
-        /// From the surface's coordinates to the picture's, both with v downwards from the upper border: two rows of a matrix.
+        /// From the surface's coordinates to the picture's, both with v downwards from the upper
+        /// border: two rows of a matrix.
         uv_transform: Vec<[f32; 3]> = Mapping::default().transform.to_vec(), optional, Rule::Rows(2, 2), ["uvTransform" in set::DURER];
-        /// Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is written, as the alpha says.
+        /// Opacity is 1 where the picture's alpha is at least this, and else 0; where nothing is
+        /// written, as the alpha says.
         alpha_cutoff: Option<f32> = None, optional, Rule::Any, ["alphaCutoff" in set::DURER];
         /// How far the normals of a normal map lean, times.
         normal_scale: f32 = 1.0, optional, Rule::Any, ["normalScale" in set::DURER];
-        /// What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the direction in red and green; where nothing is written,
-        /// red, or of opacity what there is.
+        /// What counts where a number is wanted: `r`, `g`, `b`, `a`, or the `angle` of the
+        /// direction in red and green; where nothing is written, red, or of opacity what there is.
         channel: Option<Channel> = None, optional, Rule::Any, ["channel" in set::DURER];
         /// What a texel's 0 and 1 stand for, where the picture changes a number.
         texel_range: Vec<[f32; 2]> = vec![[0.0, 1.0]], optional, Rule::Rows(1, 1), ["texelRange" in set::DURER];

@@ -7,12 +7,14 @@ use crate::math::{Vec2, fp};
 use serde::{Deserialize, Serialize};
 
 described_words! {
-    /// What is beyond a picture's border: the picture again, it and its mirror image in turn, or the border's texels without end.
+    /// What is beyond a picture's border: the picture again, it and its mirror image in turn, or
+    /// the border's texels without end.
     Wrap { Repeat = "repeat", Mirror = "mirror", Clamp = "clamp" }
 }
 
 described_words! {
-    /// What of a picture's texel is a number; the angle, in turns, is that of the direction whose parts are red and green, 1/2 being 0.
+    /// What of a picture's texel is a number; the angle, in turns, is that of the direction whose
+    /// parts are red and green, 1/2 being 0.
     Channel { Red = "r", Green = "g", Blue = "b", Alpha = "a", Angle = "angle" }
 }
 

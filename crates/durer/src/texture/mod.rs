@@ -184,8 +184,8 @@ impl Texture {
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
-    /// Colour and opacity at a place of the picture, in its widths from the left and heights from the
-    /// top; opacity is not cut yet.
+    /// Colour and opacity at a place of the picture, in its widths from the left and heights from
+    /// the top; opacity is not cut yet.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
         let texel = |i: i64, j: i64| {

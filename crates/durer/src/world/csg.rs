@@ -263,8 +263,8 @@ impl Csg {
         // What begins or ends within the slack of the interval's ends matters too.
         let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
         let pad = GRAZING as f32 * reach / ray.dir().length();
-        // From a place so far back, for rays that begin at their origin are walked faster. What that
-        // place is off by is a thousandth of the pad.
+        // From a place so far back, for rays that begin at their origin are walked faster. What
+        // that place is off by is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
         let shrink = shrink && self.joins[0].rule == BoolOp::Any;

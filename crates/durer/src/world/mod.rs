@@ -208,8 +208,8 @@ impl World {
         best
     }
 
-    /// The first hits of eight rays, as [`World::closest`] has them one by one; `None` where nothing
-    /// is gained by asking for them together. Where there is no ray there is no hit.
+    /// The first hits of eight rays, as [`World::closest`] has them one by one; `None` where
+    /// nothing is gained by asking for them together. Where there is no ray there is no hit.
     pub fn closest_of_eight(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
         if self.few.is_empty() {
             return None;

@@ -38,7 +38,8 @@ pub(super) const COLUMNS: [&[&str]; 22] = [
     &["tangent_w"],
 ];
 
-/// Position, normal, texture coordinates, colour and opacity; linear colour and opacity, second texture coordinates, tangent.
+/// Position, normal, texture coordinates, colour and opacity; linear colour and opacity, second
+/// texture coordinates, tangent.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];

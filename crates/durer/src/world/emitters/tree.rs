@@ -64,8 +64,8 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
-/// How much the cosines at the middle of a node count for all of it, beside the greatest anywhere in
-/// it: these alone are far too much for wide nodes that are seen from the side.
+/// How much the cosines at the middle of a node count for all of it, beside the greatest anywhere
+/// in it: these alone are far too much for wide nodes that are seen from the side.
 const CENTER: f32 = 0.8;
 
 /// Children of a node.
@@ -111,8 +111,9 @@ impl Node {
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
             radius2: of(&radius2),
-            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 / (d^2
-            // + r^2). A square whose corners are at the radius has 0.64 of the area of such a disc.
+            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 /
+            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the area of such a
+            // disc.
             spread2: of(&|b| (0.64 * radius2(b)).max(f32::MIN_POSITIVE)),
             power: of(&|b| b.power),
             axis: [0, 1, 2].map(|axis| of(&|b| b.axis[axis])),
