@@ -37,10 +37,12 @@ impl Boundary<'_> {
     /// The share of light from a direction above that passes, over the mean of that share over all
     /// directions by their cosine.
     ///
-    /// With (1 - E(wo)) as the weight of a matte base, the base gives (1 - E(wo)) (1 - E(wi)) / (1
-    /// - E mean) of what it gives without the boundary: the same both ways, and with the boundary's
-    /// E(wo) all light there is. Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled
-    /// Specular-Matte BRDF Model with Importance Sampling*, Eurographics 2001.
+    /// With 1 - E(wo) as the weight of a matte base, this makes
+    /// (1 - E(wo)) (1 - E(wi)) / (1 - E mean) of what the base gives alone: the same both ways, and
+    /// with the boundary's own E(wo) all light there is.
+    ///
+    /// Source: Kelemen and Szirmay-Kalos, *A Microfacet Based Coupled Specular-Matte BRDF Model with
+    /// Importance Sampling*, Eurographics 2001.
     fn entering(&self, cosine: f32) -> f32 {
         let passing = |reflected: f32| 1.0 - self.reflection * reflected;
         let (own, mean) = (self.dielectric.given(cosine, self.roughness), self.dielectric.mean(self.roughness));
