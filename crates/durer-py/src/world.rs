@@ -118,8 +118,8 @@ impl World {
     fn part(&self, words: Vec<String>) -> PyResult<Part> {
         let asked = asked(&words)?;
         let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let part =
-            render::PartialRender::new(&self.world, &job, asked.shard()).map_err(|e| PyValueError::new_err(e.to_string()))?;
+        let part = render::PartialRender::new(&self.world, &job, asked.shard())
+            .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Part(Arc::new(part)))
     }
 
