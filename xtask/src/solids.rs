@@ -88,14 +88,7 @@ fn compiled(body: &str) -> Result<World> {
     let file = files.add("balls.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("the balls cannot be read")?;
-    let resources = Resources {
-        source: &source,
-        files: &mut files,
-        sky_optional: false,
-        memory: u64::MAX,
-        rays: u64::MAX,
-        kept: None,
-    };
+    let resources = Resources::new(&source, &mut files);
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")
 }
 

@@ -57,6 +57,13 @@ pub struct Resources<'a> {
     pub kept: Option<&'a Kept>,
 }
 
+impl<'a> Resources<'a> {
+    /// All the memory there is, for many rays, with nothing kept from before.
+    pub fn new(source: &'a Source, files: &'a mut Files) -> Self {
+        Resources { source, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
+    }
+}
+
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
 pub fn compile(
     scene: &Scene,

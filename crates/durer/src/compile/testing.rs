@@ -19,14 +19,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     let included = RefCell::new(std::mem::take(&mut files));
     let scene = course::read_with(text.as_bytes(), file, options, &course::below(&source, &included), &mut diagnostics);
     files = included.into_inner();
-    let resources = Resources {
-        source: &source,
-        files: &mut files,
-        sky_optional: false,
-        memory: u64::MAX,
-        rays: u64::MAX,
-        kept: None,
-    };
+    let resources = Resources::new(&source, &mut files);
     let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));
     (world, diagnostics)
 }
@@ -50,14 +43,7 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     let camera = Some(crate::camera::PerspectiveCamera::default().into());
     let scene = Scene { camera, root: Some(root), ..Scene::default() };
     let (mut files, source, mut diagnostics) = (Files::default(), Source::folder(folder), Diagnostics::default());
-    let resources = Resources {
-        source: &source,
-        files: &mut files,
-        sky_optional: false,
-        memory: u64::MAX,
-        rays: u64::MAX,
-        kept: None,
-    };
+    let resources = Resources::new(&source, &mut files);
     let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
@@ -74,14 +60,7 @@ pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let camera = Some(crate::camera::PerspectiveCamera::default().into());
     let scene = Scene { camera, root: Some(root), ..Scene::default() };
     let (mut files, source, mut diagnostics) = (Files::default(), Source::folder("."), Diagnostics::default());
-    let resources = Resources {
-        source: &source,
-        files: &mut files,
-        sky_optional: false,
-        memory: u64::MAX,
-        rays: u64::MAX,
-        kept: None,
-    };
+    let resources = Resources::new(&source, &mut files);
     let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }

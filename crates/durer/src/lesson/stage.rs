@@ -72,14 +72,7 @@ impl Stage {
         let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
         let source = Source::folder(".");
         let scene = course::read(OWN_SCENE.as_bytes(), file, options, &mut diagnostics).unwrap_or_default();
-        let resources = Resources {
-            source: &source,
-            files: &mut files,
-            sky_optional: false,
-            memory: u64::MAX,
-            rays: u64::MAX,
-            kept: None,
-        };
+        let resources = Resources::new(&source, &mut files);
         let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics);
         let world = world.expect("the lesson's own scene is sound");
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })

@@ -42,14 +42,7 @@ fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = course::read(text.as_bytes(), file, options, &mut diagnostics).unwrap();
     let source = Source::folder(".");
-    let resources = Resources {
-        source: &source,
-        files: &mut files,
-        sky_optional: false,
-        memory: u64::MAX,
-        rays: u64::MAX,
-        kept: None,
-    };
+    let resources = Resources::new(&source, &mut files);
     let world = compile(&scene, rules, AccelKind::Bvh, resources, &mut diagnostics).unwrap();
     (scene, world)
 }

@@ -12,8 +12,7 @@ fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &Source) {
     guess(text, 0, &[], &|_| false);
     let Some(scene) = scene else { return };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-    let resources =
-        Resources { source, files: &mut files, sky_optional: true, memory: u64::MAX, rays: u64::MAX, kept: None };
+    let resources = Resources { sky_optional: true, ..Resources::new(source, &mut files) };
     let world = compile(&scene, dialect.rules(), AccelKind::Bvh, resources, &mut diagnostics);
     assert_eq!(world.is_none(), diagnostics.has_errors());
     assert!(!write(&scene, dialect).is_empty());
