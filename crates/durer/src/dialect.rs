@@ -217,7 +217,7 @@ pub type CompatSet = u64;
 
 macro_rules! compats {
     ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or odd quirk, of an official program where nothing else is said. Off unless
+        /// A named bug or quirk, of an official program where nothing else is said. Off unless
         /// its dialect, or it by name, is asked for.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[repr(u8)]

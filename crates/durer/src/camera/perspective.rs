@@ -43,16 +43,14 @@ impl Projection for PerspectiveCamera {
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        let (point, half) = (sample.point, frame.half_width as f32);
-        let dir = match frame.screen_point {
-            false => frame.forward / half + point.x * frame.right + point.y * frame.up,
-            true => {
-                let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;
-                let along = 0.5 * (point + 1.0);
-                let (across, upwards) = (2.0 * half * frame.right, 2.0 * half * frame.up);
-                (corner + along.x * across + along.y * upwards) - frame.eye
-            }
-        };
+        if !frame.screen_point {
+            let [ray] = self.rays(frame, &[*sample]);
+            return ray;
+        }
+        let (along, half) = (0.5 * (sample.point + 1.0), frame.half_width as f32);
+        let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;
+        let (across, upwards) = (2.0 * half * frame.right, 2.0 * half * frame.up);
+        let dir = (corner + along.x * across + along.y * upwards) - frame.eye;
         Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
     }
 

@@ -39,8 +39,7 @@ pub struct CameraBasis {
 /// A vector's direction, each component divided by the length (glam multiplies by its reciprocal,
 /// which rounds once more).
 pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    let unit = v / v.length();
-    if unit.is_finite() && unit != Vec3::ZERO { unit } else { v.normalize_or(fallback) }
+    units_or(&[[v.x], [v.y], [v.z]], fallback)[0]
 }
 
 /// The same of several vectors side by side: their x, y and z.
@@ -53,7 +52,7 @@ pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3
     }
     std::array::from_fn(|i| match Vec3::new(units[0][i], units[1][i], units[2][i]) {
         unit if unit.is_finite() && unit != Vec3::ZERO => unit,
-        _ => unit_or(Vec3::new(x[i], y[i], z[i]), fallback),
+        _ => Vec3::new(x[i], y[i], z[i]).normalize_or(fallback),
     })
 }
 

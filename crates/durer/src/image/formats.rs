@@ -236,7 +236,9 @@ fn side_by_side<const N: usize>(
         let range = i * STEP..i * STEP + made.len();
         let mut made = made.iter_mut();
         strip.eight_bit(&pixels[range.clone()], coverage.get(range).unwrap_or_default(), |rgba| {
-            made.by_ref().take(1).for_each(|pixel| *pixel = of(rgba));
+            if let Some(pixel) = made.next() {
+                *pixel = of(rgba);
+            }
         });
     });
     bytes

@@ -96,13 +96,12 @@ impl PartialRender {
             Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..pixels)?))
         });
         strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
+            let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
             for index in blocks {
-                let rect = self.blocks.rect(index);
-                let Some(film) = state.samples[index].film(rect) else { continue };
-                for (x, y) in rect.places() {
-                    let at = place(Crop { top: rect.top, ..window }, x, y);
+                self.each_of_block(state, index, |film, x, y| {
+                    let at = place(strip, x, y);
                     (colors[at], coverage[at]) = (film.resolve(x, y), film.coverage(x, y));
-                }
+                });
             }
         });
         (colors, coverage)
@@ -136,12 +135,16 @@ impl PartialRender {
 
     fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
         let window = self.job.window();
-        for (index, block) in state.samples.iter().enumerate() {
-            let rect = self.blocks.rect(index);
-            let Some(film) = block.film(rect) else { continue };
-            for (x, y) in rect.places() {
-                visit(place(window, x, y), &film, x, y);
-            }
+        for index in 0..state.samples.len() {
+            self.each_of_block(state, index, |film, x, y| visit(place(window, x, y), film, x, y));
+        }
+    }
+
+    /// The pixels of a block that has samples.
+    fn each_of_block(&self, state: &State, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
+        let rect = self.blocks.rect(index);
+        if let Some(film) = state.samples[index].film(rect) {
+            rect.places().for_each(|(x, y)| visit(&film, x, y));
         }
     }
 

@@ -38,7 +38,6 @@ pub struct World {
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
-    has_mipmaps: bool,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// All things, where they are a few planes and spheres: for rays that are asked together.
@@ -98,7 +97,6 @@ impl World {
             has_cutouts: false,
             hides_backs: false,
             has_interfaces: false,
-            has_mipmaps: false,
             packs: PrimitivePacks::default(),
             few: PrimitivePacks::default(),
             loose: Vec::new(),
@@ -107,7 +105,6 @@ impl World {
         world.has_cutouts = world.finds_cutouts();
         world.hides_backs = world.finds_hidden_backs();
         world.has_interfaces = world.finds_interfaces();
-        world.has_mipmaps = world.textures().iter().any(Texture::has_levels);
         world.emitters = Emitters::new(&world);
         world
     }
@@ -135,7 +132,7 @@ impl World {
     /// Whether some picture has smaller versions of itself, so that it matters how wide what a
     /// sample stands for is.
     pub fn has_mipmaps(&self) -> bool {
-        self.has_mipmaps
+        self.textures().iter().any(Texture::has_levels)
     }
 
     /// The first hit in the ray's interval.

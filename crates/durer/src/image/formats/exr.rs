@@ -19,6 +19,7 @@ use std::collections::HashSet;
 use std::io::Cursor;
 
 const NAME: &str = "OpenEXR";
+const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 pub const FORMAT: Format = Format {
     name: NAME,
@@ -26,7 +27,7 @@ pub const FORMAT: Format = Format {
     depth: Depth::Float,
     layers: true,
     most_side: u32::MAX,
-    begins: |bytes| bytes.starts_with(&[0x76, 0x2f, 0x31, 0x01]),
+    begins: |bytes| bytes.starts_with(&MAGIC),
     head,
     decode,
     encode,
@@ -41,11 +42,17 @@ fn letters(alpha: bool) -> &'static [&'static str] {
     if alpha { &["A", "B", "G", "R"] } else { &["B", "G", "R"] }
 }
 
+/// Bytes of the numbers of a row.
+fn row_bytes(strip: &Strip) -> u64 {
+    4 * letters(strip.alpha).len() as u64 * u64::from(strip.width)
+}
+
 /// Magic number, version, attributes, and where each row begins.
 ///
 /// Source: *OpenEXR File Layout*, openexr.com.
 fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
-    let row = 8 + 4 * letters(strip.alpha).len() as u64 * u64::from(strip.width);
+    // Before its numbers a row has its own and how many bytes there are.
+    let row = 8 + row_bytes(strip);
     if row > i32::MAX as u64 {
         return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB"));
     }
@@ -54,7 +61,7 @@ fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
     let mut header = Header::new(Text::default(), size, channels.collect());
     header.own_attributes.layer_name = None;
     let header = header.with_encoding(Compression::Uncompressed, BlockDescription::ScanLines, LineOrder::Increasing);
-    let mut bytes = vec![0x76, 0x2f, 0x31, 0x01, 2, 0, 0, 0];
+    let mut bytes = [MAGIC, [2, 0, 0, 0]].concat();
     header.write(&mut bytes).map_err(|error| ImageError::unsupported(NAME, error))?;
     sort_attributes(&mut bytes);
     let first = bytes.len() as u64 + 8 * u64::from(strip.height);
@@ -63,9 +70,8 @@ fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
 }
 
 fn row(strip: &Strip, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut Vec<u8>) {
-    let letters = letters(strip.alpha);
     out.extend(y.to_le_bytes());
-    out.extend((4 * letters.len() as u32 * strip.width).to_le_bytes());
+    out.extend((row_bytes(strip) as u32).to_le_bytes());
     if strip.alpha {
         out.extend((0..pixels.len()).flat_map(|i| coverage.get(i).unwrap_or(&1.0).to_le_bytes()));
     }

@@ -118,9 +118,10 @@ pub(super) fn encode(
     for layer in layers {
         let strip = Strip::of(layer, options);
         out.extend((rows.head)(&strip)?);
-        let mut next = 0..;
+        let mut row = 0;
         layer.try_rows(rows.bottom_up, |pixels, coverage| {
-            next.by_ref().take(1).for_each(|row| (rows.row)(&strip, row, pixels, coverage, out));
+            (rows.row)(&strip, row, pixels, coverage, out);
+            row += 1;
             Ok(())
         })?;
     }
