@@ -4,8 +4,7 @@
 //! direction counts by its cosine.
 
 use super::spawn::spawn_ray;
-use super::trace::{RayKind, TermKind, TraceListener};
-use super::whitted::hit_record;
+use super::trace::{HitRecord, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::bsdf::{Frame, warp};
 use crate::describe::{Rule, described};
@@ -58,7 +57,7 @@ impl AmbientOcclusion<'_> {
         if let Some(at) = self.world.intersect(ray, tally) {
             let (surface, inside) = (&at.surface, at.inside());
             let n = if inside { -surface.n_geo } else { surface.n_geo };
-            tally.hit(|| hit_record(self.world, &at, n, inside, false));
+            tally.hit(|| HitRecord::new(self.world, &at, n, inside, false));
             let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
             if self.world.occluded(spawn_ray(surface, dir, self.radius, None), tally) {
                 color = Color::ZERO;

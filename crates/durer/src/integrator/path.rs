@@ -6,8 +6,7 @@
 //! paths end at random, in proportion to what they are worth.
 
 use super::media::{Media, Passage};
-use super::trace::{Bounce, RayKind, TermKind, TermValue, TraceListener};
-use super::whitted::hit_record;
+use super::trace::{Bounce, HitRecord, RayKind, TermKind, TermValue, TraceListener};
 use super::{Integrate, Settings};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
@@ -329,7 +328,7 @@ impl<'w> Path<'w> {
         tally: &mut T,
     ) -> Spectrum {
         let shading = self.world.shading(at, passage.map_or(1.0, Passage::eta), &sample.lanes);
-        tally.hit(|| hit_record(self.world, at, shading.frame.normal, at.inside(), false));
+        tally.hit(|| HitRecord::new(self.world, at, shading.frame.normal, at.inside(), false));
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(at);
         if emitted != Color::ZERO {

@@ -13,8 +13,8 @@
 use crate::bvh::{RayCount, TraversalCounter, TraversalStats};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
 use crate::spectrum::{Lanes, Spectrum};
-use crate::world::HighlightModel;
 use crate::world::emitters::LightId;
+use crate::world::{HighlightModel, Interaction, World};
 use serde::Serialize;
 
 /// Hears what an integrator does. The closures are called only by those that listen.
@@ -229,6 +229,29 @@ pub struct HitRecord {
     pub local: Option<RayRecord>,
     /// Numbers of the materials that make up the point, with their shares.
     pub material: u32,
+}
+
+impl HitRecord {
+    /// Of a hit, of which `n` is the normal that light is reckoned with.
+    pub(super) fn new(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> Self {
+        let Interaction { ray, hit, surface, material, .. } = at;
+        let object = &world.objects()[hit.object as usize];
+        HitRecord {
+            object: hit.object,
+            part: world.triangle(hit),
+            t: hit.t,
+            position: surface.position,
+            n_geo: surface.n_geo,
+            n_shade: surface.n_shade,
+            n,
+            from_behind,
+            black,
+            uv: surface.uv.get(),
+            barycentric: surface.barycentric,
+            local: object.own_ray(ray).as_ref().map(Into::into),
+            material: *material,
+        }
+    }
 }
 
 /// How a ray's direction was chosen.

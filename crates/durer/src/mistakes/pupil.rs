@@ -10,7 +10,7 @@ use crate::dialect::Compat;
 use crate::integrator::media::Media;
 use crate::integrator::media::Passage;
 use crate::integrator::spawn::{spawn_ray, to_light};
-use crate::integrator::whitted::{Blend, fresnel_share};
+use crate::integrator::whitted::secondary::{Blend, fresnel_share};
 use crate::integrator::{Settings, Whitted, refract};
 use crate::light::{Emitter, Illumination, Light};
 use crate::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};

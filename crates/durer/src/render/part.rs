@@ -26,6 +26,9 @@ pub struct PartialRender {
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
     state: Mutex<State>,
+    /// How often it was locked.
+    #[cfg(test)]
+    pub(super) locked: std::sync::atomic::AtomicU64,
 }
 
 /// What was made.
@@ -132,7 +135,17 @@ impl PartialRender {
         let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
         let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
         let state = Mutex::new(State { samples: vec![sampled; count], rays });
-        Ok(PartialRender { job, shard, scene, look, blocks, ray_blocks, state })
+        Ok(PartialRender {
+            job,
+            shard,
+            scene,
+            look,
+            blocks,
+            ray_blocks,
+            state,
+            #[cfg(test)]
+            locked: Default::default(),
+        })
     }
 
     /// What decides the picture.
@@ -156,6 +169,8 @@ impl PartialRender {
     }
 
     pub(super) fn state(&self) -> MutexGuard<'_, State> {
+        #[cfg(test)]
+        self.locked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

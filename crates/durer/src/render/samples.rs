@@ -330,3 +330,6 @@ impl<'a> Samples<'a> {
         differences
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -217,16 +217,16 @@ impl Mesh {
 
     /// The surface of a triangle at a crossing.
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
-        let corners = self.corners(part);
+        // All that lies far away in memory is asked for before anything waits for it.
+        let (corners, normals) = (self.corners(part), self.corner_normals(part));
+        let uvs = attribute(&self.data.triangle_uvs, &self.data.uvs, part);
         let (position, error, barycentric) = interpolate(corners, crossing.uv);
         let n_geo = face_normal(corners);
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
-        let normals = self.corner_normals(part);
         let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
         let shadow_offsets =
             normals.map_or([Vec3::ZERO; 2], |normals| shadow_offsets(position, corners, normals).map(mix));
-        let uv = attribute(&self.data.triangle_uvs, &self.data.uvs, part)
-            .map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
+        let uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
         let color = self.color(part, barycentric).unwrap_or([1.0; 4]);

@@ -2,11 +2,13 @@
 
 mod nested;
 
+use super::secondary::fresnel_share;
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
 use crate::integrator::{TraceNode, TraceRecorder};
 use crate::math::random::Random;
+use crate::math::{Vec3, reflect};
 use std::path::Path;
 
 const ALL: Settings = Settings {

@@ -1,0 +1,92 @@
+//! Light that comes straight from lamps.
+
+use super::Whitted;
+use crate::dialect::Compat;
+use crate::integrator::spawn::{spawn_ray, to_light};
+use crate::integrator::trace::{Shadow, TermKind, TraceListener};
+use crate::light::Illumination;
+use crate::math::{Color, Ray64, Vec3, fp, gamma, reflect};
+use crate::shape::Surface;
+use crate::world::{HighlightModel, Material, Phong};
+
+impl Whitted<'_> {
+    /// What a witness is told of a shadow ray.
+    pub(super) fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
+        let ray = self.shadow_ray(surface, seen);
+        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
+        Shadow { ray: (&ray).into(), blocker, share: share.into() }
+    }
+
+    #[inline]
+    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
+        let rules = self.world.rules();
+        // What stands exactly at the light does not block it.
+        let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        to_light(surface, seen.to_light, reach, rules.epsilon)
+    }
+
+    /// The share of a light that arrives: nothing behind a thing, or what transparent things let
+    /// through.
+    pub(super) fn visible<T: TraceListener>(&self, surface: &Surface, seen: &Illumination, tally: &mut T) -> Color {
+        if !self.settings.shadows || seen.color == Color::ZERO {
+            return Color::ONE;
+        }
+        let mut ray = self.shadow_ray(surface, seen);
+        if self.world.rules().has(Compat::ShadowFronts) {
+            let nearest = self.world.intersect(&ray, tally);
+            let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
+            return if blocked { Color::ZERO } else { Color::ONE };
+        }
+        if !self.settings.transparent_shadows {
+            return if self.world.occluded_along(&ray, tally) { Color::ZERO } else { Color::ONE };
+        }
+        let mut share = Color::ONE;
+        // A thing with many layers is followed only so far.
+        for _ in 0..64 {
+            let Some(hit) = self.world.closest_along(&mut ray, tally) else { return share };
+            // What lets nothing through need not be looked at.
+            match &self.world.materials()[self.world.material_of(&hit) as usize] {
+                Material::Phong(phong) if phong.transparent == Color::ZERO => break,
+                _ => {}
+            }
+            let blocker = self.world.interaction_along(&ray, hit);
+            let parts = self.world.parts(&blocker);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
+            if share == Color::ZERO {
+                break;
+            }
+            let rest = ray.rounded.t_max - blocker.hit.t;
+            ray = spawn_ray(&blocker.surface, seen.to_light, rest, self.world.rules().epsilon);
+        }
+        Color::ZERO
+    }
+}
+
+/// Diffuse term and highlight of one light.
+#[inline(always)]
+pub(super) fn direct<T: TraceListener>(
+    phong: &Phong,
+    diffuse: Color,
+    n: Vec3,
+    view: Vec3,
+    seen: &Illumination,
+    tally: &mut T,
+) -> Color {
+    let cosine = n.dot(seen.to_light);
+    tally.begin(|| TermKind::Diffuse { cosine });
+    tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
+    let mut color = cosine.max(0.0) * diffuse;
+    if let Some((specular, exponent, model)) = phong.highlight {
+        let base = match model {
+            HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
+            HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light)),
+        };
+        if let Some(base) = base {
+            let strength = fp::pow(base.max(0.0), exponent);
+            tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+            tally.end(Color::splat(strength), Color::ONE, specular);
+            color += strength * specular;
+        }
+    }
+    color * seen.color
+}

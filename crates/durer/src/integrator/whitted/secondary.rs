@@ -1,0 +1,174 @@
+//! Mirrored and transmitted light.
+
+use super::{Path, Whitted};
+use crate::dialect::Compat;
+use crate::integrator::media::{Body, Media, Passage};
+use crate::integrator::spawn::spawn_ray;
+use crate::integrator::trace::{RayKind, TermKind, TraceListener};
+use crate::math::{Color, Vec3, reflect};
+use crate::shape::Surface;
+use crate::world::{Interaction, Material, WeightedMaterial};
+
+impl Whitted<'_> {
+    /// Mirrored and transmitted light.
+    pub(super) fn secondary<T: TraceListener>(
+        &self,
+        at: &Interaction,
+        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
+        passage: Passage,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        // The normal on the ray's side.
+        let Interaction { ray, surface, .. } = at;
+        let leaving = self.sees_back(at);
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
+        // An interpolated normal may point away from the ray; the surface itself does not.
+        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
+        // A mirror without `shade_back` reflects about the normal as it is; the direction is the
+        // same.
+        let mirrored = reflect(ray.dir(), n);
+        // About a normal that is not of length 1 it is another one.
+        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
+            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
+            false => (mirrored, n),
+        };
+        let Passage { here, there, .. } = passage;
+        let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir(), n, here / there) };
+        let total = transparent != Color::ZERO && transmitted.is_none();
+        // With one of the two left out, the other has all the light.
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        // Total reflection weighs 1.
+        let r = divided.then(|| {
+            let zero = leaving && self.world.rules().has(Compat::ExitR0);
+            transmitted.map_or(1.0, |t| fresnel_share(ray.dir(), n, t, (here, there), zero))
+        });
+        if let Some(r) = r {
+            reflective *= r;
+            transparent *= 1.0 - r;
+        }
+        tally.begin(|| TermKind::Secondary { here, there, fresnel: r, total });
+        let mut color = Color::ZERO;
+        if self.settings.reflection {
+            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
+        }
+        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
+            let path = Path { media: &passage.behind, ..path };
+            color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
+        }
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+
+    /// How light that may go through at a hit does; `None` where none may.
+    #[inline]
+    pub(crate) fn passage(&self, at: &Interaction, media: &Media) -> Option<Passage> {
+        if !self.world.may_enter(at) {
+            return None;
+        }
+        let blend = match &self.world.materials()[at.material as usize] {
+            Material::Phong(phong) => Blend::of(&[WeightedMaterial { phong, share: 1.0 }]),
+            Material::Solid(..) => Blend::of(&self.world.parts(at)),
+        };
+        if blend.transparent == Color::ZERO {
+            return None;
+        }
+        let leaving = self.sees_back(at);
+        Some(match self.world.rules().is_official() {
+            true => self.official_passage(at.hit.object, blend, leaving, media),
+            false => media.nested_passage(self.world, at, blend.ior, leaving),
+        })
+    }
+
+    /// The course's: one index is carried along, and behind glass there is air.
+    fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
+        let (known, ior) = (media.ior(), blend.ior);
+        let (here, there) = match (leaving, blend.fresnel) {
+            (true, true) if known != 1.0 || self.world.rules().has(Compat::AirAtEye) => (known, 1.0),
+            (true, _) => (ior, 1.0),
+            (false, true) => (known, ior),
+            (false, false) => (1.0, ior),
+        };
+        Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
+    }
+
+    /// One secondary ray, weighed by a colour.
+    fn bounce<T: TraceListener>(
+        &self,
+        from: RayKind,
+        surface: &Surface,
+        dir: Vec3,
+        weight: Color,
+        path: Path,
+        tally: &mut T,
+    ) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
+        // The course takes the length of the colour, which for grey is more than what is left of
+        // the light.
+        let old = self.world.rules().is_official();
+        let total = path.weight * if old { weight.length() } else { weight.max_element() };
+        if total < self.settings.least_weight {
+            tally.begin(|| TermKind::Cut { weight: total });
+            tally.end(weight, Color::ONE, Color::ZERO);
+            return Color::ZERO;
+        }
+        let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
+        tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
+        let found = self.world.closest_along(&mut ray, tally);
+        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
+        tally.end(weight, Color::ONE, color);
+        weight * color
+    }
+}
+
+/// What the materials of a point reflect and let through together. Weights are mixed; the index is
+/// that of the part that weighs most.
+#[derive(Clone, Copy)]
+pub(crate) struct Blend {
+    pub(crate) reflective: Color,
+    pub(crate) transparent: Color,
+    pub(crate) ior: f32,
+    pub(crate) fresnel: bool,
+}
+
+impl Blend {
+    #[inline]
+    pub(crate) fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {
+        let mut blend = Blend { reflective: Color::ZERO, transparent: Color::ZERO, ior: 1.0, fresnel: false };
+        let mut most = 0.0;
+        for &WeightedMaterial { phong, share } in parts {
+            blend.reflective += share * phong.reflective;
+            blend.transparent += share * phong.transparent;
+            if share > most {
+                (most, blend.ior, blend.fresnel) = (share, phong.ior, phong.fresnel);
+            }
+        }
+        blend
+    }
+}
+
+/// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5; `zero` takes 0 for R0.
+///
+/// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
+/// Physically-based Rendering*, Eurographics 1994.
+pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
+    let ratio = (there - here) / (there + here);
+    let r0 = if zero { 0.0 } else { ratio * ratio };
+    let cosine = if here <= there { dir.dot(n).abs() } else { transmitted.dot(n).abs() };
+    let rest = 1.0 - cosine;
+    let square = rest * rest;
+    r0 + (1.0 - r0) * square * square * rest
+}
+
+/// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for
+/// total reflection.
+///
+/// eta is the index before over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
+/// (d·n)^2)).
+pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
+    let cosine = d.dot(n);
+    let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
+    (radicand >= 0.0).then(|| eta * (d - cosine * n) - radicand.sqrt() * n)
+}

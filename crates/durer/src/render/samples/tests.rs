@@ -1,0 +1,54 @@
+//! What the loop over samples must not do: many threads would wait for each other there.
+
+use super::*;
+use crate::compile::testing;
+use crate::integrator::Method;
+use crate::render::{Control, PartialRender, Shard};
+
+/// Mirrors, glass and a texture of noise under two lamps, of which one is a surface.
+const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
+Lights { PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
+Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
+Materials {
+  PhongMaterial { diffuseColor 0.8 0.3 0.2 specularColor 1 1 1 exponent 30 reflectiveColor 0.5 0.5 0.5 }
+  PhongMaterial { diffuseColor 0.1 0.1 0.1 transparentColor 0.9 0.9 0.9 refractionIndex 1.5 }
+  PrincipledMaterial { baseColor 0.9 0.6 0.3 specularRoughness 0.4 coatWeight 0.5 }
+  PrincipledMaterial { baseColor 0 0 0 emissionLuminance 1000 } }
+Group {
+  MaterialIndex 0 Plane { normal 0 1 0 offset -0.5 }
+  MaterialIndex 1 Sphere { center -1 0.5 0 radius 0.9 }
+  MaterialIndex 2 Transform { YRotate 30 Box { min 0.4 -0.5 -1 max 1.6 0.7 0.2 } }
+  MaterialIndex 3 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }";
+
+#[test]
+fn no_sample_allocates() {
+    let world = testing::read(TEXT);
+    let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));
+    for method in [Method::WHITTED, Method::PATH] {
+        let sampling = Sampling::Filtered { samples: 64, filter: crate::film::Filter::default() };
+        let job = Job { width: 32, height: 32, sampling, method, ..Job::default() };
+        let part = job.whole();
+        let samples = Samples::new(&world, &job, &stop);
+        let mut film = Film::window(0, 0, 32, 32);
+        let mut take = |range| samples.add(&mut film, part, range, &at, &mut RayCount::default()).unwrap();
+        // What a thread makes once.
+        take(0..1);
+        let made = allocation_counter::measure(|| take(1..16));
+        assert_eq!(made.count_total, 0, "{method:?}");
+    }
+}
+
+#[test]
+fn a_tile_is_locked_twice_whatever_it_holds() {
+    let world = testing::read(TEXT);
+    let locks = |width: u32, samples: u32| {
+        let sampling = Sampling::Filtered { samples, filter: crate::film::Filter::default() };
+        let job = Job { width, height: 32, sampling, ..Job::default() };
+        let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
+        let control = Control { tile: Some(16), threads: Some(2), ..Control::default() };
+        part.render(&world, &control, &mut |_, _| {}).unwrap();
+        part.locked.load(Relaxed)
+    };
+    // Of one sample there is one pass: four tiles more are eight locks more.
+    assert_eq!(locks(96, 1) - locks(64, 1), 8);
+}
