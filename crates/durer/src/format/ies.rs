@@ -47,13 +47,25 @@ impl Numbers<'_> {
         }
     }
 
-    /// Angles that rise.
+    /// A factor, which turns no light into darkness.
+    fn factor(&mut self, what: &str) -> Result<f64, Box<Diagnostic>> {
+        let (number, start) = self.next(what)?;
+        match number >= 0.0 {
+            true => Ok(number),
+            false => Err(self.error(start, self.at, format!("the {what} must not be less than 0"))),
+        }
+    }
+
+    /// Angles that rise, within a turn to either side.
     fn angles(&mut self, count: usize, what: &str) -> Result<Vec<f32>, Box<Diagnostic>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
             let (angle, start) = self.next(what)?;
             if angles.last().is_some_and(|last| angle as f32 <= *last) {
                 return Err(self.error(start, self.at, format!("the {what}s must rise")));
+            }
+            if angle.abs() > 360.0 {
+                return Err(self.error(start, self.at, format!("a {what} must lie between -360 and 360 degrees")));
             }
             angles.push(angle as f32);
         }
@@ -108,7 +120,7 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
     }
     numbers.next("number of lamps")?;
     numbers.next("lumens of a lamp")?;
-    let (multiplier, _) = numbers.next("multiplier")?;
+    let multiplier = numbers.factor("multiplier")?;
     let verticals = numbers.count("number of vertical angles")?;
     let horizontals = numbers.count("number of horizontal angles")?;
     let (kind, kind_at) = numbers.next("photometric type")?;
@@ -121,7 +133,7 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
     for what in ["units", "width", "length", "height"] {
         numbers.next(what)?;
     }
-    let (ballast, _) = numbers.next("ballast factor")?;
+    let ballast = numbers.factor("ballast factor")?;
     // Of 1986: a factor for ballast and lamp; later reserved, and 1.
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
@@ -215,6 +227,13 @@ mod tests {
             ("TILT=NONE\n1 1 1 1e9 1 1 2", "2:7 the number of vertical angles must be a whole number from 1 to 4000"),
             ("TILT=lamp.tlt\n1 1", "1:1 the tilt of another file (`LAMP.TLT`) cannot be read"),
             ("TILT=NONE\n1 x", "2:3 `x` is no number: the lumens of a lamp should be here"),
+            // Found by fuzzing: the difference to the next angle is not finite.
+            (
+                "TILT=NONE\n1 1 1 2 1 1 2 0 0 0\n1 1 1\n-1e126 2\n0\n1 2",
+                "4:1 a vertical angle must lie between -360 and 360 degrees",
+            ),
+            ("TILT=NONE\n1 1 -1 2", "2:5 the multiplier must not be less than 0"),
+            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0\n-0.5", "3:1 the ballast factor must not be less than 0"),
             ("TILT=NONE\n1 1 1 2 1 7 2", "2:11 the photometric type must be 1 (C), 2 (B) or 3 (A)"),
         ] {
             assert_eq!(parsed(text).unwrap_err(), error);
