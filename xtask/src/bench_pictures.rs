@@ -4,7 +4,7 @@ use anyhow::Result;
 use std::process::{Command, ExitCode};
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let program = crate::build::given_away()?;
+    let program = crate::build::durer()?;
     let script = crate::root()?.join("xtask/src/bench_pictures.py");
     let dragon = crate::corpus().join("meshes/dragon.ply");
     let status = Command::new("python3").arg(script).arg(program).arg(dragon).args(arguments).status()?;

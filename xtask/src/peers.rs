@@ -23,7 +23,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         Some(python) => python,
         None => environment(&root.join("target/peers"))?,
     };
-    let program = if time { crate::build::given_away()? } else { crate::build::durer()? };
+    let program = crate::build::durer()?;
     let mut command = Command::new(python);
     match time {
         true => command.arg(root.join("xtask/src/peers_time.py")).arg(program).arg(crate::corpus().join("meshes")),
