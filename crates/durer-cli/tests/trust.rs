@@ -187,6 +187,18 @@ fn no_file_is_read_and_replaced() {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
         place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["no part of a picture"]);
     }
+    // And nothing else over it.
+    let part = place.bytes("part.png");
+    for line in [
+        format!("render scene.txt {size} -o part.png"),
+        format!("explain scene.txt {size} --pixel 3,3 --html here/part.png"),
+        "convert scene.txt -o part.png".into(),
+        "compare p.png p.png --report part.png".into(),
+        "check scene.txt --fix -o part.png".into(),
+    ] {
+        place.refused(2, &line, &["is saved work"]);
+        assert_eq!(place.bytes("part.png"), part, "{line}");
+    }
     place.put("o.png.part", "somebody's download");
     place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is no part of a picture"]);
     assert_eq!(place.bytes("o.png.part"), b"somebody's download");
