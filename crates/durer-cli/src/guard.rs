@@ -74,13 +74,14 @@ impl Guard {
     /// A file is to be written, as the option `what` says: refuses what cannot be written, what is
     /// read, what is written already, and saved work.
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
-        if is_saved_work(path) {
-            return Err(bad(format!(
+        let place = self.saves(what, path)?;
+        match is_saved_work(path) {
+            false => Ok(place),
+            true => Err(bad(format!(
                 "{what}: `{}` is saved work, which is replaced by nothing else: choose another name",
                 path.display()
-            )));
+            ))),
         }
-        self.saves(what, path)
     }
 
     /// The same for work that is saved, over saved work as well.
