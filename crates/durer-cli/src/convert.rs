@@ -56,6 +56,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
+    // What the text that is written would name is not lost either.
+    loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
     if let Some(guess) = &loaded.guess {
         report::note(&guess.note());
     }

@@ -6,6 +6,8 @@
 
 use crate::failure::{Failure, bad};
 use durer::image::Destination;
+use durer::render::PartialRender;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The files of one run.
@@ -70,8 +72,20 @@ impl Guard {
     }
 
     /// A file is to be written, as the option `what` says: refuses what cannot be written, what is
-    /// read, and what is written already.
+    /// read, what is written already, and saved work.
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
+        let place = self.saves(what, path)?;
+        match is_saved_work(path) {
+            false => Ok(place),
+            true => Err(bad(format!(
+                "{what}: `{}` is saved work, which is replaced by nothing else: choose another name",
+                path.display()
+            ))),
+        }
+    }
+
+    /// The same for work that is saved, over saved work as well.
+    pub fn saves(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.claim(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
         if own && !crate::terminal::has_standard_output() {
@@ -99,6 +113,15 @@ impl Guard {
         self.outputs.push(output);
         Ok(())
     }
+}
+
+/// Whether a file holds a part of a picture.
+fn is_saved_work(path: &Path) -> bool {
+    let mut start = [0; PartialRender::MAGIC.len()];
+    // Whoever opens what is no file may wait for ever.
+    path.is_file()
+        && std::fs::File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok())
+        && start == *PartialRender::MAGIC
 }
 
 fn both(output: &Named, input: &Named) -> Failure {

@@ -58,7 +58,7 @@ impl Keeper {
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
         let place = match work.no_checkpoint || beside_stream {
             true => None,
-            false => Some(guard.writes(option, &path)?),
+            false => Some(guard.saves(option, &path)?),
         };
         if let Some(place) = place.as_ref().filter(|place| place.is_stream() && work.shard.is_none()) {
             return Err(bad(format!("{option}: `{}` is no file, and cannot keep anything", place.path().display())));

@@ -46,6 +46,7 @@ use args::{Cli, Command};
 use clap::Parser;
 use failure::bad;
 use std::ffi::OsString;
+use std::io::IsTerminal;
 use std::path::Path;
 
 /// Does what a command line says, whose first word is the name of the program; gives the exit code.
@@ -66,7 +67,7 @@ pub fn run(words: Vec<OsString>) -> u8 {
             .map(|word| word.into_string().map_err(|word| bad(format!("{word:?} is not UTF-8"))))
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
-        None => match Cli::parse_from(words).command {
+        None => match parsed(words).command {
             Command::Render(args) => render::run(*args),
             Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),
@@ -90,4 +91,15 @@ pub fn run(words: Vec<OsString>) -> u8 {
         Ok(()) => 0,
         Err(failure) => failure.report(),
     }
+}
+
+/// What a command line says. Help is written as all else is, so that it is told if it cannot be.
+fn parsed(words: Vec<OsString>) -> Cli {
+    Cli::try_parse_from(words).unwrap_or_else(|error| {
+        if error.use_stderr() || std::io::stdout().is_terminal() {
+            error.exit();
+        }
+        terminal::say(error.render().to_string().trim_end());
+        std::process::exit(0)
+    })
 }

@@ -1,11 +1,12 @@
 //! `durer verify`.
 
-use crate::failure::{Failure, bad};
+use crate::failure::Failure;
 use crate::guard::Guard;
 use crate::open::{load_options, open};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::terminal::say;
 use crate::{job, progress};
+use anyhow::Context;
 use clap::Args;
 use durer::bvh::SimdLevel;
 use durer::compile::AccelKind;
@@ -108,9 +109,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         made.map_err(crate::failure::failed)?.map_err(|text| Failure::Other(anyhow::anyhow!(text)))?;
     let hash = plain.hash().to_string();
     let levels = simd_levels();
-    let others = levels.iter().filter(|level| **level != SimdLevel::chosen().name());
-    if let Some(level) = others.into_iter().find(|level| hash_at(level).ok().as_ref() != Some(&hash)) {
-        return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
+    for level in levels.iter().filter(|level| **level != SimdLevel::chosen().name()) {
+        if hash_at(level).with_context(|| format!("cannot render with DURER_SIMD={level}"))? != hash {
+            return Err(Failure::Other(anyhow::anyhow!("with DURER_SIMD={level} the film differs")));
+        }
     }
     if !args.quiet {
         say(&format!(
@@ -125,7 +127,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
 }
 
 /// The hash that another process finds with other instructions, in fewer ways.
-fn hash_at(level: &str) -> Result<String, Failure> {
+fn hash_at(level: &str) -> anyhow::Result<String> {
     let mut arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
     // Options may be given once only.
     while let Some(at) = arguments.iter().position(|argument| argument == "--trials") {
@@ -136,7 +138,7 @@ fn hash_at(level: &str) -> Result<String, Failure> {
     let mut command = Command::new(std::env::current_exe()?);
     let output = command.args(arguments).env("DURER_SIMD", level).stdin(Stdio::null()).output()?;
     let text = String::from_utf8_lossy(&output.stdout).into_owned();
-    text.lines().last().map(str::to_string).ok_or_else(|| bad("it said nothing"))
+    text.lines().last().map(str::to_string).with_context(|| String::from_utf8_lossy(&output.stderr).trim().to_string())
 }
 
 fn cancelled(error: WayError) -> RenderError {

@@ -1,4 +1,4 @@
-//! Every command of the README and of the book's chapters for readers is run, at a small size.
+//! Every command of the README and of the book is run, at a small size.
 //!
 //! docs/lecture.md, whose commands made its pictures, has a test of its own.
 
@@ -7,18 +7,6 @@ mod common;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The pages, each with commands that go on from one to the next.
-const PAGES: [&str; 8] = [
-    "README.md",
-    "docs/student.md",
-    "docs/teacher.md",
-    "docs/engineer.md",
-    "docs/scenes.md",
-    "docs/models.md",
-    "docs/explain.md",
-    "docs/photographs.md",
-];
-
 /// What follows an option in a command, changed so that the test is short.
 const SMALLER: [(&str, &str); 3] = [("--size", "40x30"), ("--samples", "4"), ("--pixel", "20,15")];
 
@@ -26,11 +14,39 @@ fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The commands of a page: lines of code that begin with `cargo durer`.
+/// The README and all pages of the book, from the root.
+fn pages() -> Vec<String> {
+    let mut pages = vec!["README.md".to_string(), "crates/durer-cli/README.md".to_string()];
+    for folder in ["docs", "docs/language"] {
+        let names = std::fs::read_dir(root().join(folder)).unwrap().map(|entry| entry.unwrap().file_name());
+        let names = names.map(|name| format!("{folder}/{}", name.to_string_lossy()));
+        pages.extend(names.filter(|name| name.ends_with(".md") && name != "docs/lecture.md"));
+    }
+    pages.sort();
+    pages
+}
+
+/// The commands of a page, each of which may go on from those before it: lines of code that begin
+/// with `cargo durer`, or with `durer` where that is installed.
 fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
-    text.lines().filter_map(|line| line.strip_prefix("    cargo durer ")).map(str::to_string).collect()
+    let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
+    let commands = lines.filter_map(|line| line.strip_prefix("cargo ").unwrap_or(line).strip_prefix("durer "));
+    commands.map(str::to_string).collect()
 }
+
+/// The reader's own files, which pages name and do not have; `scene.txt` and `model.glb` are made of a
+/// scene.
+const STAND_INS: [(&str, &str); 4] = [
+    (
+        "scene.xml",
+        r#"<scene version="3.0.0"><sensor type="perspective"/><sensor type="perspective" id="second"/>
+        <emitter type="constant"/><shape type="sphere"/></scene>"#,
+    ),
+    ("office.rad", "void light l\n0\n0\n3 9 9 9\nl sphere s\n0\n0\n4 0 0 0 1\n"),
+    ("office.rif", "scene= office.rad\nview= def -vp 0 -5 0 -vd 0 1 0\n"),
+    ("office.vf", "rvu -vtv -vp 0 -5 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45\n"),
+];
 
 /// The same command for a picture of few pixels.
 fn smaller(command: &str) -> String {
@@ -48,20 +64,33 @@ fn smaller(command: &str) -> String {
 #[test]
 #[cfg(unix)]
 fn every_command_of_the_book_runs() {
-    for page in PAGES {
+    let durer = |folder: &Path, line: &str| {
+        // A shell, for the pages' patterns of file names.
+        let line = format!("{} {line}", env!("CARGO_BIN_EXE_durer"));
+        Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
+    };
+    let mut count = 0;
+    for page in pages() {
         let folder = tempfile::tempdir().unwrap();
         std::os::unix::fs::symlink(root().join("scenes").canonicalize().unwrap(), folder.path().join("scenes"))
             .unwrap();
-        for command in commands(page) {
-            // A shell, for the pages' patterns of file names.
-            let line = format!("{} {}", env!("CARGO_BIN_EXE_durer"), smaller(&command));
-            let ran = Command::new("sh").args(["-c", &line]).current_dir(folder.path()).output().unwrap();
+        std::fs::copy(root().join("scenes/sphere.txt"), folder.path().join("scene.txt")).unwrap();
+        STAND_INS.iter().for_each(|(name, text)| std::fs::write(folder.path().join(name), text).unwrap());
+        let commands = commands(&page);
+        if commands.iter().any(|command| command.contains("model.glb")) {
+            assert!(durer(folder.path(), "convert scene.txt -o model.glb").status.success());
+        }
+        for command in commands {
+            count += 1;
+            let ran = durer(folder.path(), &smaller(&command));
             let said = String::from_utf8_lossy(&ran.stderr);
             // `compare` says by 1 that pictures differ, as they do on these pages.
             let fine = ran.status.success() || command.starts_with("compare") && ran.status.code() == Some(1);
             assert!(fine, "{page}: {command}\n{said}");
         }
     }
+    println!("{count} commands");
+    assert!(count > 50);
 }
 
 #[test]

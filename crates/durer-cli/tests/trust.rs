@@ -82,11 +82,40 @@ fn large_pictures_are_refused_by_their_heads() {
     let place = Place::new();
     place.put("large.png", png(6000, b""));
     let [texture, field, sky] = with_pictures(&place, "large.png");
-    for (line, words) in [(texture, "need about 10"), (field, "make no landscape"), (sky, "need about 10")] {
+    for (line, words) in [(texture, "need about 275"), (field, "make no landscape"), (sky, "need about 275")] {
         let ran = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
         assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
         assert!(ran.err.contains(words), "{}", ran.err);
     }
+    // Readers of other formats look at pictures themselves, within the same memory.
+    let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
+    let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
+    let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"
+        Material "coateddiffuse" "texture roughness" "t" Shape "sphere""#;
+    place.put("lit.pbrt", format!("{pbrt}{lit}"));
+    place.put("rough.pbrt", format!("{pbrt}{rough}"));
+    place.put(
+        "lit.xml",
+        r#"<scene version="3.0.0"><sensor type="perspective"/><shape type="sphere"/>
+        <emitter type="envmap"><string name="filename" value="large.png"/></emitter></scene>"#,
+    );
+    place.put(
+        "bright.rad",
+        "void colorpict p\n7 red green blue large.png . u v\n0\n0\np plastic m\n0\n0\n5 .5 .5 .5 0 0\n\
+        m sphere s\n0\n0\n4 0 0 0 1\n",
+    );
+    place.put("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    for scene in ["lit.pbrt", "rough.pbrt", "lit.xml", "bright.rad", "m.obj --environment large.png --up z"] {
+        let line = format!("render {scene} --size 8x8 --samples 1 --quiet --restart -o o.png");
+        let ran = place.shell(&format!("{LIMITED}{line} --threads 2 --memory 64M"));
+        assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
+        assert!(ran.err.contains("need about") && ran.err.contains("see `--memory`"), "{line}: {}", ran.err);
+    }
+    // What is decoded is copied once to where it stays, and both are there for a moment.
+    place.put("large.png", png(5000, b""));
+    let [texture, ..] = with_pictures(&place, "large.png");
+    let ran = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
+    assert!(ran.code == Some(2) && ran.err.contains("need about 191 MiB"), "{}", ran.err);
     // Six faces are refused together that would each fit alone.
     place.put("large.png", png(2000, b""));
     let [texture, _, sky] = with_pictures(&place, "large.png");
@@ -128,6 +157,9 @@ fn no_file_is_read_and_replaced() {
         format!("explain scene.txt {size} --pixel 3,3 --html scene.txt"),
         format!("explain mesh.txt {size} --pixel 3,3 --html ./m.obj"),
         "convert scene.txt -o here/scene.txt".into(),
+        "convert mesh.txt -o m.obj".into(),
+        "convert mesh.txt -o here/m.obj --to durer".into(),
+        "convert texture.txt -o hard.png".into(),
         "compare p.png link.png --report hard.png".into(),
         "compare p.png p.png --report r.html --heat here/p.png".into(),
         "compare p.png p.png --report scene.txt --scene scene.txt".into(),
@@ -154,6 +186,18 @@ fn no_file_is_read_and_replaced() {
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
         place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["no part of a picture"]);
+    }
+    // And nothing else over it.
+    let part = place.bytes("part.png");
+    for line in [
+        format!("render scene.txt {size} -o part.png"),
+        format!("explain scene.txt {size} --pixel 3,3 --html here/part.png"),
+        "convert scene.txt -o part.png".into(),
+        "compare p.png p.png --report part.png".into(),
+        "check scene.txt --fix -o part.png".into(),
+    ] {
+        place.refused(2, &line, &["is saved work"]);
+        assert_eq!(place.bytes("part.png"), part, "{line}");
     }
     place.put("o.png.part", "somebody's download");
     place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is no part of a picture"]);

@@ -115,7 +115,8 @@ pub fn model(data: &[u8], name: &str) {
     let files = RefCell::new(files);
     let source = Source::folder(folder());
     for staging in [Staging::default(), Staging { at: Some(0.5), ..Staging::default() }] {
-        let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging };
+        let input =
+            Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging, memory: MEMORY };
         let Some(format) = find_scene_format(data, name) else { return };
         let Some(scene) = read_model(format, &input, &mut diagnostics) else { continue };
         assert!(scene.camera.is_some());

@@ -12,6 +12,7 @@ use crate::source::{Source, SourceError, is_packed, unpacked};
 use crate::threads;
 use crate::world::World;
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -64,6 +65,8 @@ pub struct Loaded {
     pub guess: Option<Guess>,
     /// Where its files are.
     source: Source,
+    /// Bytes that one of its pictures may take while it is decoded.
+    memory: u64,
 }
 
 /// Reads a scene file. What is wrong with it goes into `diagnostics`, and the text into `files`.
@@ -117,6 +120,7 @@ pub fn load_text(
         bytes = unpacked(&bytes, budget(options)).map_err(refuse).ok()?;
         name.truncate(name.strip_suffix(".gz").map_or(name.len(), str::len));
     }
+    let memory = options.memory.unwrap_or(u64::MAX);
     let file = files.add(path.display().to_string(), bytes.clone());
     let json = json::recognise(&bytes, &name).then(|| json::Document::open(&bytes, file, diagnostics));
     let is_model = json.is_none() && options.dialect.is_none() && !options.course;
@@ -125,11 +129,11 @@ pub fn load_text(
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));
         let staging = &options.staging;
-        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, staging };
+        let input = Input { bytes: &bytes, file, files: &known, name: &name, source: &source, staging, memory };
         let scene = read_model(format, &input, diagnostics);
         *files = known.into_inner();
         let scene = scene?;
-        return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source });
+        return Some(Loaded { scene, rules: dialect.rules().clone(), dialect, guess: None, source, memory });
     }
     if options.staging.turned.is_some() {
         let error = Diagnostic::error("nothing goes around this scene: it is seen by the camera that is written in it");
@@ -168,7 +172,7 @@ pub fn load_text(
     source = source.budget(budget(options));
     let read = ReadOptions { dialect, strict: options.strict, compat: rules.compat };
     if let Some(json) = json {
-        return json.scene(diagnostics).map(|scene| Loaded { scene, rules, dialect, guess, source });
+        return json.scene(diagnostics).map(|scene| Loaded { scene, rules, dialect, guess, source, memory });
     }
     let known = RefCell::new(std::mem::take(files));
     let scene = course::read_with(&bytes, file, read, &course::below(&source, &known), diagnostics);
@@ -180,7 +184,7 @@ pub fn load_text(
         // What is wrong in one dialect may be right in another.
         diagnostics.push(guess.note());
     }
-    scene.map(|scene| Loaded { scene, rules, dialect, guess, source })
+    scene.map(|scene| Loaded { scene, rules, dialect, guess, source, memory })
 }
 
 /// Bytes that may be read.
@@ -213,11 +217,23 @@ impl Loaded {
         self.source.paths()
     }
 
+    /// The files that it names, as far as they are there, whether they were read or not.
+    pub fn named_files(&self) -> Vec<PathBuf> {
+        // In JSON names stand in quotes, and nothing else there is a file.
+        let text = json::write(&self.scene, self.dialect);
+        let quoted: BTreeSet<&str> = text.split('"').collect();
+        // `picture.png:g` is a channel of a file.
+        let names = quoted.iter().flat_map(|text| [Some(*text), text.rsplit_once(':').map(|parted| parted.0)]);
+        let mut found = self.source.paths();
+        found.extend(names.flatten().filter_map(|name| self.source.place(name)));
+        found
+    }
+
     /// Writes the scene as a model in another format, if that format is written; what it has no
     /// words for is warned of.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
-        let output = Output { name, source: &self.source, normals: self.rules.mesh_normals };
+        let output = Output { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
         Some(write(&self.scene, &output, diagnostics))
     }
 

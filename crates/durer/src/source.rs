@@ -282,6 +282,11 @@ impl Source {
         Stamp::of(&self.find(name).ok()?)
     }
 
+    /// Where the file of that name is, if there is one that may be read.
+    pub fn place(&self, name: &str) -> Option<PathBuf> {
+        self.find(name).ok().filter(|path| path.is_file())
+    }
+
     /// The hash of what was read by a name.
     pub fn digest_of(&self, name: &str) -> Option<Digest> {
         self.already().files.get(name).copied()

@@ -3,8 +3,9 @@
 use glam::{DAffine3, DMat3, DQuat, Vec3};
 
 /// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of
-/// `cargo xtask long`.
+/// `cargo xtask long`; a five-hundredth of that under Miri, which is far slower.
 pub fn rounds(usual: usize) -> usize {
+    let usual = if cfg!(miri) { usual.div_ceil(500) } else { usual };
     let times = std::env::var("DURER_ROUNDS").ok();
     usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
 }

@@ -314,7 +314,7 @@ impl<'r> Loader<'r> {
             _ => self.read(name, "environment", diagnostics)?,
         };
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
-        let picture = encoded.read(self.resources.memory, image::decode_srgb);
+        let picture = encoded.read_for(Environment::MAKING, self.resources.memory, image::decode_srgb);
         let picture = used(name, &name.path, picture, diagnostics)?;
         let (width, height) = (picture.width, picture.height);
         let (turn, scale) = written.environment_placing();
@@ -341,7 +341,7 @@ impl<'r> Loader<'r> {
         let mut left = Vec::with_capacity(6);
         for (path, bytes) in &files {
             left.push(memory);
-            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed8()));
+            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed_raster()));
         }
         // Decoding takes longer than all else. The first face in order that is wrong is the one
         // complained of.

@@ -68,7 +68,7 @@ impl Loader<'_> {
                 PictureBytes::File(path) => self.resources.source.read(&path).ok(),
             };
             let Some(bytes) = bytes else { continue };
-            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed8());
+            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed_raster());
             let Some(rest) = left.checked_sub(needed) else { break };
             left = rest;
             packed.push((key, bytes));

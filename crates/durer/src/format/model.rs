@@ -38,6 +38,8 @@ pub struct Output<'a> {
     pub source: &'a Source,
     /// How triangles without normals are meant.
     pub normals: MeshNormals,
+    /// Bytes that one of its pictures may take while it is decoded.
+    pub memory: u64,
 }
 
 /// A file that is to become a scene.
@@ -54,6 +56,8 @@ pub struct Input<'a> {
     pub source: &'a Source,
     /// How it is to be shown.
     pub staging: &'a Staging,
+    /// Bytes that one of its pictures may take while it is decoded.
+    pub memory: u64,
 }
 
 impl Scene {

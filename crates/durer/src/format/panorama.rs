@@ -3,7 +3,7 @@
 
 use crate::describe::FileName;
 use crate::diag::Span;
-use crate::image::{self, Image, Layer, WriteOptions};
+use crate::image::{self, Image, ImageError, Layer, WriteOptions};
 use crate::math::{Color, Vec3, fp};
 use crate::scene::{Picture, PictureBytes, Scene};
 use crate::texture::Mapping;
@@ -14,26 +14,39 @@ use std::f32::consts::{PI, TAU};
 /// Places along each side of a texel that are looked up.
 const PLACES: u32 = 3;
 
+/// Bytes that a texel takes while the picture is made: its light, and that as a file which grows
+/// to twice as much.
+const MAKING: u64 = 4 * size_of::<Color>() as u64;
+
 /// Makes the picture of what comes from each direction of the world, and puts it around the scene.
-/// Gives whether that could be done.
+///
+/// # Errors
+/// [`ImageError::Memory`] where it would take more bytes than allowed.
 pub(super) fn surround(
     scene: &mut Scene,
     (name, span): (&str, Span),
     rows: u32,
+    allowed: u64,
     light: impl Fn(DVec3) -> Color + Sync,
-) -> bool {
-    let Ok(whole) = Image::from_pixels(2 * rows, rows, pixels(light, rows)) else { return false };
-    let mut bytes = Vec::new();
-    let written = image::format_for("a.pfm")
-        .and_then(|format| format.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes));
-    if written.is_err() {
-        return false;
+) -> Result<(), ImageError> {
+    let (width, height) = (2 * u64::from(rows), u64::from(rows));
+    let needed = width * height * MAKING;
+    if needed > allowed {
+        return Err(ImageError::Memory { width, height, needed, allowed });
     }
+    let whole = Image::from_pixels(2 * rows, rows, pixels(light, rows))?;
+    let mut bytes = Vec::new();
+    image::format_for("a.pfm")?.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes)?;
     let path = format!("{name}#environment.pfm");
     let bytes = PictureBytes::Here(path.clone(), bytes.into());
     scene.assets.pictures.insert(path.clone(), Picture { bytes, mapping: Mapping::default() });
     scene.background.environment = Some(FileName { path, span });
-    true
+    Ok(())
+}
+
+/// What is left of the memory beside pictures.
+pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
+    pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
 }
 
 /// What a picture of longitude and latitude has in a direction, y upwards: the nearest texel's.

@@ -4,14 +4,15 @@ use super::model::Input;
 use super::said::Said;
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
-use crate::image::{self, Depth, Encoded, Image, Layer, Transfer, WriteOptions};
+use crate::image::{self, Depth, Encoded, Image, ImageError, Layer, Transfer, WriteOptions};
 use crate::math::Color;
 use crate::scene::{Picture, PictureBytes, Scene};
 use crate::source::Digest;
 use std::sync::Arc;
 
-/// Bytes that decoding one picture may take.
-pub(super) const MEMORY: u64 = 1 << 31;
+/// Bytes a pixel that are there beside a picture while it becomes another one: that, and its eight
+/// bits in two ways.
+pub(super) const CHANGING: usize = 2 * size_of::<Color>();
 
 /// Finds pictures beside a scene, and tells what is wrong with them.
 #[derive(Clone, Copy)]
@@ -34,8 +35,12 @@ impl Pictures<'_> {
 
     fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
-        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, decode));
-        read.map_err(|error| self.complain(name, at, &error)).ok()
+        self.read(name, &bytes, decode).map_err(|error| self.complain(name, at, &error)).ok()
+    }
+
+    /// Decodes a picture that may become another one.
+    fn read(&self, name: &str, bytes: &[u8], decode: fn(u8) -> f32) -> Result<Image, ImageError> {
+        Encoded::open(bytes, name)?.read_for(CHANGING, self.input.memory, decode)
     }
 
     /// A file as a picture of eight bits, which other formats become.
@@ -58,7 +63,9 @@ impl Pictures<'_> {
     pub fn mean(&self, picture: &Picture, at: Span) -> Option<f32> {
         match &picture.bytes {
             PictureBytes::File(path) => self.image(path, at).map(|image| mean(&image)),
-            PictureBytes::Here(path, bytes) => image::read(bytes, path).ok().map(|image| mean(&image)),
+            PictureBytes::Here(path, bytes) => {
+                self.read(path, bytes, image::decode_linear).ok().map(|image| mean(&image))
+            }
         }
     }
 
@@ -73,7 +80,7 @@ impl Pictures<'_> {
     ) -> Option<Picture> {
         let (path, image) = match &picture.bytes {
             PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
-            PictureBytes::Here(path, bytes) => (path, Encoded::open(bytes, path).ok()?.read(MEMORY, decode).ok()?),
+            PictureBytes::Here(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
         };
         let texel = |p: &Color| Color::splat(change((p.x + p.y + p.z) / 3.0).clamp(0.0, 1.0));
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
@@ -82,9 +89,17 @@ impl Pictures<'_> {
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
-    fn complain(&self, name: &str, at: Span, error: &dyn std::fmt::Display) {
-        let message = format!("the picture `{name}` cannot be used: {error}");
-        self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+    fn complain(&self, name: &str, at: Span, error: &ImageError) {
+        self.said.push(unusable(name, error).at(at));
+    }
+}
+
+/// What is wrong with a picture.
+pub(super) fn unusable(name: &str, error: &ImageError) -> Diagnostic {
+    let diagnostic = Diagnostic::error(format!("the picture `{name}` cannot be used: {error}")).code("bad-file");
+    match error {
+        ImageError::Memory { .. } => diagnostic.help("see `--memory`"),
+        _ => diagnostic,
     }
 }
 

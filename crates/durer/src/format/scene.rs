@@ -3,12 +3,13 @@
 
 use super::model::SceneFormat;
 pub use super::model::{Input, Output, WriteScene};
+use super::pictures::unusable;
 use super::{
     MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
 };
 use crate::describe::FileName;
 use crate::diag::{Diagnostic, Diagnostics, Span};
-use crate::image::{self, Encoded};
+use crate::image::{self, Encoded, ImageError};
 use crate::light::Light;
 use crate::math::Vec3;
 use crate::scene::staging::Sides;
@@ -38,8 +39,7 @@ const fn alone(format: &MeshFormat) -> SceneFormat {
     SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false }
 }
 
-/// Bytes that decoding a picture may take, and rows of one that is turned.
-const MEMORY: u64 = 1 << 31;
+/// Rows of a picture of all directions that is turned.
 const MAX_ROWS: u32 = 2048;
 
 /// The format of scenes that the ending of a name says.
@@ -68,7 +68,9 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
     }
     if let Some(path) = &input.staging.environment {
         let (name, bytes) = named(input, path, diagnostics)?;
-        scene.surround(&name, bytes, input.staging.up.unwrap_or(format.up));
+        let up = input.staging.up.unwrap_or(format.up);
+        let surrounded = scene.surround(&name, bytes, up, input.memory);
+        surrounded.map_err(|error| diagnostics.push(unusable(&name, &error))).ok()?;
     }
     if !input.staging.bare {
         input.staging.complete(&mut scene, format.up, format.whole);
@@ -109,22 +111,22 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 impl Scene {
     /// Puts a picture of all directions around the scene, instead of all light that is far away.
     /// Its upper border is up.
-    fn surround(&mut self, name: &str, bytes: Arc<[u8]>, up: Axis) {
+    fn surround(&mut self, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
         self.background = Background { color: Vec3::ZERO, ..Background::default() };
         let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
         self.lights.get_or_insert_default().retain(near);
-        let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
         let sides = Sides::new(up);
         let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
         // What cannot be read is told when the scene is compiled.
         if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
             let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
-            if panorama::surround(self, (name, Span::default()), picture.height.min(MAX_ROWS), light) {
-                return;
-            }
+            let memory = panorama::beside([&picture], memory);
+            return panorama::surround(self, (name, Span::default()), picture.height.min(MAX_ROWS), memory, light);
         }
         let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
         self.assets.pictures.insert(name.to_string(), picture);
         self.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
+        Ok(())
     }
 }

@@ -50,6 +50,13 @@ impl<'a> Encoded<'a> {
         self.needed8().saturating_add(floats as u64)
     }
 
+    /// Bytes of memory that it takes from its file to where its values stay: they are copied there
+    /// once.
+    pub fn needed_raster(&self) -> u64 {
+        let texel = if self.head.eight { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
+        self.needed8().max((2 * self.count * texel) as u64)
+    }
+
     /// Its values as they stand in an eight-bit file.
     ///
     /// # Errors
@@ -71,9 +78,7 @@ impl<'a> Encoded<'a> {
     /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of
     /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
-        // Numbers are copied once to where they stay.
-        let copy = if self.head.eight { 0 } else { self.count * size_of::<[f32; 4]>() };
-        self.decode(self.needed8().saturating_add(copy as u64), memory)
+        self.decode(self.needed_raster(), memory)
     }
 
     /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point
@@ -82,7 +87,16 @@ impl<'a> Encoded<'a> {
     /// # Errors
     /// Those of [`Encoded::read8`].
     pub fn read(&self, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
-        Ok(match self.decode(self.needed(), memory)? {
+        self.read_for(0, memory, decode)
+    }
+
+    /// The same where what is made of the pixels takes so many bytes more for each of them.
+    ///
+    /// # Errors
+    /// Those of [`Encoded::read`].
+    pub fn read_for(&self, more: usize, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
+        let later = (self.count as u64).saturating_mul((size_of::<Vec3>() + more) as u64);
+        Ok(match self.decode(self.needed().max(later), memory)? {
             Raster::Sixteen(image, _) | Raster::Float(image, _) => image,
             Raster::Eight(Image8 { width, height, pixels, .. }) => {
                 let table: [f32; 256] = std::array::from_fn(|value| decode(value as u8));

@@ -101,6 +101,10 @@ impl Environment {
         self.scale * (sum * PI / 2.0 / (self.width * self.height) as f32)
     }
 
+    /// Bytes for each texel that making it takes beside the texels that are given: those once more
+    /// where they stay, the sums, and the hints while they grow.
+    pub const MAKING: usize = size_of::<Color>() + size_of::<[f32; 2]>();
+
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
         self.texels.len() * size_of::<[f32; 4]>() + size_of_val(&*self.hints)

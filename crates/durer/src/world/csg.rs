@@ -6,11 +6,15 @@
 //! Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18,
 //! 1982; with counts for the operations, so that an operation of many parts costs no more.
 //!
-//! Faces that coincide: crossings of different parts count as one where their distance across the
-//! surfaces is no more than single precision can tell there, some 2^-19 of the coordinates. All
-//! their bits turn together: so no skin is left, or appears, where two faces share a plane. If the
-//! bit of the whole changes, the surface is that of the part written first of those that could have
-//! made the change: alone, or as the last.
+//! Faces that coincide: crossings of different parts count as one where the faces lie alike and
+//! their distance across the surfaces is no more than single precision can tell there, some 2^-19
+//! of the coordinates. All their bits turn together: so no skin is left, or appears, where two faces
+//! share a plane. If the bit of the whole changes, the surface is that of the part written first of
+//! those that could have made the change: alone, or as the last.
+//!
+//! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
+//! crossings, which is of the parts' own size however far away they are: what is nearer to the edge
+//! than that could not be told to be in the corner, and light would leak in there.
 //!
 //! The `part` of a hit is the number of a triangle or shape among those of all parts, with two
 //! bits: whether the surface is turned inside out, and whether the ray enters the solid.
@@ -58,6 +62,8 @@ struct Leaf {
     first: u32,
     /// How far its surface may be off, at least.
     slack: f32,
+    /// How far a crossing may be off from where the surface is.
+    rounding: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -159,7 +165,8 @@ impl Csg {
             (Solid::Operand(object), Some(edge)) => {
                 let first = self.leaves.last().map_or(0, |last| last.first + last.object.parts());
                 let slack = slack_of(&object);
-                self.leaves.push(Leaf { object, edge, first, slack });
+                let size = object.bounds().map_or(0.0, |b| b.size().max_element());
+                self.leaves.push(Leaf { object, edge, first, slack, rounding: 4.0 * f32::EPSILON * size });
             }
             (Solid::Operand(_), None) => {}
             (Solid::Join { rule, parts, cut }, edge) => {
@@ -369,19 +376,19 @@ impl Csg {
         let gap = (b.t - a.t) * line.dir.length();
         let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
         let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
-        if gap.is_nan() || gap <= slack || gap > GRAZING * slack {
+        let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
+        if gap.is_nan() || gap <= f64::from(r + q).min(slack) || gap > GRAZING * slack {
             return gap <= slack;
         }
-        // A grazing ray runs farther between faces at the same distance.
-        let cosine = |event: &Event| {
+        let [m, n] = [a, b].map(|event| {
             let object = &self.leaves[event.leaf as usize].object;
             let crossing = ShapeHit { t: event.t as f32, uv: event.uv };
-            let n = object
-                .surface(ray, object.local_line(ray).at(event.t), &crossing, event.part, PlacementQuirks::default())
-                .n_geo;
-            n.as_dvec3().dot(line.dir).abs() / line.dir.length()
-        };
-        gap * cosine(a).max(cosine(b)) <= slack
+            let at = object.local_line(ray).at(event.t);
+            object.surface(ray, at, &crossing, event.part, PlacementQuirks::default()).n_geo.as_dvec3()
+        });
+        // A grazing ray runs farther between faces at the same distance.
+        let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / line.dir.length();
+        m.dot(n).abs() >= ALIKE && gap * cosine <= slack
     }
 
     /// Of crossings that have changed the whole together, the one whose surface is seen.
@@ -416,6 +423,10 @@ impl Csg {
 
 /// The sine at which rays graze: flatter ones are off by more than the slack covers.
 const GRAZING: f64 = 1000.0;
+
+/// The cosine of the angle up to which faces lie alike, 3.6 degrees: as far as faces of size 1 that
+/// should share a plane may be turned by the rounding of their corners at 10^6.
+const ALIKE: f64 = 0.998;
 
 fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))

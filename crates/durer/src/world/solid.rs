@@ -96,10 +96,7 @@ impl Solid {
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Solid::Operand(object) => object.bounds(),
-            Solid::Join { rule: BoolOp::All, parts, .. } => parts
-                .iter()
-                .filter_map(Solid::bounds)
-                .reduce(|a, b| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }),
+            Solid::Join { rule: BoolOp::All, parts, .. } => parts.iter().map(Solid::bounds).fold(None, common),
             Solid::Join { parts, .. } => {
                 parts.iter().try_fold(Aabb::EMPTY, |all, part| Some(all.union(part.bounds()?)))
             }
@@ -163,22 +160,33 @@ fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
 /// Pieces of the first part, each with those of the others that it touches.
 fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
-    let mut found = parts.next().map_or(Vec::new(), Solid::boxed_pieces);
+    let first = parts.next().map_or(Vec::new(), Solid::boxed_pieces);
+    // What is in all of several is joined in the end: to do it part by part would take the square of
+    // their number.
+    let mut found: Vec<(Vec<Solid>, Option<Aabb>)> =
+        first.into_iter().map(|(solid, bounds)| (vec![solid], bounds)).collect();
     let whole = |pieces: Vec<Piece>| Solid::any(pieces.into_iter().map(|piece| piece.0).collect());
+    let joined = |(all, bounds): (Vec<Solid>, Option<Aabb>)| (Solid::all(all, Vec::new()), bounds);
     for part in parts {
         let others = part.boxed_pieces();
-        let Some(near) = touching(&found, &others) else {
-            found = vec![boxed(Solid::all(vec![whole(found), whole(others)], Vec::new()))];
+        let boxes: Vec<Option<Aabb>> = found.iter().map(|(_, bounds)| *bounds).collect();
+        let Some(near) = touching(&boxes, &others) else {
+            let (one, other) = (boxed(whole(found.into_iter().map(joined).collect())), boxed(whole(others)));
+            found = vec![(vec![one.0, other.0], common(one.1, other.1))];
             continue;
         };
-        let meet = |(piece, near): (Piece, Vec<usize>)| {
-            (!near.is_empty()).then(|| boxed(Solid::all(vec![piece.0, Solid::any(copies(&others, &near))], Vec::new())))
+        let meet = |((mut all, bounds), near): ((Vec<Solid>, Option<Aabb>), Vec<usize>)| {
+            let (solid, others) = boxed(Solid::any(copies(&others, &near)));
+            all.push(solid);
+            (!near.is_empty()).then(|| (all, common(bounds, others)))
         };
         found = found.into_iter().zip(near).filter_map(meet).collect();
     }
+    let mut found: Vec<Piece> = found.into_iter().map(joined).collect();
     found.retain(|(_, bounds)| bounds.is_none_or(|b| !b.is_empty()));
+    let boxes: Vec<Option<Aabb>> = found.iter().map(|piece| piece.1).collect();
     let cut: Vec<Piece> = cut.into_iter().flat_map(Solid::boxed_pieces).collect();
-    let Some(near) = touching(&found, &cut) else {
+    let Some(near) = touching(&boxes, &cut) else {
         return vec![boxed(Solid::all(vec![whole(found)], vec![whole(cut)]))];
     };
     let cut_off = |((solid, bounds), near): (Piece, Vec<usize>)| (Solid::all(vec![solid], copies(&cut, &near)), bounds);
@@ -189,20 +197,25 @@ fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 
-/// For each piece those of others whose boxes touch its own; `None` where these are too many to be
-/// told apart.
-fn touching(pieces: &[Piece], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
-    if pieces.len() * others.len() > MAX_PAIRS {
+/// What is in both of two boxes, of which one without end changes nothing.
+fn common(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
+    a.zip(b).map(|(a, b)| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }).or(a).or(b)
+}
+
+/// For each box the pieces whose own boxes touch it; `None` where these are too many to be told
+/// apart.
+fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
+    if boxes.len() * others.len() > MAX_PAIRS {
         return None;
     }
     let sizes: Vec<usize> = others.iter().map(|other| other.0.parts().len()).collect();
     let mut copied = 0;
-    let near = |piece: &Piece| -> Option<Vec<usize>> {
-        let near: Vec<usize> = (0..others.len()).filter(|&i| touch(piece.1, others[i].1)).collect();
+    let near = |bounds: &Option<Aabb>| -> Option<Vec<usize>> {
+        let near: Vec<usize> = (0..others.len()).filter(|&i| touch(*bounds, others[i].1)).collect();
         copied += near.iter().map(|&i| sizes[i]).sum::<usize>();
         (copied <= MAX_COPIES).then_some(near)
     };
-    pieces.iter().map(near).collect()
+    boxes.iter().map(near).collect()
 }
 
 /// Whether two boxes touch, or nearly, for all that single precision can tell.

@@ -23,7 +23,7 @@ fn staged(bytes: &[u8], folder: &Path, name: &str, staging: &Staging) -> (Option
     let file = files.add(name, std::sync::Arc::clone(&bytes));
     let source = Source::folder(folder);
     let files = std::cell::RefCell::new(files);
-    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging };
+    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging, memory: u64::MAX };
     let format = find_scene_format(&bytes, name).expect("it is known");
     let scene = read_model(format, &input, &mut diagnostics);
     // What is wrong has a place.

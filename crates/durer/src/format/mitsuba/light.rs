@@ -9,6 +9,7 @@ use super::texture::Texture;
 use crate::describe::FileName;
 use crate::diag::Diagnostic;
 use crate::format::panorama;
+use crate::format::pictures::unusable;
 use crate::format::said::meant;
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use crate::math::{Color, Vec3, fp};
@@ -160,8 +161,9 @@ impl Reader<'_> {
                     let DVec3 { x, y, z } = to_light.transform_vector3(dir).normalize_or(DVec3::Y);
                     scale * panorama::looked_up(&picture, DVec3::new(-x, y, -z))
                 };
-                if !panorama::surround(&mut self.scene, (&name, at), rows, light) {
-                    self.said.bad(at, "the picture around the scene cannot be made");
+                let memory = panorama::beside([&picture], self.input.memory);
+                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
+                    self.said.push(unusable(&name, &error).at(at));
                 }
             }
         }

@@ -5,13 +5,13 @@ use super::made::Infinite;
 use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
 use crate::format::panorama;
+use crate::format::pictures::unusable;
 use crate::image::{self, Encoded, Image};
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
-/// Bytes that decoding one picture may take, and rows of the picture that is made.
-const MEMORY: u64 = 1 << 31;
+/// Rows of the picture that is made.
 const MAX_ROWS: u32 = 2048;
 
 /// A picture with what turns and scales it.
@@ -31,7 +31,9 @@ impl Reader<'_> {
             match infinite {
                 Infinite::Even(color) => even += color,
                 Infinite::Picture { name, at, scale, to_light, illuminance } => {
-                    let Some(image) = self.environment(&name, at) else { continue };
+                    let memory =
+                        panorama::beside(sources.iter().map(|source: &Source| &source.image), self.input.memory);
+                    let Some(image) = self.environment(&name, at, memory) else { continue };
                     let scale = scale * illuminance.map_or(1.0, |wanted| wanted / upper_illuminance(&image));
                     first.get_or_insert((name, at));
                     sources.push(Source { image, to_light, scale: if scale.is_finite() { scale } else { 0.0 } });
@@ -42,22 +44,22 @@ impl Reader<'_> {
         let Some((name, at)) = first else { return };
         let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
-        if !panorama::surround(&mut self.scene, (&name, at), rows, light) {
-            self.said.bad(at, "the picture around the scene cannot be made");
+        let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
+        if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
+            self.said.push(unusable(&name, &error).at(at));
         }
     }
 
     /// A square picture of equal areas.
-    fn environment(&self, name: &str, at: Span) -> Option<Image> {
-        let refuse = |message: String, code| self.said.push(Diagnostic::error(message).code(code).at(at));
+    fn environment(&self, name: &str, at: Span, memory: u64) -> Option<Image> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
             Err(error) => {
-                refuse(error.to_string(), "missing-file");
+                self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at));
                 return None;
             }
         };
-        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
         match read {
             Ok(picture) if picture.width == picture.height => Some(picture),
             Ok(picture) if picture.width == 2 * picture.height => {
@@ -72,7 +74,7 @@ impl Reader<'_> {
                 None
             }
             Err(error) => {
-                refuse(format!("the picture `{name}` cannot be used: {error}"), "bad-file");
+                self.said.push(unusable(name, &error).at(at));
                 None
             }
         }

@@ -6,11 +6,9 @@ use super::sky::Sky;
 use super::state::Reader;
 use super::words::Word;
 use crate::format::number::parse_f32;
+use crate::format::pictures::unusable;
 use crate::image::{self, Encoded};
 use crate::math::{Color, Vec3};
-
-/// Bytes that decoding one picture may take.
-const MEMORY: u64 = 1 << 30;
 
 impl Reader<'_> {
     /// The colour that a pattern multiplies everywhere, and the sky that it is.
@@ -84,14 +82,15 @@ impl Reader<'_> {
         let (bytes, _) = self.open(name)?;
         // Radiance's pictures have names without a rule; their content tells.
         let hint = if bytes.starts_with(b"#?") { "picture.hdr" } else { name.text.as_str() };
-        let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb));
+        let memory = self.input.memory;
+        let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(memory, image::decode_srgb));
         match read {
             Ok(picture) => {
                 let sum: glam::DVec3 = picture.pixels.iter().filter(|p| p.is_finite()).map(|p| p.as_dvec3()).sum();
                 Some((sum / picture.pixels.len().max(1) as f64).as_vec3())
             }
             Err(error) => {
-                self.said.bad(name.at, format!("the picture {} cannot be used: {error}", name.shown()));
+                self.said.push(unusable(&name.text, &error).at(name.at));
                 None
             }
         }

@@ -5,6 +5,7 @@ use super::made::{Distant, Kind, Made};
 use super::state::{Place, Reader};
 use crate::diag::Span;
 use crate::format::panorama;
+use crate::format::pictures::unusable;
 use crate::light::{DirectionalLight, Fade, Light, SpotLight};
 use crate::math::{Vec3, fp};
 use crate::scene::Spanned;
@@ -89,8 +90,9 @@ impl Reader<'_> {
             let seen = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
             seen.map_or(Vec3::ZERO, |seen| seen.radiance * seen.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))
         };
-        if !panorama::surround(&mut self.scene, (self.input.name, at), ROWS, light) {
-            self.said.bad(at, "the picture around the scene cannot be made");
+        let (name, memory) = (self.input.name, self.input.memory);
+        if let Err(error) = panorama::surround(&mut self.scene, (name, at), ROWS, memory, light) {
+            self.said.push(unusable(name, &error).at(at));
         }
     }
 }

@@ -116,6 +116,19 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
                 ),
             ),
             ("sphere", "Sphere { center PLACE radius 1 }".into()),
+            (
+                "solid",
+                format!("Intersection {{ Box {{ min {min} max {max} }} Sphere {{ center PLACE radius 1.3 }} }}"),
+            ),
+            (
+                "moved solid",
+                "Transform { Translate PLACE Intersection { Box { min -1 -1 -1 max 1 1 1 } Sphere { center 0 0 0 radius 1.3 } } }"
+                    .into(),
+            ),
+            (
+                "hollow solid",
+                format!("Difference {{ Sphere {{ center PLACE radius 3 }} Box {{ min {min} max {max} }} }}"),
+            ),
         ];
         for (name, walls) in rooms {
             let count = leaks(&room(&walls, at, folder.path()), at, 96 * crate::math::random::rounds(1));

@@ -2,7 +2,7 @@
 
 use super::Writer;
 use crate::describe::FileName;
-use crate::format::pictures::{MEMORY, as_png};
+use crate::format::pictures::{CHANGING, as_png};
 use crate::image::{self, Encoded, Transfer};
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
@@ -81,7 +81,8 @@ impl Writer<'_> {
             PictureBytes::Here(_, bytes) => Some(bytes.clone()),
             PictureBytes::File(name) => self.output.source.read(name).ok(),
         };
-        let Some((bytes, kind)) = found.and_then(|bytes| known_to_gltf(bytes, name)) else {
+        let memory = self.output.memory;
+        let Some((bytes, kind)) = found.and_then(|bytes| known_to_gltf(bytes, name, memory)) else {
             self.left_out(format!("the picture `{name}` cannot be read"));
             self.images.insert(name.clone(), None);
             return None;
@@ -94,13 +95,13 @@ impl Writer<'_> {
 }
 
 /// PNG and JPEG as they are, others as PNG of eight bits.
-fn known_to_gltf(bytes: Arc<[u8]>, name: &str) -> Option<(Arc<[u8]>, &'static str)> {
+fn known_to_gltf(bytes: Arc<[u8]>, name: &str, memory: u64) -> Option<(Arc<[u8]>, &'static str)> {
     if bytes.starts_with(b"\x89PNG") {
         return Some((bytes, "image/png"));
     }
     if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
         return Some((bytes, "image/jpeg"));
     }
-    let image = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(MEMORY, image::decode_srgb)).ok()?;
+    let image = Encoded::open(&bytes, name).ok()?.read_for(CHANGING, memory, image::decode_srgb).ok()?;
     Some((as_png(image, Transfer::Srgb)?, "image/png"))
 }

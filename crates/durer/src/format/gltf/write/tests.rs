@@ -22,7 +22,7 @@ fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = Source::folder(folder.path());
     let mut told = Diagnostics::default();
-    let output = Output { name, source: &source, normals: MeshNormals::Flat };
+    let output = Output { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();
     let bytes = write(scene, &output, &mut told);
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
