@@ -301,7 +301,8 @@ compats! {
     /// is the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2, kept between
     /// 0 and 1.
     ConicRings = "conic-rings",
-    /// A checkerboard of two solid materials has its cells swapped.
+    /// A checkerboard of two solid materials has its cells swapped: on in no dialect, as one official
+    /// picture of 2004 shows it (`output6_18a`) and another of the same scene does not.
     SwappedBoards = "swapped-boards",
     /// Shading normals of transformed things go by the matrix itself and not by its inverse
     /// transpose: no official program's quirk, but a usual mistake.
@@ -396,7 +397,6 @@ const F04: Rules = Rules {
         MatrixOnLeft,
         ThreeCorners,
         ConicRings,
-        SwappedBoards,
     ]),
 };
 
