@@ -297,6 +297,13 @@ compats! {
     StaleNormals = "stale-normals",
     /// The range of a depth picture is cut to whole numbers.
     WholeDepths = "whole-depths",
+    /// Rings of wood are cones, whose grain is stretched along the axis: the first material's share
+    /// is the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2, kept between
+    /// 0 and 1.
+    ConicRings = "conic-rings",
+    /// A checkerboard of two solid materials has its cells swapped: on in no dialect, as one official
+    /// picture of 2004 shows it (`output6_18a`) and another of the same scene does not.
+    SwappedBoards = "swapped-boards",
     /// Shading normals of transformed things go by the matrix itself and not by its inverse
     /// transpose: no official program's quirk, but a usual mistake.
     MovedNormals = "moved-normals",
@@ -381,7 +388,16 @@ const F04: Rules = Rules {
     ambient_textured: true,
     ambient_alone: true,
     transparent_shadows: false,
-    compat: bits(&[BlackBacks, ShadedSides, ScreenPoint, LooseTriangles, ThinTriangles, MatrixOnLeft, ThreeCorners]),
+    compat: bits(&[
+        BlackBacks,
+        ShadedSides,
+        ScreenPoint,
+        LooseTriangles,
+        ThinTriangles,
+        MatrixOnLeft,
+        ThreeCorners,
+        ConicRings,
+    ]),
 };
 
 const F12A4: Rules = Rules {

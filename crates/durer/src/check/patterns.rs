@@ -3,7 +3,8 @@
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::scene_probe::SceneProbe;
 use crate::diag::Diagnostic;
-use crate::material::{ColorNoise, Pattern, Solid};
+use crate::dialect::CompatSet;
+use crate::material::{ColorNoise, Solid};
 use crate::math::Vec3;
 use crate::scene::Material as Written;
 use crate::world::{Geometry, Material, MeshTree, World};
@@ -20,21 +21,23 @@ const FEWEST: usize = 20;
 
 /// What is looked at of a pattern: its share of the first part at a place of the world.
 enum Look<'w> {
-    Solid(&'w Solid, &'w glam::DAffine3),
+    Solid(&'w Solid, &'w glam::DAffine3, CompatSet),
     Noise(&'w ColorNoise),
 }
 
 impl Look<'_> {
     fn of(world: &World, material: u32) -> Option<Look<'_>> {
         match world.materials().get(material as usize)? {
-            Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern)),
+            Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern, world.rules().compat)),
             Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
         }
     }
 
     fn at(&self, place: Vec3) -> f32 {
         match self {
-            Look::Solid(solid, to_pattern) => solid.weight(to_pattern.transform_point3(place.as_dvec3()).as_vec3()),
+            Look::Solid(solid, to_pattern, compat) => {
+                solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *compat)
+            }
             Look::Noise(noise) => {
                 let range = noise.color1 - noise.color2;
                 let most = range.abs().max_element().max(1e-6);
@@ -72,7 +75,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         let fine = places.iter().filter(|place| noisy(place)).count();
         let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
             (message, "no pattern is seen: it is of one colour, or of few large patches", help)
-        } else if matches!(look, Look::Solid(Solid::Mix(_), _)) {
+        } else if matches!(look, Look::Solid(Solid::Mix(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (
@@ -103,7 +106,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Why a pattern cannot be seen as one, if what is written tells.
 fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<(String, &'static str)> {
-    let Look::Solid(solid, to_pattern) = look else { return None };
+    let Look::Solid(solid, to_pattern, _) = look else { return None };
     if let Solid::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
         let help = "the other has no part in it: a `share` between 0 and 1 shows both";

@@ -5,8 +5,9 @@ use super::media;
 use crate::bsdf::Tables;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
+use crate::material::checkerboard::Checkerboard;
 use crate::material::principled::Walls;
-use crate::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial};
+use crate::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Color;
 use crate::scene::{self, MatrixOp, Scene};
 use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
@@ -28,7 +29,7 @@ pub(super) fn compile(
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, rules.compat);
-            Material::Solid(solid.clone(), to_pattern)
+            Material::Solid(meant(solid, scene, rules), to_pattern)
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);
@@ -64,6 +65,20 @@ pub(super) fn compile(
         }
     };
     scene.materials.iter().map(&mut one).collect()
+}
+
+/// A pattern with its two materials in the order of the dialect's program.
+fn meant(solid: &Solid, scene: &Scene, rules: &Rules) -> Solid {
+    let is_solid =
+        |i: u32| matches!(scene.materials.get(i as usize).map(|m| &m.value), Some(scene::Material::Solid(..)));
+    match solid {
+        Solid::Checkerboard(board)
+            if rules.has(Compat::SwappedBoards) && solid.materials().into_iter().all(is_solid) =>
+        {
+            Checkerboard { material1: board.material2, material2: board.material1 }.into()
+        }
+        _ => solid.clone(),
+    }
 }
 
 /// Refuses solids that lead to themselves, are nested too deeply, or double at each level.

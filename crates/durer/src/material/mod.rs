@@ -12,6 +12,7 @@ pub mod solid_noise;
 pub mod wood;
 
 use crate::describe::{Field, described_list};
+use crate::dialect::{Compat, CompatSet};
 use crate::math::Vec3;
 pub use parameters::Parameters;
 pub use phong::{ColorNoise, PhongMaterial};
@@ -38,6 +39,17 @@ described_list! {
         Marble(marble::Marble),
         Wood(wood::Wood),
         Mix(mix::Mix),
+    }
+}
+
+impl Solid {
+    /// The share of the first material at a point of pattern space, by an old program's formula
+    /// where its quirk is asked for.
+    pub fn share(&self, q: Vec3, compat: CompatSet) -> f32 {
+        match self {
+            Solid::Wood(wood) if compat & Compat::ConicRings.bit() != 0 => wood.conic(q),
+            _ => self.weight(q),
+        }
     }
 }
 

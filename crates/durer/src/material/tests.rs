@@ -47,6 +47,21 @@ fn marble_wood_and_noise_follow_their_formulas() {
 }
 
 #[test]
+fn conic_rings_are_the_programs_of_2004() {
+    let wood = wood::Wood { octaves: 3, frequency: 6.0, amplitude: 2.0, ..Default::default() };
+    let mut random = Random(3);
+    for _ in 0..2_000 {
+        let q = 20.0 * random.point();
+        let n = f64::from(turbulence(Vec3::new(q.x, 0.2 * q.y, q.z), 3));
+        let radius = libm::hypot(f64::from(q.x), f64::from(q.z));
+        let share = (libm::sin(6.0 * radius + 0.3 * f64::from(q.y) + 2.0 * n) + 0.5).clamp(0.0, 1.0);
+        let solid = Solid::from(wood.clone());
+        assert!((f64::from(solid.share(q, Compat::ConicRings.bit())) - share * share).abs() < 1e-4);
+        assert_eq!(solid.share(q, 0), wood.weight(q));
+    }
+}
+
+#[test]
 fn noise_is_within_its_range_and_fills_it() {
     let mut random = Random(2);
     let values: Vec<f32> = (0..100_000).map(|_| perlin(100.0 * random.point())).collect();

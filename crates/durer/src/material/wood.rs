@@ -1,12 +1,12 @@
 //! Rings around the y axis: the first material weighs (sin(frequency r + amplitude N) + 1) / 2,
 //! with r the distance from the axis.
 //!
-//! The course left the profile of the rings free; the official program's is steeper, and not known.
+//! The course left the profile of the rings free; [`Wood::conic`] is the official program's.
 
 use super::{MAX_OCTAVES, Pattern};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::math::{Vec3, noise};
+use crate::math::{Vec3, fp, noise};
 
 described! {
     /// Two materials in rings around the y axis.
@@ -21,6 +21,18 @@ described! {
         frequency: f32 = 1.0, required, Rule::Any, ["frequency" in set::ALL];
         /// How much noise bends the rings.
         amplitude: f32 = 1.0, required, Rule::Any, ["amplitude" in set::ALL];
+    }
+}
+
+impl Wood {
+    /// The share of the first material where `conic-rings` holds: the axis is that of a trunk, whose
+    /// rings narrow by a twentieth of their height, with bands of full colour and edges that rise
+    /// as a square.
+    pub fn conic(&self, q: Vec3) -> f32 {
+        let radius = (q.x * q.x + q.z * q.z).sqrt() + 0.05 * q.y;
+        let grain = noise::turbulence(Vec3::new(q.x, 0.2 * q.y, q.z), self.octaves);
+        let share = (fp::sin(self.frequency * radius + self.amplitude * grain) + 0.5).clamp(0.0, 1.0);
+        share * share
     }
 }
 

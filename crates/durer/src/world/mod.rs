@@ -331,7 +331,7 @@ impl World {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
             Material::Solid(solid, to_pattern) => {
                 let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
-                let weight = solid.weight(q);
+                let weight = solid.share(q, self.rules().compat);
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {
