@@ -221,7 +221,7 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["L = k_d I_a + Σ k_d max(0, N·L_i) I_i", "point light:   I_i = I / (a_0 + a_1 d + a_2 d²)"],
         places: &[
             at("crates/durer/src/integrator/whitted.rs", "fn shade"),
-            at("crates/durer/src/integrator/whitted.rs", "fn direct"),
+            at("crates/durer/src/integrator/whitted/direct.rs", "fn direct"),
             at("crates/durer/src/light/point.rs", "fn illuminate"),
             at("crates/durer/src/light/directional.rs", "fn illuminate"),
         ],
@@ -238,7 +238,7 @@ pub static TOPICS: [Topic; 18] = [
             "Phong:   L += k_s max(0, R·L)^s I,   R = d - 2 (d·N) N",
         ],
         places: &[
-            at("crates/durer/src/integrator/whitted.rs", "fn direct"),
+            at("crates/durer/src/integrator/whitted/direct.rs", "fn direct"),
             at("crates/durer/src/math/mod.rs", "fn reflect"),
             at("crates/durer/src/compile/materials.rs", "fn highlight"),
         ],
@@ -255,8 +255,8 @@ pub static TOPICS: [Topic; 18] = [
             "v_i = 0 where something is hit at 0 < t < d_i, else 1",
         ],
         places: &[
-            at("crates/durer/src/integrator/whitted.rs", "fn visible"),
-            at("crates/durer/src/integrator/whitted.rs", "fn shadow_ray"),
+            at("crates/durer/src/integrator/whitted/direct.rs", "fn visible"),
+            at("crates/durer/src/integrator/whitted/direct.rs", "fn shadow_ray"),
             at("crates/durer/src/world/mod.rs", "fn occluded"),
         ],
         shots: &[color("without shadows", SPECULAR), color("with shadows", SHADOWS)],
@@ -290,8 +290,8 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["L += k_r L(p, R),   R = d - 2 (d·N) N"],
         places: &[
             at("crates/durer/src/math/mod.rs", "fn reflect"),
-            at("crates/durer/src/integrator/whitted.rs", "fn secondary"),
-            at("crates/durer/src/integrator/whitted.rs", "fn bounce"),
+            at("crates/durer/src/integrator/whitted/secondary.rs", "fn secondary"),
+            at("crates/durer/src/integrator/whitted/secondary.rs", "fn bounce"),
             at("crates/durer/src/integrator/whitted.rs", "fn trace"),
         ],
         shots: &[
@@ -311,8 +311,8 @@ pub static TOPICS: [Topic; 18] = [
                 such places stay dark.",
         equations: &["t = η (d - (d·N) N) - √(1 - η² (1 - (d·N)²)) N,   η = n_1 / n_2", "L += k_t L(p, t)"],
         places: &[
-            at("crates/durer/src/integrator/whitted.rs", "fn refract"),
-            at("crates/durer/src/integrator/whitted.rs", "fn secondary"),
+            at("crates/durer/src/integrator/whitted/secondary.rs", "fn refract"),
+            at("crates/durer/src/integrator/whitted/secondary.rs", "fn secondary"),
         ],
         shots: &[color("glass without light through it", MIRRORS), color("with transmitted rays", GLASS)],
         lacking: "no glass is seen in it, or no levels of rays are wanted",
@@ -326,7 +326,7 @@ pub static TOPICS: [Topic; 18] = [
             "F = F_0 + (1 - F_0) (1 - cos θ)⁵,   F_0 = ((n_1 - n_2) / (n_1 + n_2))²",
             "L += F k_r L(p, R) + (1 - F) k_t L(p, t)",
         ],
-        places: &[at("crates/durer/src/integrator/whitted.rs", "fn fresnel_share")],
+        places: &[at("crates/durer/src/integrator/whitted/secondary.rs", "fn fresnel_share")],
         shots: &[color("glass that only transmits", GLASS), color("divided by Fresnel's law", FRESNEL)],
         lacking: "no glass with a `refractionIndex` is seen in it",
     },

@@ -5,8 +5,9 @@ use crate::bvh::Grid;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
 use crate::math::{Aabb, Color, Ray, Vec3};
+use crate::shape::Primitive;
 use crate::threads;
-use crate::world::{Accel, World};
+use crate::world::{Accel, Geometry, Object, World};
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
@@ -48,8 +49,17 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
+    // A sphere takes cells by the distance of their middles alone, as the course's programs have it,
+    // also beyond its box.
+    let beyond = Vec3::splat(0.5 * grid.cell_bounds([0; 3]).size().length());
+    let is_sphere = |object: &Object| {
+        object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
+    };
     // Only things with bounds are in the grid.
-    let bounds = |i: usize| object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY);
+    let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
+        own if is_sphere(object(i)) => Aabb { min: own.min - beyond, max: own.max + beyond },
+        own => own,
+    };
     let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
     grid.for_picture(&boxes, |i, cell| object(i).overlaps(&cell))
 }
