@@ -285,7 +285,8 @@ fn a_board_of_solids_has_its_cells_swapped_where_that_is_asked_for() {
             "{CAMERA} Lights {{ numLights 0 }} Background {{ color 0 0 0 ambientLight 1 1 1 }}
              Materials {{ numMaterials 5
                PhongMaterial {{ diffuseColor 1 0 0 }} PhongMaterial {{ diffuseColor 0 1 0 }}
-               Wood {{ materialIndex 0 materialIndex 0 }} Wood {{ materialIndex 1 materialIndex 1 }}
+               Wood {{ materialIndex 0 materialIndex 0 octaves 1 frequency 1 amplitude 0 }}
+               Wood {{ materialIndex 1 materialIndex 1 octaves 1 frequency 1 amplitude 0 }}
                Checkerboard {{ materialIndex {first} materialIndex 3 }} }}
              Group {{ numObjects 1 MaterialIndex 4 Plane {{ normal 0 1 0 offset 0.5 }} }}"
         )
@@ -296,7 +297,8 @@ fn a_board_of_solids_has_its_cells_swapped_where_that_is_asked_for() {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let text = scene(first);
         let loaded = load_text(Path::new("scene.txt"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
-        let world = loaded.unwrap().compile(&options, &mut files, &mut diagnostics);
+        let loaded = loaded.unwrap_or_else(|| panic!("{diagnostics:?}"));
+        let world = loaded.compile(&options, &mut files, &mut diagnostics);
         seen(&world.unwrap_or_else(|| panic!("{diagnostics:?}")), [0.5, 5.0, 0.5], DOWN)
     };
     let (plain, swapped) = (at("2", false), at("2", true));
