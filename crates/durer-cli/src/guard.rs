@@ -117,11 +117,15 @@ impl Guard {
 
 /// Whether a file holds a part of a picture.
 fn is_saved_work(path: &Path) -> bool {
-    let mut start = [0; PartialRender::MAGIC.len()];
     // Whoever opens what is no file may wait for ever.
-    path.is_file()
-        && std::fs::File::open(path).is_ok_and(|mut file| file.read_exact(&mut start).is_ok())
-        && start == *PartialRender::MAGIC
+    path.is_file() && start_of(path).is_ok_and(|start| start == PartialRender::MAGIC)
+}
+
+/// The first bytes of a file, at most as many as a part of a picture is known by.
+pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut start = Vec::new();
+    std::fs::File::open(path)?.take(PartialRender::MAGIC.len() as u64).read_to_end(&mut start)?;
+    Ok(start)
 }
 
 fn both(output: &Named, input: &Named) -> Failure {

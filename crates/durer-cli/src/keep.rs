@@ -1,7 +1,7 @@
 //! What is saved of work that takes long: checkpoints, parts, previews.
 
 use crate::failure::{Failure, bad};
-use crate::guard::Guard;
+use crate::guard::{Guard, start_of};
 use crate::options::RenderArgs;
 use crate::output::{encode, format, lengthened, wrote};
 use crate::terminal::complain;
@@ -227,14 +227,10 @@ fn percent(part: &PartialRender) -> u64 {
 /// Whether a file may be replaced by a part: one that is there already, if it is one itself or
 /// empty.
 fn check_is_part(path: &Path) -> Result<(), String> {
-    use std::io::Read;
-    let mut start = Vec::new();
-    let wrong = |error: std::io::Error| format!("cannot read `{}`: {error}", path.display());
-    match std::fs::File::open(path) {
-        Ok(file) => file.take(PartialRender::MAGIC.len() as u64).read_to_end(&mut start).map(drop).map_err(wrong)?,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {}
-        Err(error) => return Err(wrong(error)),
-    }
+    let start = match start_of(path) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
+        start => start.map_err(|error| format!("cannot read `{}`: {error}", path.display()))?,
+    };
     match PartialRender::MAGIC.starts_with(&start) {
         true => Ok(()),
         false => Err(format!(

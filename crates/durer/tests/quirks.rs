@@ -11,15 +11,19 @@ use std::path::Path;
 
 /// A world of a dialect, with its quirks or under sane rules; files are in a folder.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
-    let rules = dialect.rules().clone();
-    let compat = if official { Vec::new() } else { off(&rules) };
+    let compat = if official { Vec::new() } else { off(dialect.rules()) };
+    world_with(folder, text, dialect, compat, official)
+}
+
+/// The same with some quirks on or off by name.
+fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Compat, bool)>, official: bool) -> World {
     let options = LoadOptions { dialect: Some(dialect), compat, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join("scene.txt");
     let mut loaded = load_text(&path, text.as_bytes().into(), &options, &mut files, &mut diagnostics)
         .unwrap_or_else(|| panic!("{diagnostics:?}"));
     if !official {
-        loaded.rules = rules.sane();
+        loaded.rules = dialect.rules().sane();
     }
     let world = loaded.compile(&options, &mut files, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
@@ -293,13 +297,7 @@ fn a_board_of_solids_has_its_cells_swapped_where_that_is_asked_for() {
     };
     let at = |first: &str, swapped: bool| {
         let compat = vec![(Compat::SwappedBoards, swapped)];
-        let options = LoadOptions { dialect: Some(Dialect::F04), compat, ..LoadOptions::default() };
-        let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
-        let text = scene(first);
-        let loaded = load_text(Path::new("scene.txt"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
-        let loaded = loaded.unwrap_or_else(|| panic!("{diagnostics:?}"));
-        let world = loaded.compile(&options, &mut files, &mut diagnostics);
-        seen(&world.unwrap_or_else(|| panic!("{diagnostics:?}")), [0.5, 5.0, 0.5], DOWN)
+        seen(&world_with(Path::new("."), &scene(first), Dialect::F04, compat, true), [0.5, 5.0, 0.5], DOWN)
     };
     let (plain, swapped) = (at("2", false), at("2", true));
     assert_ne!(plain, swapped);

@@ -4,7 +4,7 @@ use super::{Control, Job, RenderError, center_ray, raster};
 use crate::bvh::Grid;
 use crate::image::{Image, checked_count};
 use crate::light::Emitter;
-use crate::math::{Aabb, Color, Ray, Vec3, gamma};
+use crate::math::{Aabb, Color, Ray, Vec3};
 use crate::shape::Primitive;
 use crate::threads;
 use crate::world::{Accel, Geometry, Object, World};
@@ -49,22 +49,21 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
-    // A sphere takes cells by the distance of their middles alone, as the course's programs have it,
-    // also beyond its box.
-    let half = 0.5 * grid.cell_bounds([0; 3]).size().length();
-    let sphere = |object: &Object| match &object.geometry {
-        Geometry::Primitive(Primitive::Sphere(sphere)) if object.to_world.is_none() => Some(sphere.clone()),
-        _ => None,
+    // A sphere takes cells by the distance of their middles alone, as the course's programs have it:
+    // also beyond its box, and with their own size.
+    let half = 0.5 * grid.cell_bounds([0; 3]).size();
+    let is_sphere = |object: &Object| {
+        object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
     };
     // Only things with bounds are in the grid.
     let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
-        own if sphere(object(i)).is_some() => Aabb { min: own.min - half, max: own.max + half },
+        own if is_sphere(object(i)) => Aabb { min: own.min - half.length(), max: own.max + half.length() },
         own => own,
     };
     let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
-    grid.for_picture(&boxes, |i, cell| match sphere(object(i)) {
-        Some(sphere) => (cell.center() - sphere.center).length() <= (sphere.radius + half) * (1.0 + gamma(8)),
-        None => object(i).overlaps(&cell),
+    grid.for_picture(&boxes, |i, cell| {
+        let own = Aabb { min: cell.center() - half, max: cell.center() + half };
+        object(i).overlaps(if is_sphere(object(i)) { &own } else { &cell })
     })
 }
 

@@ -2,10 +2,11 @@
 
 use super::*;
 use crate::compile::testing;
+use crate::film::Filter;
 use crate::integrator::Method;
 use crate::render::{Control, PartialRender, Shard};
 
-/// Mirrors, glass and a texture of noise under two lamps, of which one is a surface.
+/// Mirrors, glass and layers under two lamps, of which one is a surface.
 const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -20,13 +21,18 @@ Group {
   MaterialIndex 2 Transform { YRotate 30 Box { min 0.4 -0.5 -1 max 1.6 0.7 0.2 } }
   MaterialIndex 3 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }";
 
+/// A picture of some columns of so many samples.
+fn job(width: u32, samples: u32, method: Method) -> Job {
+    let sampling = Sampling::Filtered { samples, filter: Filter::default() };
+    Job { width, height: 32, sampling, method, ..Job::default() }
+}
+
 #[test]
 fn no_sample_allocates() {
     let world = testing::read(TEXT);
     let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));
     for method in [Method::WHITTED, Method::PATH] {
-        let sampling = Sampling::Filtered { samples: 64, filter: crate::film::Filter::default() };
-        let job = Job { width: 32, height: 32, sampling, method, ..Job::default() };
+        let job = job(32, 64, method);
         let part = job.whole();
         let samples = Samples::new(&world, &job, &stop);
         let mut film = Film::window(0, 0, 32, 32);
@@ -39,16 +45,14 @@ fn no_sample_allocates() {
 }
 
 #[test]
-fn a_tile_is_locked_twice_whatever_it_holds() {
+fn a_tile_is_locked_twice_a_pass() {
     let world = testing::read(TEXT);
-    let locks = |width: u32, samples: u32| {
-        let sampling = Sampling::Filtered { samples, filter: crate::film::Filter::default() };
-        let job = Job { width, height: 32, sampling, ..Job::default() };
-        let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
+    let locks = |width: u32| {
+        let part = PartialRender::new(&world, &job(width, 1, Method::WHITTED), Shard::WHOLE).unwrap();
         let control = Control { tile: Some(16), threads: Some(2), ..Control::default() };
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)
     };
     // Of one sample there is one pass: four tiles more are eight locks more.
-    assert_eq!(locks(96, 1) - locks(64, 1), 8);
+    assert_eq!(locks(96) - locks(64), 8);
 }
