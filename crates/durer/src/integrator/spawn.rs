@@ -27,16 +27,16 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 }
 
 /// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
-/// starts on the bent surface that a triangle with normals at its corners stands for.
+/// starts on the bent surface that a triangle with normals at its corners stands for, on the side on
+/// which that faces the light. Where the triangle's own slope does not face it, it is in its own way:
+/// light from outside does not come in along the border of light.
 #[inline]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     let behind = dir.dot(surface.n_shade) < 0.0;
     let lift = surface.shadow_offsets[usize::from(behind)];
-    if epsilon.is_some() || lift == Vec3::ZERO {
+    if epsilon.is_some() {
         return spawn_ray(surface, dir, distance, epsilon);
     }
-    // The bent surface faces the light; so the ray leaves on that side, whatever the triangle's own
-    // slope.
     let side = if behind { -surface.n_geo } else { surface.n_geo };
     Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }

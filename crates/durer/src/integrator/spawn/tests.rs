@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
 use crate::integrator::{Settings, Whitted};
-use crate::math::Ray;
+use crate::math::{Ray, fp};
 use crate::world::World;
 use std::fmt::Write;
 use std::path::Path;
@@ -30,6 +30,37 @@ fn room_file(at: Vec3) -> String {
     }
     for [a, b, c, d] in WALLS.map(|wall| wall.map(|i| i + 1)) {
         writeln!(text, "f {a} {b} {c}\nf {a} {c} {d}").unwrap();
+    }
+    text
+}
+
+/// A ball of radius 1 about a place in a file, of flat triangles with its normals at their corners.
+fn ball_file(at: Vec3) -> String {
+    let mut text = String::new();
+    let (rings, around) = (12, 24);
+    for ring in 0..=rings {
+        for step in 0..around {
+            let (up, turn) = (180.0 * f64::from(ring) / f64::from(rings), 360.0 * f64::from(step) / f64::from(around));
+            let ((r, y), (s, c)) = (fp::sin_cos_degrees(up), fp::sin_cos_degrees(turn));
+            let n = DVec3::new(r * c, y, r * s).as_vec3();
+            let p = at + n;
+            writeln!(text, "v {} {} {}\nvn {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z).unwrap();
+        }
+    }
+    let corner = |ring: u32, step: u32| match ring {
+        // The poles are one corner each.
+        0 => 1,
+        ring if ring == rings => rings * around + 1,
+        ring => ring * around + step % around + 1,
+    };
+    for ring in 0..rings {
+        for step in 0..around {
+            let [a, b, c, d] =
+                [(ring, step), (ring + 1, step), (ring + 1, step + 1), (ring, step + 1)].map(|(r, s)| corner(r, s));
+            for face in [[a, c, b], [a, d, c]].iter().filter(|[a, b, c]| a != b && b != c && c != a) {
+                writeln!(text, "f {0}//{0} {1}//{1} {2}//{2}", face[0], face[1], face[2]).unwrap();
+            }
+        }
     }
     text
 }
@@ -92,17 +123,21 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
 fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("near.obj"), room_file(Vec3::ZERO)).unwrap();
+    std::fs::write(folder.path().join("ball.obj"), ball_file(Vec3::ZERO)).unwrap();
     let mut table = String::new();
     let mut all = 0;
     for distance in [0.0, 1e2, 1e3, 1e4, 1e5, 1e6] {
         let at = distance * Vec3::new(1.0, -0.75, 0.5);
         std::fs::write(folder.path().join("far.obj"), room_file(at)).unwrap();
+        std::fs::write(folder.path().join("far-ball.obj"), ball_file(at)).unwrap();
         let box_at = |m: f32| at + Vec3::splat(m);
         let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
         let [min, max] = [-1.0, 1.0].map(|m| words(box_at(m)));
         let rooms = [
             ("mesh", "Transform { Translate PLACE TriangleMesh { obj_file near.obj } }".into()),
             ("far mesh", "TriangleMesh { obj_file far.obj }".into()),
+            ("smooth mesh", "Transform { Translate PLACE TriangleMesh { obj_file ball.obj } }".into()),
+            ("far smooth mesh", "TriangleMesh { obj_file far-ball.obj }".into()),
             ("triangles", triangles(at)),
             ("box", format!("Box {{ min {min} max {max} }}")),
             ("moved box", "Transform { Translate PLACE Box { min -1 -1 -1 max 1 1 1 } }".into()),
