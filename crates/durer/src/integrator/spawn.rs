@@ -32,25 +32,31 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 /// light from outside does not come in along the border of light.
 #[inline]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
-    let behind = dir.dot(surface.n_shade) < 0.0;
-    let lift = surface.shadow_offsets[usize::from(behind)];
-    if epsilon.is_some() {
-        return spawn_ray(surface, dir, distance, epsilon);
+    match epsilon {
+        Some(_) => spawn_ray(surface, dir, distance, epsilon),
+        None => from_bent_surface(surface, dir, distance, dir.dot(surface.n_shade) < 0.0),
     }
-    let side = if behind { -surface.n_geo } else { surface.n_geo };
-    Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }
 
-/// A ray from a surface to a point of a light that has an extent. From a bent surface it is aimed
-/// anew: a parallel one would end beside that point, and behind the light where that is inclined.
+/// A ray from a surface to a point of a light that has an extent, on the side of the true surface on
+/// which the light is. From a bent surface it is aimed anew: a parallel one would end beside that
+/// point, and behind the light where that is inclined.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
-    let ray = to_light(surface, dir, distance, None);
+    let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
         return ray;
     }
     let way = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
     let length = way.length();
     Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4)))
+}
+
+/// A ray from the bent surface, on the side of the normals or `behind`.
+#[inline]
+fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
+    let lift = surface.shadow_offsets[usize::from(behind)];
+    let side = if behind { -surface.n_geo } else { surface.n_geo };
+    Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
 }
 
 /// The surface's point, lifted, and beside it on the side to which a unit normal points, farther

@@ -3,8 +3,9 @@
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
-use crate::integrator::{Settings, Whitted};
+use crate::integrator::{Integrate, Path as PathTracer, Settings, Transport, Whitted};
 use crate::math::{Ray, fp};
+use crate::sampler::SampleId;
 use crate::world::World;
 use std::fmt::Write;
 use std::path::Path;
@@ -94,7 +95,7 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{found:?}"))
 }
 
-/// Of `count` squared rays all around from within a room, how many see light.
+/// Of `count` squared rays all around from within a room, how many see light, at once or by a path.
 fn leaks(world: &World, at: Vec3, count: usize) -> usize {
     let settings = Settings {
         bounces: 0,
@@ -106,6 +107,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
         least_weight: 0.0,
     };
     let whitted = Whitted { world, settings, cancel: None };
+    let path = PathTracer::new(world, Settings { bounces: 5, ..settings }, Transport::default());
     let eye = at + Vec3::new(0.25, -0.125, 0.5);
     let sees = |i: usize| {
         let (u, v) = ((i % count) as f32 + 0.5, (i / count) as f32 + 0.5);
@@ -114,7 +116,7 @@ fn leaks(world: &World, at: Vec3, count: usize) -> usize {
         let dir = [Vec3::new(x, y, 1.0), Vec3::new(x, y, -1.0), Vec3::new(x, 1.0, y), Vec3::new(1.0, x, y)][i % 4];
         let ray = Ray::new(eye, dir);
         assert!(world.closest(&ray, &mut ()).is_some(), "{ray:?}");
-        whitted.radiance(&ray, &mut ()) != Vec3::ZERO
+        whitted.radiance(&ray, &mut ()) + path.radiance(&ray, SampleId::new(1, (i as u32, 0), 0), &mut ()) != Vec3::ZERO
     };
     (0..count * count).filter(|&i| sees(i)).count()
 }
@@ -154,6 +156,14 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
             (
                 "solid",
                 format!("Intersection {{ Box {{ min {min} max {max} }} Sphere {{ center PLACE radius 1.3 }} }}"),
+            ),
+            (
+                "union",
+                format!(
+                    "Union {{ Box {{ min {min} max {max} }} Cylinder {{ base {} top {} radius 1.2 }} }}",
+                    words(at - 0.8 * Vec3::Y),
+                    words(at + 0.9 * Vec3::Y)
+                ),
             ),
             (
                 "moved solid",
