@@ -263,7 +263,7 @@ impl Film {
         }
         // Each sum is rounded to double precision, then divided: two roundings, and one to single.
         let weight = pixel.weight as f64 / WEIGHT_SCALE;
-        Vec3::from(pixel.color.map(|sum| (sum as f64 / COLOR_SCALE / weight) as f32))
+        Vec3::from(pixel.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
     }
 
     /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside
@@ -325,6 +325,11 @@ impl Film {
         let (column, row) = (x.checked_sub(self.left)?, y.checked_sub(self.top)?);
         (column < self.width && row < self.height).then(|| row as usize * self.width as usize + column as usize)
     }
+}
+
+/// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an instruction.
+fn rounded(sum: i128) -> f64 {
+    i64::try_from(sum).map_or(sum as f64, |small| small as f64)
 }
 
 /// The luminance of a colour.

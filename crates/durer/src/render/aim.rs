@@ -121,18 +121,23 @@ impl<'a> Aim<'a> {
     /// Rays and weights of a batch, as [`Aim::sample`] has them one by one; behind the last sample
     /// there are any.
     pub(super) fn batch(&self, batch: &Batch) -> ([Option<Ray>; BATCH], [f32; BATCH]) {
-        let Some(warp) = &self.warp else {
-            let one = batch.of.each_ref().map(|(pixel, sample)| self.sample(pixel, *sample));
-            return (one.each_ref().map(|sample| sample.ray), one.map(|sample| sample.weight));
-        };
         let numbers = from_fn(|i| batch.of[i].1);
-        let positions = Sequence::points(&from_fn(|i| batch.of[i].0.positions), &numbers);
-        let (offsets, weights) = warp.samples(&positions);
-        let points: [Vec2; BATCH] = self.raster.points(&from_fn(|i| batch.of[i].0.center + offsets[i]));
         let mut lenses = [[0.5; BATCH]; 2];
-        if self.has_aperture {
-            lenses = Sequence::points(&from_fn(|i| batch.of[i].0.id.sequence(LENS_DIMENSION)), &numbers);
-        }
+        let (points, weights): ([Vec2; BATCH], _) = match (&self.warp, self.job.sampling) {
+            (Some(warp), _) => {
+                let positions = Sequence::points(&from_fn(|i| batch.of[i].0.positions), &numbers);
+                let (offsets, weights) = warp.samples(&positions);
+                if self.has_aperture {
+                    lenses = Sequence::points(&from_fn(|i| batch.of[i].0.id.sequence(LENS_DIMENSION)), &numbers);
+                }
+                (self.raster.points(&from_fn(|i| batch.of[i].0.center + offsets[i])), weights)
+            }
+            (None, Sampling::Center) => (from_fn(|i| batch.of[i].0.point), [1.0; BATCH]),
+            _ => {
+                let one = batch.of.each_ref().map(|(pixel, sample)| self.sample(pixel, *sample));
+                return (one.each_ref().map(|sample| sample.ray), one.map(|sample| sample.weight));
+            }
+        };
         let at = from_fn(|i| CameraSample {
             point: points[i],
             pixel: batch.of[i].0.point,
