@@ -102,7 +102,11 @@ impl Path<'_> {
         // Light that directions find as well must agree with them, and they meet both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() {
-            match self.world.occluded(&ray, tally) {
+            let blocked = match light.is_vague() {
+                true => self.world.closest(&ray, tally).is_some_and(|hit| !light.is_met(&hit)),
+                false => self.world.occluded(&ray, tally),
+            };
+            match blocked {
                 true if hides_backs => {}
                 true => return Spectrum::ZERO,
                 false => return pass(media, &ray, ray.rounded.t_max),
@@ -111,7 +115,7 @@ impl Path<'_> {
         let mut media = media.clone();
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally) else {
+            let Some(hit) = self.world.closest(&ray, tally).filter(|hit| !light.is_met(hit)) else {
                 return share * pass(&media, &ray, ray.rounded.t_max);
             };
             share *= pass(&media, &ray, hit.t);
@@ -132,7 +136,8 @@ impl Path<'_> {
     /// What a witness is told of a shadow ray.
     fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
         let ray = place.shadow_ray(light);
-        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
+        let blocker = self.world.closest(&ray, &mut ()).filter(|hit| !light.is_met(hit));
+        let blocker = blocker.map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share }
     }
 }

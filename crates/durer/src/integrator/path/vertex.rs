@@ -135,7 +135,7 @@ impl Place<'_, '_> {
     /// The ray to a light.
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         // What stands exactly at the light does not block it.
-        let reach = light.reach * (1.0 - gamma(16));
+        let reach = light.shadow_reach() * (1.0 - gamma(16));
         match self {
             Place::Surface(surface, ..) => to_point(surface, light.wi, reach),
             Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),

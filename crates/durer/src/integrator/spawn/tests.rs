@@ -77,19 +77,26 @@ fn triangles(at: Vec3) -> String {
     WALLS.iter().flat_map(|&[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect()
 }
 
-/// A room of size 2 about a place, with a lamp outside that only a hole in the walls would let in.
+/// A room of size 2 about a place, with two lamps outside, of which one has an extent, that only a
+/// hole in the walls would let in.
 fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     let (p, lamp) = (at, at + Vec3::new(3.0, 4.0, 2.5));
     let text = format!(
         "PerspectiveCamera {{ center 0 0 0 direction 0 0 -1 up 0 1 0 angle 60 }}
          Lights {{ PointLight {{ position {} {} {} color 1 1 1 }} }}
          Background {{ color 0 0 0 ambientLight 0 0 0 }}
-         Materials {{ PhongMaterial {{ diffuseColor 1 1 1 }} }}
-         Group {{ MaterialIndex 0 {} }}",
+         Materials {{
+             PhongMaterial {{ diffuseColor 1 1 1 }}
+             PrincipledMaterial {{ emissionLuminance 1 emissionColor 1 1 1 }}
+         }}
+         Group {{ MaterialIndex 0 {} MaterialIndex 1 Sphere {{ center {} {} {} radius 0.5 }} }}",
         lamp.x,
         lamp.y,
         lamp.z,
         walls.replace("PLACE", &format!("{} {} {}", p.x, p.y, p.z)),
+        lamp.x,
+        lamp.y + 1.0,
+        lamp.z,
     );
     let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
     world.unwrap_or_else(|| panic!("{found:?}"))

@@ -81,14 +81,35 @@ pub struct LightSample {
     pub light: LightId,
     /// Unit vector to it.
     pub wi: Vec3,
-    /// How far away a thing may stand in its way.
+    /// How far away it is.
     pub reach: f32,
+    /// How far off its surface may be along the way, by the rounding of its place.
+    pub slack: f32,
     /// Its radiance; of a light without extent the irradiance that it makes across its way.
     pub radiance: Color,
     /// The probability with which it was chosen.
     pub choice: f32,
     /// The density per solid angle of the direction on it; 0 for a light without extent.
     pub pdf: f32,
+}
+
+impl LightSample {
+    /// Whether its surface is known badly, as it is far from the origin of coordinates: what stands
+    /// before it may be nearer to it than its own error.
+    pub fn is_vague(&self) -> bool {
+        self.slack > 1e-3 * self.reach
+    }
+
+    /// How far a shadow ray goes: where the surface is known well, to just before it. Else beyond it,
+    /// and what is met must be told from it: see [`LightSample::is_met`].
+    pub fn shadow_reach(&self) -> f32 {
+        if self.is_vague() { self.reach + self.slack } else { self.reach - self.slack }
+    }
+
+    /// Whether a shadow ray met the light itself.
+    pub fn is_met(&self, hit: &Hit) -> bool {
+        self.is_vague() && self.light.object() == Some(hit.object) && hit.t >= self.reach - self.slack
+    }
 }
 
 impl Emitters {
@@ -149,7 +170,7 @@ impl Emitters {
         if let (Some(environment), true) = (world.environment(), chosen == self.even.len()) {
             let (wi, radiance, pdf) = environment.sample(u)?;
             let reach = f32::INFINITY;
-            return Some(LightSample { light: LightId::Environment, wi, reach, radiance, choice: even, pdf });
+            return Some(LightSample { light: LightId::Environment, wi, reach, slack: 0.0, radiance, choice: even, pdf });
         }
         let rest = (scaled - chosen as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
@@ -206,6 +227,7 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
         light: LightId::Light(light),
         wi: seen.to_light,
         reach: seen.distance,
+        slack: 0.0,
         radiance: PI * seen.color,
         choice,
         pdf: 0.0,
@@ -249,11 +271,9 @@ impl AreaLight {
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }
-        // The point is known to its rounding only; what stands nearer to the emitter than that does
-        // not count.
-        let reach = place.distance - 2.0 * self.error / place.cosine.abs().max(1e-3);
+        let slack = 2.0 * self.error / place.cosine.abs().max(1e-3);
         let radiance = world.emission_of(world.objects()[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
-        Some(LightSample { light, wi: place.wi, reach, radiance, choice, pdf: place.pdf })
+        Some(LightSample { light, wi: place.wi, reach: place.distance, slack, radiance, choice, pdf: place.pdf })
     }
 }
