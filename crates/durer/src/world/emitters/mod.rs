@@ -169,8 +169,8 @@ impl Emitters {
         }
         if let (Some(environment), true) = (world.environment(), chosen == self.even.len()) {
             let (wi, radiance, pdf) = environment.sample(u)?;
-            let reach = f32::INFINITY;
-            return Some(LightSample { light: LightId::Environment, wi, reach, slack: 0.0, radiance, choice: even, pdf });
+            let (reach, slack) = (f32::INFINITY, 0.0);
+            return Some(LightSample { light: LightId::Environment, wi, reach, slack, radiance, choice: even, pdf });
         }
         let rest = (scaled - chosen as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
