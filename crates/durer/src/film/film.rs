@@ -327,7 +327,8 @@ impl Film {
     }
 }
 
-/// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an instruction.
+/// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an
+/// instruction.
 fn rounded(sum: i128) -> f64 {
     i64::try_from(sum).map_or(sum as f64, |small| small as f64)
 }

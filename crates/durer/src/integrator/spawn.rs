@@ -27,9 +27,9 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 }
 
 /// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
-/// starts on the bent surface that a triangle with normals at its corners stands for, on the side on
-/// which that faces the light. Where the triangle's own slope does not face it, it is in its own way:
-/// light from outside does not come in along the border of light.
+/// starts on the bent surface that a triangle with normals at its corners stands for, on the side
+/// on which that faces the light. Where the triangle's own slope does not face it, it is in its own
+/// way: light from outside does not come in along the border of light.
 #[inline]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     match epsilon {
@@ -38,9 +38,9 @@ pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32
     }
 }
 
-/// A ray from a surface to a point of a light that has an extent, on the side of the true surface on
-/// which the light is. From a bent surface it is aimed anew: a parallel one would end beside that
-/// point, and behind the light where that is inclined.
+/// A ray from a surface to a point of a light that has an extent, on the side of the true surface
+/// on which the light is. From a bent surface it is aimed anew: a parallel one would end beside
+/// that point, and behind the light where that is inclined.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {

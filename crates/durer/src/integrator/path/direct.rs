@@ -103,7 +103,7 @@ impl Path<'_> {
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() {
             let blocked = match light.is_vague() {
-                true => self.world.closest(&ray, tally).is_some_and(|hit| !light.is_met(&hit)),
+                true => self.world.closest(&ray, tally).is_some_and(|hit| !light.is_met(&hit, ray.rounded.t_max)),
                 false => self.world.occluded(&ray, tally),
             };
             match blocked {
@@ -115,7 +115,7 @@ impl Path<'_> {
         let mut media = media.clone();
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(hit) = self.world.closest(&ray, tally).filter(|hit| !light.is_met(hit)) else {
+            let Some(hit) = self.world.closest(&ray, tally).filter(|hit| !light.is_met(hit, ray.rounded.t_max)) else {
                 return share * pass(&media, &ray, ray.rounded.t_max);
             };
             share *= pass(&media, &ray, hit.t);
@@ -136,7 +136,7 @@ impl Path<'_> {
     /// What a witness is told of a shadow ray.
     fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
         let ray = place.shadow_ray(light);
-        let blocker = self.world.closest(&ray, &mut ()).filter(|hit| !light.is_met(hit));
+        let blocker = self.world.closest(&ray, &mut ()).filter(|hit| !light.is_met(hit, ray.rounded.t_max));
         let blocker = blocker.map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share }
     }

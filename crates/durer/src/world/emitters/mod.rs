@@ -95,20 +95,20 @@ pub struct LightSample {
 
 impl LightSample {
     /// Whether its surface is known badly, as it is far from the origin of coordinates: what stands
-    /// before it may be nearer to it than its own error.
+    /// before it may be nearer than its own error.
     pub fn is_vague(&self) -> bool {
         self.slack > 1e-3 * self.reach
     }
 
-    /// How far a shadow ray goes: where the surface is known well, to just before it. Else beyond it,
-    /// and what is met must be told from it: see [`LightSample::is_met`].
+    /// How far a shadow ray goes: where the surface is known well, to just before it. Else beyond
+    /// it, and what is met must be told from it: see [`LightSample::is_met`].
     pub fn shadow_reach(&self) -> f32 {
         if self.is_vague() { self.reach + self.slack } else { self.reach - self.slack }
     }
 
-    /// Whether a shadow ray met the light itself.
-    pub fn is_met(&self, hit: &Hit) -> bool {
-        self.is_vague() && self.light.object() == Some(hit.object) && hit.t >= self.reach - self.slack
+    /// Whether a shadow ray that ends at `t_max`, beyond the light, met the light itself.
+    pub fn is_met(&self, hit: &Hit, t_max: f32) -> bool {
+        self.is_vague() && self.light.object() == Some(hit.object) && hit.t >= t_max - 2.0 * self.slack
     }
 }
 
