@@ -129,9 +129,7 @@ fn page(chapter: Chapter) -> String {
             };
             let _ = writeln!(out, "| {} | {} | {default} | {} |", words.join("<br>"), field.value, field.doc);
         }
-        if !entry.example.is_empty() {
-            let _ = write!(out, "\n```\n{}\n```\n", entry.example);
-        }
+        let _ = write!(out, "\n```\n{}\n```\n", entry.example);
         if entry.scene().is_some() {
             let _ = write!(out, "\n![{}](pictures/{})\n", entry.name(), picture_name(&entry));
         }

@@ -76,9 +76,7 @@ fn described(entry: &Entry) -> String {
         let fields: Vec<String> = entry.fields.iter().map(field_text).collect();
         text += &format!("\n\n{}", fields.join("\n"));
     }
-    if !entry.example.is_empty() {
-        text += &format!("\n\n  Example:\n    {}", entry.example);
-    }
+    text += &format!("\n\n  Example:\n    {}", entry.example);
     text
 }
 

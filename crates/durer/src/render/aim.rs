@@ -121,10 +121,10 @@ impl<'a> Aim<'a> {
     /// Rays and weights of a batch, as [`Aim::sample`] has them one by one; behind the last sample
     /// there are any.
     pub(super) fn batch(&self, batch: &Batch) -> ([Option<Ray>; BATCH], [f32; BATCH]) {
-        let numbers = from_fn(|i| batch.of[i].1);
         let mut lenses = [[0.5; BATCH]; 2];
         let (points, weights): ([Vec2; BATCH], _) = match (&self.warp, self.job.sampling) {
             (Some(warp), _) => {
+                let numbers = from_fn(|i| batch.of[i].1);
                 let positions = Sequence::points(&from_fn(|i| batch.of[i].0.positions), &numbers);
                 let (offsets, weights) = warp.samples(&positions);
                 if self.has_aperture {

@@ -112,9 +112,6 @@ impl Entry {
 
     /// A scene that shows the example, if it can be seen.
     pub fn scene(&self) -> Option<String> {
-        if self.example.is_empty() {
-            return None;
-        }
         let example = &self.example;
         Some(match self.chapter {
             Chapter::Structure => return None,

@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
 use crate::integrator::{Integrate, Path as PathTracer, Settings, Transport, Whitted};
-use crate::math::{Ray, fp};
+use crate::math::Ray;
 use crate::sampler::SampleId;
 use crate::world::World;
 use std::fmt::Write;
@@ -35,35 +35,18 @@ fn room_file(at: Vec3) -> String {
     text
 }
 
-/// A ball of radius 1 about a place in a file, of flat triangles with its normals at their corners.
+/// A smooth ball of radius 1 about a place in a file.
 fn ball_file(at: Vec3) -> String {
-    let mut text = String::new();
-    let (rings, around) = (12, 24);
-    for ring in 0..=rings {
-        for step in 0..around {
-            let (up, turn) = (180.0 * f64::from(ring) / f64::from(rings), 360.0 * f64::from(step) / f64::from(around));
-            let ((r, y), (s, c)) = (fp::sin_cos_degrees(up), fp::sin_cos_degrees(turn));
-            let n = DVec3::new(r * c, y, r * s).as_vec3();
-            let p = at + n;
-            writeln!(text, "v {} {} {}\nvn {} {} {}", p.x, p.y, p.z, n.x, n.y, n.z).unwrap();
+    let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
+    let moved = |line: &str| match line.strip_prefix("v ") {
+        Some(numbers) => {
+            let numbers: Vec<f32> = numbers.split(' ').map(|number| number.parse().unwrap()).collect();
+            let p = at + Vec3::from_slice(&numbers);
+            format!("v {} {} {}\n", p.x, p.y, p.z)
         }
-    }
-    let corner = |ring: u32, step: u32| match ring {
-        // The poles are one corner each.
-        0 => 1,
-        ring if ring == rings => rings * around + 1,
-        ring => ring * around + step % around + 1,
+        None => format!("{line}\n"),
     };
-    for ring in 0..rings {
-        for step in 0..around {
-            let [a, b, c, d] =
-                [(ring, step), (ring + 1, step), (ring + 1, step + 1), (ring, step + 1)].map(|(r, s)| corner(r, s));
-            for face in [[a, c, b], [a, d, c]].iter().filter(|[a, b, c]| a != b && b != c && c != a) {
-                writeln!(text, "f {0}//{0} {1}//{1} {2}//{2}", face[0], face[1], face[2]).unwrap();
-            }
-        }
-    }
-    text
+    ball.lines().map(moved).collect()
 }
 
 fn triangles(at: Vec3) -> String {
