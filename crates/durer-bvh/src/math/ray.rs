@@ -54,6 +54,31 @@ pub struct Ray64 {
     pub rounded: Ray,
     /// What rounding left of the origin.
     pub rest: Vec3,
+    /// What it leaves, and on which side of that it starts.
+    pub side: Side,
+}
+
+/// The thing that a ray leaves, and whether it starts inside of it: where the origin is nearer to
+/// an edge than it is known, coordinates do not tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+// Nothing, or one more than twice the number, and one more inside.
+pub struct Side(u32);
+
+impl Side {
+    /// Of a ray that leaves nothing, or of which nobody knows.
+    pub const ANY: Side = Side(0);
+
+    /// Inside or outside of a thing, by the caller's number for it; beyond 2^31 - 2 none is known.
+    #[inline]
+    pub fn of(thing: u32, inside: bool) -> Side {
+        if thing < (1 << 31) - 1 { Side(2 * thing + 1 + u32::from(inside)) } else { Side::ANY }
+    }
+
+    /// Whether a ray starts inside a thing; `None` of other things than the one that it leaves.
+    #[inline]
+    pub fn inside(self, thing: u32) -> Option<bool> {
+        (self != Side::ANY && (self.0 - 1) / 2 == thing).then(|| self.0 % 2 == 0)
+    }
 }
 
 impl Ray64 {
@@ -62,7 +87,13 @@ impl Ray64 {
     pub fn new(origin: DVec3, dir: Vec3, t_min: f32, t_max: f32) -> Self {
         let near = origin.as_vec3();
         let rest = (origin - near.as_dvec3()).as_vec3();
-        Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, rest }
+        Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, rest, side: Side::ANY }
+    }
+
+    /// The same ray, which leaves a thing.
+    #[inline]
+    pub fn on_side(self, side: Side) -> Self {
+        Ray64 { side, ..self }
     }
 
     /// Where `t` is 0.
@@ -87,7 +118,7 @@ impl Ray64 {
 impl From<Ray> for Ray64 {
     #[inline]
     fn from(rounded: Ray) -> Self {
-        Ray64 { rounded, rest: Vec3::ZERO }
+        Ray64 { rounded, rest: Vec3::ZERO, side: Side::ANY }
     }
 }
 

@@ -8,7 +8,7 @@
 //!
 //! [`Shape::centered`]: crate::shape::Shape::centered
 
-use crate::math::{Ray64, Vec3, gamma};
+use crate::math::{Ray64, Side, Vec3, gamma};
 use crate::shape::Surface;
 use glam::DVec3;
 
@@ -22,8 +22,7 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
     if let Some(epsilon) = epsilon {
         return Ray64::new(surface.point(), dir, epsilon, t_max);
     }
-    let side = if dir.dot(surface.n_geo) < 0.0 { -surface.n_geo } else { surface.n_geo };
-    Ray64::new(offset_ray_origin(surface, Vec3::ZERO, side), dir, 0.0, t_max)
+    from(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
 
 /// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
@@ -48,15 +47,22 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     }
     let way = surface.point() + f64::from(distance) * dir.as_dvec3() - ray.origin();
     let length = way.length();
-    Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4)))
+    Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
 }
 
 /// A ray from the bent surface, on the side of the normals or `behind`.
 #[inline]
 fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let lift = surface.shadow_offsets[usize::from(behind)];
+    from(surface, lift, dir, distance - lift.dot(dir), behind)
+}
+
+/// A ray from beside the lifted point, on the side of the true normal or `behind`.
+#[inline]
+fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
-    Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, distance - lift.dot(dir))
+    let ray = Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, t_max);
+    surface.solid.map_or(ray, |solid| ray.on_side(Side::of(solid, behind)))
 }
 
 /// The surface's point, lifted, and beside it on the side to which a unit normal points, farther

@@ -5,7 +5,7 @@ pub mod roots;
 
 #[cfg(test)]
 pub use durer_bvh::internal::random;
-pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
+pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, Side, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
 
 /// A colour: linear Rec.709 red, green and blue. Unbounded above.
 pub type Color = Vec3;

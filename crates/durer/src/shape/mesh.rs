@@ -241,6 +241,7 @@ impl Mesh {
             barycentric,
             shadow_offsets,
             color,
+            solid: None,
         }
     }
 }

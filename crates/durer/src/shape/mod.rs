@@ -130,6 +130,9 @@ pub struct Surface {
     /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they
     /// bring none.
     pub color: [f32; 4],
+    /// The number of the solid that it bounds, if that has several parts: what leaves it knows on
+    /// which side of it it starts.
+    pub solid: Option<u32>,
 }
 
 impl Surface {
@@ -150,6 +153,7 @@ impl Surface {
             barycentric: Vec3::ZERO,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
+            solid: None,
         }
     }
 

@@ -65,6 +65,7 @@ impl Shape for Plane {
             barycentric: Vec3::ZERO,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
+            solid: None,
         }
     }
 }

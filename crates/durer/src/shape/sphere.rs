@@ -93,6 +93,7 @@ impl Shape for Sphere {
             barycentric: Vec3::ZERO,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
+            solid: None,
         }
     }
 }

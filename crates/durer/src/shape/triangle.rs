@@ -72,6 +72,7 @@ impl Shape for Triangle {
             barycentric,
             shadow_offsets: [Vec3::ZERO; 2],
             color: [1.0; 4],
+            solid: None,
         }
     }
 }

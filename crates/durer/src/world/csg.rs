@@ -231,19 +231,25 @@ impl Csg {
         Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
-    /// The first hit in the ray's interval, and its part.
-    pub(super) fn closest<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> Option<(ShapeHit, u32)> {
+    /// The first hit in the ray's interval, and its part. `inside`: whether a ray that leaves the
+    /// solid starts in it, as its surface knows.
+    pub(super) fn closest<T: TraversalCounter>(
+        &self,
+        ray: &Ray64,
+        inside: Option<bool>,
+        counter: &mut T,
+    ) -> Option<(ShapeHit, u32)> {
         if !crate::bvh::is_sound(&ray.rounded) {
             return None;
         }
         SCRATCH.with_borrow_mut(|scratch| {
             let complete = self.collect(ray, true, scratch, counter);
-            let found = self.sweep(ray, scratch);
+            let found = self.sweep(ray, inside, scratch);
             // From inside of all that was merged, the way out may be farther than the next part's
             // way in.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
                 self.collect(ray, false, scratch, counter);
-                return self.sweep(ray, scratch);
+                return self.sweep(ray, inside, scratch);
             }
             found
         })
@@ -293,7 +299,12 @@ impl Csg {
     }
 
     /// Goes along the sorted crossings to the first in the interval at which the whole changes.
-    fn sweep(&self, ray: &Ray64, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
+    ///
+    /// A ray that leaves the solid knows on which side it starts. Where crossings say otherwise,
+    /// it starts nearer to an edge than single precision can tell, and a face of that lies on the
+    /// wrong side of its origin: one that the ray should meet, it meets at once; one that it should
+    /// have behind it, it does not meet.
+    fn sweep(&self, ray: &Ray64, inside: Option<bool>, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
             return None;
@@ -310,6 +321,13 @@ impl Csg {
                 whole ^= self.toggle(i, state);
             }
         }
+        let at_once = |(crossing, part): (ShapeHit, u32)| {
+            let t = f32::MIN_POSITIVE;
+            ray.rounded.contains(t).then_some((ShapeHit { t, ..crossing }, part))
+        };
+        // The last crossing behind the origin that leads to the other side.
+        let mut behind: Option<(ShapeHit, u32)> = None;
+        let mut known = inside;
         let mut from = 0;
         while from < events.len() {
             let to = self.coincident(ray, events, from, &mut state.groups);
@@ -317,22 +335,51 @@ impl Csg {
             for event in &events[from..to] {
                 whole ^= self.toggle(event.leaf, state);
             }
+            if let (Some(inside), true) = (known, events[from].t <= 0.0) {
+                let leads = |event: &&Event| self.adds(event.leaf, state) != inside;
+                behind = events[from..to].iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
+            }
             if whole != before {
                 let chosen = if to == from + 1 { &events[from] } else { self.choose(&events[from..to], state) };
-                let t = chosen.t as f32;
-                if t.is_nan() || t >= ray.rounded.t_max {
+                let change = self.change(chosen, state, whole);
+                let t = change.0.t;
+                if t.is_nan() {
                     return None;
                 }
-                if t > ray.rounded.t_min {
-                    let turned = state.inside[chosen.leaf as usize] != whole;
-                    let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
-                    let part = (self.leaves[chosen.leaf as usize].first + chosen.part) | bits;
-                    return Some((ShapeHit { t, uv: chosen.uv }, part));
+                let mut passed = t <= ray.rounded.t_min;
+                if t > 0.0 && known.take().is_some_and(|inside| inside != before) {
+                    match behind.filter(|(last, _)| -last.t <= t).map(at_once) {
+                        Some(Some(met)) => return Some(met),
+                        Some(None) => {}
+                        None => passed = true,
+                    }
+                }
+                if !passed {
+                    return (t < ray.rounded.t_max).then_some(change);
                 }
             }
             from = to;
         }
-        None
+        behind.filter(|_| known.is_some_and(|inside| inside != whole)).and_then(at_once)
+    }
+
+    /// The hit at a crossing after which the whole is there or not.
+    fn change(&self, event: &Event, state: &State, whole: bool) -> (ShapeHit, u32) {
+        let turned = state.inside[event.leaf as usize] != whole;
+        let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
+        let part = (self.leaves[event.leaf as usize].first + event.part) | bits;
+        (ShapeHit { t: event.t as f32, uv: event.uv }, part)
+    }
+
+    /// Whether a part, as it is now, makes the whole more: in it, or out of what is cut away.
+    fn adds(&self, leaf: u32, state: &State) -> bool {
+        let mut adds = state.inside[leaf as usize];
+        let mut edge = Some(self.leaves[leaf as usize].edge);
+        while let Some(Edge { join, cut }) = edge {
+            adds ^= cut;
+            edge = self.joins[join as usize].edge;
+        }
+        adds
     }
 
     /// Turns a part's inside bit; gives whether the bit of the whole turned with it.

@@ -59,6 +59,9 @@ impl World {
         let surface = object.own_surface(ray, point, &crossing, hit.part, quirks);
         let mut at = Interaction { surface, ray: *ray, hit, material, width: 0.0 };
         object.place(&mut at.surface, ray, &crossing, quirks);
+        if let Geometry::Solid(_) = &object.geometry {
+            at.surface.solid = Some(hit.object);
+        }
         at
     }
 

@@ -170,7 +170,7 @@ impl World {
             offer(&mut best, ray, met.number, Some((ShapeHit { t: met.t, uv: Vec2::ZERO }, 0)));
         }
         for &object in &self.loose {
-            let found = self.objects()[object as usize].closest(ray, false, counter);
+            let found = self.objects()[object as usize].closest(object, ray, false, counter);
             offer(&mut best, ray, object, found);
         }
         match &self.accel {
@@ -179,7 +179,7 @@ impl World {
                 let outer = ray.rounded;
                 bvh.traverse(&outer, counter, |item, _, counter| {
                     let object = bvh.primitive_indices()[item];
-                    let found = self.objects()[object as usize].closest(ray, false, counter);
+                    let found = self.objects()[object as usize].closest(object, ray, false, counter);
                     offer(&mut best, ray, object, found);
                     ray.rounded.t_max
                 });
@@ -188,7 +188,7 @@ impl World {
                 let outer = ray.rounded;
                 grid.traverse(&outer, counter, |item, _, counter| {
                     let (object, part) = parts[item];
-                    let found = self.objects()[object as usize].part(ray, part, counter);
+                    let found = self.objects()[object as usize].part((object, part), ray, counter);
                     offer(&mut best, ray, object, found);
                     ray.rounded.t_max
                 });
@@ -196,7 +196,7 @@ impl World {
             Accel::None => {
                 for (i, object) in self.objects().iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
-                        let found = object.part(ray, part, counter);
+                        let found = object.part((i as u32, part), ray, counter);
                         offer(&mut best, ray, i as u32, found);
                     }
                 }
@@ -230,7 +230,7 @@ impl World {
             return false;
         }
         if self.packs.occluded(outer, counter)
-            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(ray, true, counter).is_some())
+            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(i, ray, true, counter).is_some())
         {
             return true;
         }
@@ -238,20 +238,22 @@ impl World {
         match &self.accel {
             Accel::Bvh(bvh) if bvh.is_empty() => {}
             Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
-                found |= self.objects()[bvh.primitive_indices()[item] as usize].closest(ray, true, counter).is_some();
+                let object = bvh.primitive_indices()[item];
+                found |= self.objects()[object as usize].closest(object, ray, true, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {
                 let (object, part) = parts[item];
-                found |= self.objects()[object as usize].part(ray, part, counter).is_some();
+                found |= self.objects()[object as usize].part((object, part), ray, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::None => {
                 found = self
                     .objects()
                     .iter()
-                    .filter(|o| o.bounds().is_some())
-                    .any(|o| (0..o.parts()).any(|part| o.part(ray, part, counter).is_some()));
+                    .enumerate()
+                    .filter(|(_, o)| o.bounds().is_some())
+                    .any(|(i, o)| (0..o.parts()).any(|part| o.part((i as u32, part), ray, counter).is_some()));
             }
         }
         found
@@ -297,7 +299,7 @@ impl World {
     /// The nearest hit of one object, whatever is before it.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = crate::bvh::is_sound(&ray.rounded);
-        let (crossing, part) = self.objects()[object as usize].closest(ray, false, &mut ()).filter(|_| sound)?;
+        let (crossing, part) = self.objects()[object as usize].closest(object, ray, false, &mut ()).filter(|_| sound)?;
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 

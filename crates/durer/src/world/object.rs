@@ -222,10 +222,11 @@ impl Object {
         }
     }
 
-    /// The object's first hit in the ray's interval.
+    /// The first hit of the object, by its number, in the ray's interval.
     #[inline]
     pub(super) fn closest<T: TraversalCounter>(
         &self,
+        number: u32,
         ray: &Ray64,
         any: bool,
         counter: &mut T,
@@ -244,12 +245,18 @@ impl Object {
                 shape.intersect(local).map(|crossing| (crossing, 0))
             }
             Geometry::Mesh(tree) => tree.closest(local, any, counter),
-            Geometry::Solid(solid) => solid.closest(ray, counter),
+            Geometry::Solid(solid) => solid.closest(ray, ray.side.inside(number), counter),
         }
     }
 
-    /// The crossing with one part, tested directly, and its part; a solid is asked as a whole.
-    pub(super) fn part<T: TraversalCounter>(&self, ray: &Ray64, part: u32, counter: &mut T) -> Option<(ShapeHit, u32)> {
+    /// The crossing with one part of the object, by both numbers, tested directly, and its part; a
+    /// solid is asked as a whole.
+    pub(super) fn part<T: TraversalCounter>(
+        &self,
+        (number, part): (u32, u32),
+        ray: &Ray64,
+        counter: &mut T,
+    ) -> Option<(ShapeHit, u32)> {
         counter.work(0, 1);
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
@@ -261,7 +268,7 @@ impl Object {
                 .watertight_ray(&local)
                 .intersect(tree.mesh.corners(part), local.t_min, local.t_max)
                 .map(ShapeHit::from),
-            Geometry::Solid(solid) => return solid.closest(ray, counter),
+            Geometry::Solid(solid) => return solid.closest(ray, ray.side.inside(number), counter),
         };
         crossing.map(|crossing| (crossing, part))
     }
@@ -313,7 +320,7 @@ impl Object {
         // Any line from inside crosses what is closed an odd number of times.
         let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
         let next =
-            |ray: &mut Ray64| self.closest(ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
+            |ray: &mut Ray64| self.closest(0, ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
         std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
     }
 

@@ -150,7 +150,7 @@ fn all_structures_name_the_same_hit() {
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
                 let same = |i: usize| {
-                    worlds[0].objects()[i].closest(&ray.into(), false, &mut ()).is_some_and(|c| c.0.t == hit.t)
+                    worlds[0].objects()[i].closest(0, &ray.into(), false, &mut ()).is_some_and(|c| c.0.t == hit.t)
                 };
                 usize::from((0..worlds[0].objects().len()).filter(other).any(same))
             });

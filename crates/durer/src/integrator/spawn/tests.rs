@@ -156,6 +156,14 @@ fn no_light_comes_into_a_closed_room_however_far_it_is_from_the_origin() {
                 ),
             ),
             (
+                "merge",
+                format!(
+                    "Merge {{ Box {{ min {min} max {max} }} Cylinder {{ base {} top {} radius 1.2 }} }}",
+                    words(at - 0.8 * Vec3::Y),
+                    words(at + 0.9 * Vec3::Y)
+                ),
+            ),
+            (
                 "moved solid",
                 "Transform { Translate PLACE Intersection { Box { min -1 -1 -1 max 1 1 1 } Sphere { center 0 0 0 radius 1.3 } } }"
                     .into(),
