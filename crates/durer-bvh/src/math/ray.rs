@@ -77,7 +77,7 @@ impl Side {
     /// Whether a ray starts inside a thing; `None` of other things than the one that it leaves.
     #[inline]
     pub fn inside(self, thing: u32) -> Option<bool> {
-        (self != Side::ANY && (self.0 - 1) / 2 == thing).then(|| self.0 % 2 == 0)
+        (self != Side::ANY && (self.0 - 1) / 2 == thing).then_some(self.0.is_multiple_of(2))
     }
 }
 

@@ -337,7 +337,8 @@ impl Csg {
             }
             if let (Some(inside), true) = (known, events[from].t <= 0.0) {
                 let leads = |event: &&Event| self.adds(event.leaf, state) != inside;
-                behind = events[from..to].iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
+                behind =
+                    events[from..to].iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
             }
             if whole != before {
                 let chosen = if to == from + 1 { &events[from] } else { self.choose(&events[from..to], state) };

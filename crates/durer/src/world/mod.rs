@@ -299,7 +299,8 @@ impl World {
     /// The nearest hit of one object, whatever is before it.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = crate::bvh::is_sound(&ray.rounded);
-        let (crossing, part) = self.objects()[object as usize].closest(object, ray, false, &mut ()).filter(|_| sound)?;
+        let (crossing, part) =
+            self.objects()[object as usize].closest(object, ray, false, &mut ()).filter(|_| sound)?;
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 

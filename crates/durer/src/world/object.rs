@@ -3,7 +3,7 @@
 use super::csg::Csg;
 use crate::bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
-use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3};
+use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
 use crate::shape::{Mesh, Primitive, Shape, ShapeHit, Surface, Uv};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
@@ -355,6 +355,21 @@ impl Object {
                 Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
             }
         }
+    }
+
+    /// Bound on how far a ray may meet it beside where it is, by rounding of its own coordinates.
+    pub(super) fn rounding(&self) -> f32 {
+        let local = match &self.geometry {
+            Geometry::Primitive(shape) => shape.bounds(),
+            Geometry::Mesh(tree) => Some(tree.bvh.bounds()),
+            Geometry::Solid(solid) => solid.bounds(),
+        };
+        let reach = local.map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
+        let error = match &self.to_world {
+            Some(to_world) => 8.0 * to_world.point_error(reach, Vec3::ZERO),
+            None => gamma(16) * reach,
+        };
+        error.max_element()
     }
 
     /// Whether some of it may lie in a box of world space that overlaps its bounds.

@@ -11,8 +11,8 @@ use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
 use crate::math::{Color, Ray64};
 use crate::medium::Way;
 use crate::spectrum::Spectrum;
+use crate::world::Interaction;
 use crate::world::emitters::LightSample;
-use crate::world::{Hit, Interaction};
 
 impl Path<'_> {
     /// How much a light counts that a ray met by its direction, where it could have been found in
@@ -102,11 +102,7 @@ impl Path<'_> {
         // Light that directions find as well must agree with them, and they meet both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() {
-            let blocked = match light.is_vague() {
-                true => self.blocker(&ray, light, tally).is_some(),
-                false => self.world.occluded(&ray, tally),
-            };
-            match blocked {
+            match self.world.occluded(&ray, tally) {
                 true if hides_backs => {}
                 true => return Spectrum::ZERO,
                 false => return pass(media, &ray, ray.rounded.t_max),
@@ -115,7 +111,7 @@ impl Path<'_> {
         let mut media = media.clone();
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
-            let Some(hit) = self.blocker(&ray, light, tally) else {
+            let Some(hit) = self.world.closest(&ray, tally) else {
                 return share * pass(&media, &ray, ray.rounded.t_max);
             };
             share *= pass(&media, &ray, hit.t);
@@ -133,15 +129,10 @@ impl Path<'_> {
         Spectrum::ZERO
     }
 
-    /// What a shadow ray meets before the light.
-    fn blocker<T: TraceListener>(&self, ray: &Ray64, light: &LightSample, tally: &mut T) -> Option<Hit> {
-        self.world.closest(ray, tally).filter(|hit| !light.is_met(hit, ray.rounded.t_max))
-    }
-
     /// What a witness is told of a shadow ray.
     fn shadow(&self, place: &Place, light: &LightSample, share: TermValue) -> Shadow {
         let ray = place.shadow_ray(light);
-        let blocker = self.blocker(&ray, light, &mut ()).map(|hit| (hit.object, hit.t));
+        let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share }
     }
 }

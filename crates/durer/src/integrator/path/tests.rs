@@ -70,6 +70,42 @@ fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
     }
 }
 
+/// What is far for its size is known near itself: here a lamp alone, and the floor as well.
+#[test]
+fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
+    let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
+    let seen = |at: Vec3| {
+        let [p, low, high] = [2.0, 1.75, 2.25].map(|height| at + height * Vec3::Y);
+        let corner = p - Vec3::new(0.5, 0.0, 0.5);
+        [
+            format!("Sphere {{ center {} radius 0.5 }}", words(p)),
+            format!("Disc {{ center {} normal 0.6 -0.8 0 radius 0.5 }}", words(p)),
+            format!("Rectangle {{ corner {} edge0 1 0.25 0 edge1 0 0 1 }}", words(corner)),
+            format!("Cylinder {{ base {} top {} radius 0.375 }}", words(low), words(high)),
+            format!(
+                "Triangle {{ vertex0 {} vertex1 {} vertex2 {} }}",
+                words(corner),
+                words(corner + Vec3::X),
+                words(corner + Vec3::Z)
+            ),
+        ]
+        .map(|lamp| {
+            let materials = format!("{MATTE} PrincipledMaterial {{ emissionLuminance 3 }}");
+            let floor =
+                format!("Rectangle {{ corner {} edge0 8 0 0 edge1 0 0 -8 }}", words(at + Vec3::new(-4.0, 0.0, 4.0)));
+            let world = scene(&materials, "", &format!("MaterialIndex 0 {floor} MaterialIndex 1 {lamp}"));
+            let ray = Ray { origin: at + to_origin().origin, ..to_origin() };
+            (light(&world, ray, 0, 256).0, lamp)
+        })
+    };
+    let near = seen(Vec3::ZERO);
+    for distance in [1e2, 1e3, 1e4, 1e5] {
+        for ((far, lamp), (near, _)) in seen(distance * Vec3::new(1.0, -0.75, 0.5)).into_iter().zip(&near) {
+            assert!(*near > 0.05 && (far - near).abs() < 1e-3 * near, "{lamp} gives {far}, not {near}");
+        }
+    }
+}
+
 #[test]
 fn lights_with_extent_shine_by_their_view_factors() {
     use std::f64::consts::PI;

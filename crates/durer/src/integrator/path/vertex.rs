@@ -4,7 +4,7 @@ use super::State;
 use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::spawn::{spawn_ray, to_point};
-use crate::math::{Ray64, Vec2, Vec3, gamma};
+use crate::math::{Ray64, Vec2, Vec3};
 use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
 use crate::spectrum::Spectrum;
@@ -135,10 +135,11 @@ impl Place<'_, '_> {
     /// The ray to a light.
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         // What stands exactly at the light does not block it.
-        let reach = light.shadow_reach() * (1.0 - gamma(16));
         match self {
-            Place::Surface(surface, ..) => to_point(surface, light.wi, reach),
-            Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, reach),
+            Place::Surface(surface, ..) => {
+                to_point(surface, light.wi, light.shadow_reach(2.0 * surface.error.element_sum()))
+            }
+            Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, light.shadow_reach(0.0)),
         }
     }
 

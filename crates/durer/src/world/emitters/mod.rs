@@ -8,7 +8,7 @@ pub mod tree;
 use super::{Hit, Object, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
-use crate::math::{Aabb, Color, Vec2, Vec3, fp};
+use crate::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 use serde::Serialize;
 pub use shape::{Form, Place};
@@ -28,7 +28,7 @@ pub struct AreaLight {
     pub part: u32,
     /// Whether it shines to both sides, and not only to that of its normal.
     pub two_sided: bool,
-    /// As [`Form::error`].
+    /// How far what rays meet may be beside it, by rounding of the object's own coordinates.
     pub error: f32,
 }
 
@@ -83,8 +83,11 @@ pub struct LightSample {
     pub wi: Vec3,
     /// How far away it is.
     pub reach: f32,
-    /// How far off its surface may be along the way, by the rounding of its place.
-    pub slack: f32,
+    /// How far what rays meet of it may be beside it, by rounding.
+    pub error: f32,
+    /// The cosine of the angle between its normal and the way, or what is counted as that: more
+    /// than zero.
+    pub cosine: f32,
     /// Its radiance; of a light without extent the irradiance that it makes across its way.
     pub radiance: Color,
     /// The probability with which it was chosen.
@@ -94,21 +97,10 @@ pub struct LightSample {
 }
 
 impl LightSample {
-    /// Whether its surface is known badly, as it is far from the origin of coordinates: what stands
-    /// before it may be nearer than its own error.
-    pub fn is_vague(&self) -> bool {
-        self.slack > 1e-3 * self.reach
-    }
-
-    /// How far a shadow ray goes: where the surface is known well, to just before it. Else beyond
-    /// it, and what is met must be told from it: see [`LightSample::is_met`].
-    pub fn shadow_reach(&self) -> f32 {
-        if self.is_vague() { self.reach + self.slack } else { self.reach - self.slack }
-    }
-
-    /// Whether a shadow ray that ends at `t_max`, beyond the light, met the light itself.
-    pub fn is_met(&self, hit: &Hit, t_max: f32) -> bool {
-        self.is_vague() && self.light.object() == Some(hit.object) && hit.t >= t_max - 2.0 * self.slack
+    /// How far a shadow ray goes from a point that is known to an error: to where neither reaches.
+    /// What passes a surface by some distance meets one that is inclined so much earlier.
+    pub fn shadow_reach(&self, error: f32) -> f32 {
+        (self.reach - 2.0 * (self.error + error) / self.cosine) * (1.0 - gamma(16))
     }
 }
 
@@ -169,8 +161,16 @@ impl Emitters {
         }
         if let (Some(environment), true) = (world.environment(), chosen == self.even.len()) {
             let (wi, radiance, pdf) = environment.sample(u)?;
-            let (reach, slack) = (f32::INFINITY, 0.0);
-            return Some(LightSample { light: LightId::Environment, wi, reach, slack, radiance, choice: even, pdf });
+            return Some(LightSample {
+                light: LightId::Environment,
+                wi,
+                reach: f32::INFINITY,
+                error: 0.0,
+                cosine: 1.0,
+                radiance,
+                choice: even,
+                pdf,
+            });
         }
         let rest = (scaled - chosen as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
@@ -227,7 +227,8 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
         light: LightId::Light(light),
         wi: seen.to_light,
         reach: seen.distance,
-        slack: 0.0,
+        error: 0.0,
+        cosine: 1.0,
         radiance: PI * seen.color,
         choice,
         pdf: 0.0,
@@ -248,7 +249,7 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 impl AreaLight {
     fn new(number: u32, object: &Object, part: u32, two_sided: bool) -> Option<Self> {
         let (form, normal) = Form::of(object, part)?;
-        Some(AreaLight { error: form.error(), form, normal, object: number, part, two_sided })
+        Some(AreaLight { error: object.rounding(), form, normal, object: number, part, two_sided })
     }
 
     fn bounds(&self, radiance: f32) -> Bounds {
@@ -271,9 +272,17 @@ impl AreaLight {
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }
-        let slack = 2.0 * self.error / place.cosine.abs().max(1e-3);
         let radiance = world.emission_of(world.objects()[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
-        Some(LightSample { light, wi: place.wi, reach: place.distance, slack, radiance, choice, pdf: place.pdf })
+        Some(LightSample {
+            light,
+            wi: place.wi,
+            reach: place.distance,
+            error: self.error + gamma(8) * place.distance,
+            cosine: place.cosine.abs().max(1e-3),
+            radiance,
+            choice,
+            pdf: place.pdf,
+        })
     }
 }

@@ -1,26 +1,27 @@
 //! The forms of emitters in world space, and how points of them are chosen as seen from a point.
 
 use crate::bsdf::{Frame, warp};
-use crate::math::{Aabb, Vec2, Vec3, fp, gamma};
+use crate::math::{Aabb, Vec2, Vec3, fp};
 use crate::shape::Primitive;
 use crate::world::Object;
 use crate::world::object::Geometry;
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
-/// A form whose points can be chosen at random.
+/// A form whose points can be chosen at random. Places are known in double precision, as those of
+/// things are that rays meet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// A corner and two edges.
-    Triangle([Vec3; 3]),
+    Triangle(DVec3, [Vec3; 2]),
     /// A corner and two edges.
-    Parallelogram([Vec3; 3]),
+    Parallelogram(DVec3, [Vec3; 2]),
     /// A centre and two half axes at any angle; and the share of the radius that is cut out.
-    Ellipse([Vec3; 3], f32),
+    Ellipse(DVec3, [Vec3; 2], f32),
     /// A centre and a radius.
-    Sphere(Vec3, f32),
+    Sphere(DVec3, f32),
     /// The middle of one cap, the way to that of the other, and a radius.
-    Cylinder(Vec3, Vec3, f32),
+    Cylinder(DVec3, Vec3, f32),
 }
 
 /// A chosen point of an emitter, as seen from somewhere.
@@ -39,29 +40,29 @@ pub struct Place {
 impl Form {
     /// The form of one part of an object, with its normal; `None` for what is found by hits alone.
     pub fn of(object: &Object, part: u32) -> Option<(Form, Vec3)> {
-        let point = |p: Vec3| object.world_point(p);
+        let point = |p: Vec3| object.to_world.as_ref().map_or(p.as_dvec3(), |m| m.point64(p));
         let vector = |v: Vec3| object.to_world.as_ref().map_or(v, |m| m.vector(v));
         let normal = |n: Vec3| object.to_world.as_ref().map_or(n, |m| m.normal(n));
         Some(match &object.geometry {
             Geometry::Mesh(tree) => {
                 let [a, b, c] = tree.mesh.corners(part);
                 let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Triangle([point(a), vector(b - a), vector(c - a)]), normal(n))
+                (Form::Triangle(point(a), [vector(b - a), vector(c - a)]), normal(n))
             }
             Geometry::Primitive(Primitive::Triangle(triangle)) => {
                 let [a, b, c] = triangle.corners();
                 let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Triangle([point(a), vector(b - a), vector(c - a)]), normal(n))
+                (Form::Triangle(point(a), [vector(b - a), vector(c - a)]), normal(n))
             }
             Geometry::Primitive(Primitive::Rectangle(r)) => {
                 let n = r.edge0.as_dvec3().cross(r.edge1.as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Parallelogram([point(r.corner), vector(r.edge0), vector(r.edge1)]), normal(n))
+                (Form::Parallelogram(point(r.corner), [vector(r.edge0), vector(r.edge1)]), normal(n))
             }
             Geometry::Primitive(Primitive::Disc(disc)) => {
                 let n = disc.normal.normalize_or(Vec3::Y);
                 let frame = Frame::around(n);
                 let axes = [frame.tangent, frame.bitangent].map(|axis| vector(disc.radius * axis));
-                (Form::Ellipse([point(disc.center), axes[0], axes[1]], disc.inner_radius / disc.radius), normal(n))
+                (Form::Ellipse(point(disc.center), axes, disc.inner_radius / disc.radius), normal(n))
             }
             Geometry::Primitive(Primitive::Sphere(sphere)) => {
                 let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| vector(sphere.radius * axis));
@@ -91,9 +92,9 @@ impl Form {
     /// Its area.
     pub fn area(&self) -> f32 {
         match self {
-            Form::Triangle([_, e, f]) => 0.5 * e.cross(*f).length(),
-            Form::Parallelogram([_, e, f]) => e.cross(*f).length(),
-            Form::Ellipse([_, u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
+            Form::Triangle(_, [e, f]) => 0.5 * e.cross(*f).length(),
+            Form::Parallelogram(_, [e, f]) => e.cross(*f).length(),
+            Form::Ellipse(_, [u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
             Form::Sphere(_, radius) => 4.0 * PI * radius * radius,
             Form::Cylinder(_, way, radius) => 2.0 * PI * radius * (way.length() + radius),
         }
@@ -106,16 +107,18 @@ impl Form {
 
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
+        let near = |p: DVec3| p.as_vec3();
         match *self {
-            Form::Triangle([p, e, f]) => Aabb::around([p, p + e, p + f]),
-            Form::Parallelogram([p, e, f]) => Aabb::around([p, p + e, p + f, p + e + f]),
-            Form::Ellipse([p, u, v], _) => {
+            Form::Triangle(p, [e, f]) => Aabb::around([near(p), near(p) + e, near(p) + f]),
+            Form::Parallelogram(p, [e, f]) => Aabb::around([near(p), near(p) + e, near(p) + f, near(p) + e + f]),
+            Form::Ellipse(p, [u, v], _) => {
                 let reach = (u * u + v * v).map(f32::sqrt);
-                Aabb { min: p - reach, max: p + reach }
+                Aabb { min: near(p) - reach, max: near(p) + reach }
             }
-            Form::Sphere(center, radius) => Aabb { min: center - radius, max: center + radius },
+            Form::Sphere(center, radius) => Aabb { min: near(center) - radius, max: near(center) + radius },
             Form::Cylinder(base, way, radius) => {
-                Aabb::around([base - radius, base + radius, base + way - radius, base + way + radius])
+                let [base, top] = [near(base), near(base) + way];
+                Aabb::around([base - radius, base + radius, top - radius, top + radius])
             }
         }
     }
@@ -123,11 +126,11 @@ impl Form {
     /// Chooses a point of it, as seen from a point; `None` where none can be seen.
     pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<Place> {
         let to = match *self {
-            Form::Triangle([p, e, f]) => {
+            Form::Triangle(p, [e, f]) => {
                 let b = warp::triangle(u);
                 offset(p, from) + b.y * e + b.z * f
             }
-            Form::Parallelogram([p, e, f]) => {
+            Form::Parallelogram(p, [e, f]) => {
                 let corner = offset(p, from);
                 if let Some(window) = Window::new(corner, e, f) {
                     let wi = window.sample(u);
@@ -137,7 +140,7 @@ impl Form {
                 }
                 corner + u.x * e + u.y * f
             }
-            Form::Ellipse([p, x, y], inner) => {
+            Form::Ellipse(p, [x, y], inner) => {
                 let d = in_ring(u, inner);
                 offset(p, from) + d.x * x + d.y * y
             }
@@ -177,7 +180,7 @@ impl Form {
                 let normal = outwards(distance * wi - offset(base, from), way, radius);
                 distance * distance / (wi.dot(normal).abs() * self.area())
             }
-            Form::Parallelogram([p, e, f]) => match Window::new(offset(p, from), e, f) {
+            Form::Parallelogram(p, [e, f]) => match Window::new(offset(p, from), e, f) {
                 Some(window) => 1.0 / window.solid_angle as f32,
                 None => distance * distance / (wi.dot(normal).abs() * self.area()),
             },
@@ -188,18 +191,18 @@ impl Form {
     /// A point chosen evenly over its area, its normal there, and the density per area.
     pub fn point(&self, normal: Vec3, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, normal) = match *self {
-            Form::Triangle([p, e, f]) => {
+            Form::Triangle(p, [e, f]) => {
                 let b = warp::triangle(u);
-                (p.as_dvec3() + (b.y * e + b.z * f).as_dvec3(), normal)
+                (p + (b.y * e + b.z * f).as_dvec3(), normal)
             }
-            Form::Parallelogram([p, e, f]) => (p.as_dvec3() + (u.x * e + u.y * f).as_dvec3(), normal),
-            Form::Ellipse([p, x, y], inner) => {
+            Form::Parallelogram(p, [e, f]) => (p + (u.x * e + u.y * f).as_dvec3(), normal),
+            Form::Ellipse(p, [x, y], inner) => {
                 let d = in_ring(u, inner);
-                (p.as_dvec3() + (d.x * x + d.y * y).as_dvec3(), normal)
+                (p + (d.x * x + d.y * y).as_dvec3(), normal)
             }
             Form::Sphere(center, radius) => {
                 let n = warp::sphere(u);
-                (center.as_dvec3() + f64::from(radius) * n.as_dvec3(), n)
+                (center + f64::from(radius) * n.as_dvec3(), n)
             }
             Form::Cylinder(base, way, radius) => {
                 let height = way.length();
@@ -218,17 +221,11 @@ impl Form {
                     let n = cos * frame.tangent + sin * frame.bitangent;
                     ((u.x - caps) / (1.0 - caps) * way + radius * n, n)
                 };
-                (base.as_dvec3() + at.as_dvec3(), n)
+                (base + at.as_dvec3(), n)
             }
         };
         let density = 1.0 / self.area();
         density.is_finite().then_some((point, normal, density))
-    }
-
-    /// Bound on how far a chosen point may be beside the surface that rays meet.
-    pub fn error(&self) -> f32 {
-        let bounds = self.bounds();
-        gamma(16) * bounds.min.abs().max(bounds.max.abs()).max_element()
     }
 }
 
@@ -252,8 +249,8 @@ fn in_ring(u: Vec2, inner: f32) -> Vec2 {
 }
 
 /// From one point to another.
-fn offset(to: Vec3, from: DVec3) -> Vec3 {
-    (to.as_dvec3() - from).as_vec3()
+fn offset(to: DVec3, from: DVec3) -> Vec3 {
+    (to - from).as_vec3()
 }
 
 /// 1 - cos of the angle whose sine's square is given, without cancellation.
