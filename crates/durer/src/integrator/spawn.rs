@@ -76,5 +76,10 @@ fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
     surface.point() + lift.as_dvec3() + offset.as_dvec3()
 }
 
+/// As far beside a surface's point as a ray from a flat surface starts at most.
+pub fn offset_bound(surface: &Surface) -> f32 {
+    2.0 * surface.error.element_sum()
+}
+
 #[cfg(test)]
 mod tests;

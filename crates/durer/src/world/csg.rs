@@ -331,35 +331,33 @@ impl Csg {
         let mut from = 0;
         while from < events.len() {
             let to = self.coincident(ray, events, from, &mut state.groups);
-            let before = whole;
-            for event in &events[from..to] {
+            let (group, before) = (&events[from..to], whole);
+            from = to;
+            for event in group {
                 whole ^= self.toggle(event.leaf, state);
             }
-            if let (Some(inside), true) = (known, events[from].t <= 0.0) {
+            if let (Some(inside), true) = (known, group[0].t <= 0.0) {
                 let leads = |event: &&Event| self.adds(event.leaf, state) != inside;
-                behind =
-                    events[from..to].iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
+                behind = group.iter().rfind(leads).map(|event| self.change(event, state, !inside)).or(behind);
             }
-            if whole != before {
-                let chosen = if to == from + 1 { &events[from] } else { self.choose(&events[from..to], state) };
-                let change = self.change(chosen, state, whole);
-                let t = change.0.t;
-                if t.is_nan() {
-                    return None;
-                }
-                let mut passed = t <= ray.rounded.t_min;
-                if t > 0.0 && known.take().is_some_and(|inside| inside != before) {
-                    match behind.filter(|(last, _)| -last.t <= t).map(at_once) {
-                        Some(Some(met)) => return Some(met),
-                        Some(None) => {}
-                        None => passed = true,
-                    }
-                }
-                if !passed {
-                    return (t < ray.rounded.t_max).then_some(change);
+            if whole == before {
+                continue;
+            }
+            let chosen = if let [one] = group { one } else { self.choose(group, state) };
+            let change = self.change(chosen, state, whole);
+            let t = change.0.t;
+            if t.is_nan() {
+                return None;
+            }
+            if t > 0.0 && known.take().is_some_and(|inside| inside != before) {
+                let Some(last) = behind.filter(|(last, _)| -last.t <= t) else { continue };
+                if let Some(met) = at_once(last) {
+                    return Some(met);
                 }
             }
-            from = to;
+            if t > ray.rounded.t_min {
+                return (t < ray.rounded.t_max).then_some(change);
+            }
         }
         behind.filter(|_| known.is_some_and(|inside| inside != whole)).and_then(at_once)
     }
@@ -482,12 +480,7 @@ fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
 
 /// Two roundings of an object's coordinates, in world and in object space.
 fn slack_of(object: &Object) -> f32 {
-    let Some(world) = object.bounds() else { return 0.0 };
-    let local = match &object.geometry {
-        Geometry::Primitive(shape) => shape.bounds().unwrap_or(world),
-        Geometry::Mesh(tree) => tree.bvh.bounds(),
-        Geometry::Solid(_) => world,
-    };
+    let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());
     let moved = object.to_world.as_ref().map_or(Vec3::ZERO, |to_world| to_world.spread(reach(local)));
     2.0 * f32::EPSILON * (reach(world).max_element() + moved.max_element())

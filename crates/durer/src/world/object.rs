@@ -334,12 +334,17 @@ impl Object {
 
     /// Bounds in world space; `None` for a shape without end.
     pub fn bounds(&self) -> Option<Aabb> {
-        let local = match &self.geometry {
-            Geometry::Primitive(shape) => shape.bounds()?,
-            Geometry::Mesh(tree) => tree.bvh.bounds(),
-            Geometry::Solid(solid) => return solid.bounds(),
-        };
-        Some(self.moved(local))
+        let local = self.local_bounds()?;
+        Some(if let Geometry::Solid(_) = self.geometry { local } else { self.moved(local) })
+    }
+
+    /// The same in object space; those of a solid, whose parts are placed, are of the world.
+    pub(super) fn local_bounds(&self) -> Option<Aabb> {
+        match &self.geometry {
+            Geometry::Primitive(shape) => shape.bounds(),
+            Geometry::Mesh(tree) => Some(tree.bvh.bounds()),
+            Geometry::Solid(solid) => solid.bounds(),
+        }
     }
 
     /// Bounds of one part in world space.
@@ -359,12 +364,7 @@ impl Object {
 
     /// Bound on how far a ray may meet it beside where it is, by rounding of its own coordinates.
     pub(super) fn rounding(&self) -> f32 {
-        let local = match &self.geometry {
-            Geometry::Primitive(shape) => shape.bounds(),
-            Geometry::Mesh(tree) => Some(tree.bvh.bounds()),
-            Geometry::Solid(solid) => solid.bounds(),
-        };
-        let reach = local.map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
+        let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
         let error = match &self.to_world {
             Some(to_world) => 8.0 * to_world.point_error(reach, Vec3::ZERO),
             None => gamma(16) * reach,

@@ -3,7 +3,7 @@
 use super::State;
 use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
-use crate::integrator::spawn::{spawn_ray, to_point};
+use crate::integrator::spawn::{offset_bound, spawn_ray, to_point};
 use crate::math::{Ray64, Vec2, Vec3};
 use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
@@ -136,9 +136,7 @@ impl Place<'_, '_> {
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         // What stands exactly at the light does not block it.
         match self {
-            Place::Surface(surface, ..) => {
-                to_point(surface, light.wi, light.shadow_reach(2.0 * surface.error.element_sum()))
-            }
+            Place::Surface(surface, ..) => to_point(surface, light.wi, light.shadow_reach(offset_bound(surface))),
             Place::Medium(point, ..) => Ray64::new(*point, light.wi, 0.0, light.shadow_reach(0.0)),
         }
     }

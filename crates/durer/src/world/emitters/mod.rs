@@ -5,7 +5,7 @@ pub mod emission;
 pub mod shape;
 pub mod tree;
 
-use super::{Hit, Object, World};
+use super::{Hit, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
@@ -111,9 +111,11 @@ impl Emitters {
         let mut bounds = Vec::new();
         for (number, object) in world.objects().iter().enumerate() {
             let Some(emission) = world.emission_of(object.material) else { continue };
-            let start = emitters.sources.len();
+            let (start, error) = (emitters.sources.len(), object.rounding());
             for part in 0..object.parts() {
-                let Some(area) = AreaLight::new(number as u32, object, part, emission.two_sided) else { break };
+                let Some((form, normal)) = Form::of(object, part) else { break };
+                let (number, two_sided) = (number as u32, emission.two_sided);
+                let area = AreaLight { form, normal, object: number, part, two_sided, error };
                 bounds.push(area.bounds(emission.radiance.max_element()));
                 emitters.sources.push(Source::Area(area));
             }
@@ -247,11 +249,6 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 }
 
 impl AreaLight {
-    fn new(number: u32, object: &Object, part: u32, two_sided: bool) -> Option<Self> {
-        let (form, normal) = Form::of(object, part)?;
-        Some(AreaLight { error: object.rounding(), form, normal, object: number, part, two_sided })
-    }
-
     fn bounds(&self, radiance: f32) -> Bounds {
         let round = self.form.is_round();
         // What is seen of what bulges is a quarter of its surface, on the mean.
