@@ -13,7 +13,7 @@ use crate::dialect::Dialect;
 use crate::math::{Color, Ray};
 use crate::sampler::SampleId;
 use crate::spectrum::ColorMode;
-use crate::world::{Hit, World};
+use crate::world::World;
 pub use ao::{AmbientOcclusion, AoParameters};
 pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
 use std::sync::atomic::AtomicBool;
@@ -62,14 +62,19 @@ pub trait Integrate {
     /// The light that comes along a camera ray, by the random numbers of a sample.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
-    /// What camera rays hit first, if that is better asked for together, as in some worlds it is.
-    fn first_hits(&self, _rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
-        None
-    }
-
-    /// The light along a camera ray whose first hit is known by [`Integrate::first_hits`].
-    fn radiance_from<T: TraceListener>(&self, ray: &Ray, _: Option<Hit>, id: SampleId, tally: &mut T) -> Color {
-        self.radiance(ray, id, tally)
+    /// The same for some camera rays that are neighbours, as it is for each: for those who can do
+    /// better with several. `begin` hears the number of the ray that comes next.
+    fn radiances<T: TraceListener>(
+        &self,
+        rays: &[(Ray, SampleId)],
+        begin: impl Fn(usize),
+        tally: &mut T,
+        colors: &mut [Color],
+    ) {
+        for (i, ((ray, id), color)) in rays.iter().zip(colors).enumerate() {
+            begin(i);
+            *color = self.radiance(ray, *id, tally);
+        }
     }
 
     /// Makes what the samples of some number need, by all threads, before they are taken.
@@ -107,11 +112,14 @@ macro_rules! delegate {
             fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
                 match self { $(Integrator::$variant(it) => Integrate::radiance(it, ray, id, tally),)+ }
             }
-            fn first_hits(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
-                match self { $(Integrator::$variant(it) => it.first_hits(rays),)+ }
-            }
-            fn radiance_from<T: TraceListener>(&self, ray: &Ray, hit: Option<Hit>, id: SampleId, tally: &mut T) -> Color {
-                match self { $(Integrator::$variant(it) => it.radiance_from(ray, hit, id, tally),)+ }
+            fn radiances<T: TraceListener>(
+                &self,
+                rays: &[(Ray, SampleId)],
+                begin: impl Fn(usize),
+                tally: &mut T,
+                colors: &mut [Color],
+            ) {
+                match self { $(Integrator::$variant(it) => it.radiances(rays, begin, tally, colors),)+ }
             }
             fn prepare(&self, sample: u32) {
                 match self { $(Integrator::$variant(it) => it.prepare(sample),)+ }

@@ -8,7 +8,7 @@ use super::trace::{HitRecord, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::describe::described;
 use crate::dialect::{Compat, set};
-use crate::math::{Color, Ray, Ray64};
+use crate::math::{Color, Ray, Ray64, Vec3};
 use crate::sampler::SampleId;
 use crate::world::{Hit, Interaction, Material, WeightedMaterial, World};
 use direct::direct;
@@ -91,41 +91,45 @@ struct Lit<'w> {
     scattered: Color,
 }
 
+/// The side of a surface that is shaded.
+struct Side {
+    /// The normal that light is reckoned with.
+    n: Vec3,
+    from_behind: bool,
+    /// Whether an old program leaves it black.
+    black: bool,
+}
+
 impl Integrate for Whitted<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
     }
 
-    fn first_hits(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
-        self.world.closest_of_eight(rays)
-    }
-
-    fn radiance_from<T: TraceListener>(&self, ray: &Ray, hit: Option<Hit>, _: SampleId, tally: &mut T) -> Color {
-        tally.ray();
-        self.camera_ray(ray, tally, |_, _| hit)
+    fn radiances<T: TraceListener>(
+        &self,
+        rays: &[(Ray, SampleId)],
+        begin: impl Fn(usize),
+        tally: &mut T,
+        colors: &mut [Color],
+    ) {
+        self.light_together(rays, begin, tally, colors);
     }
 }
 
 impl<'w> Whitted<'w> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
-        self.camera_ray(ray, tally, |ray, tally| self.world.closest_along(ray, tally))
-    }
-
-    #[inline(always)]
-    fn camera_ray<T: TraceListener>(
-        &self,
-        ray: &Ray,
-        tally: &mut T,
-        find: impl FnOnce(&mut Ray64, &mut T) -> Option<Hit>,
-    ) -> Color {
         let mut along = ray.into();
-        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0 };
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let found = find(&mut along, tally);
-        let color = self.trace(&along, found, path, tally);
+        let found = self.world.closest_along(&mut along, tally);
+        let color = self.trace(&along, found, self.from_camera(&Media::default()), tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
+    }
+
+    /// What a camera ray carries, in the air.
+    fn from_camera<'a>(&self, air: &'a Media) -> Path<'a> {
+        Path { bounces: self.settings.bounces, media: air, weight: 1.0 }
     }
 
     /// The light along a ray that has hit this first.
@@ -180,10 +184,7 @@ impl<'w> Whitted<'w> {
         tally: &mut T,
     ) -> Color {
         let Interaction { ray, surface, .. } = at;
-        let from_behind = self.sees_back(at);
-        let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
-        let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let Side { n, from_behind, black } = self.side(at);
         tally.hit(|| HitRecord::new(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
@@ -226,8 +227,7 @@ impl<'w> Whitted<'w> {
                 }
             }
         }
-        let cancelled = self.cancel.is_some_and(|cancel| cancel.load(Relaxed));
-        if path.bounces > 0 && !cancelled {
+        if self.goes_on(path) {
             let blend = Blend::of(all.iter().map(|lit| &lit.part));
             color += match blend.reflective == Color::ZERO && blend.transparent == Color::ZERO {
                 true => Color::ZERO,
@@ -238,6 +238,21 @@ impl<'w> Whitted<'w> {
             tally.end(Color::ONE, Color::ONE, Color::ZERO);
         }
         color
+    }
+
+    /// Whether mirrored and transmitted rays are traced yet.
+    fn goes_on(&self, path: Path) -> bool {
+        path.bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
+    }
+
+    /// The side of a surface that is shaded.
+    #[inline(always)]
+    fn side(&self, at: &Interaction) -> Side {
+        let (surface, from_behind) = (&at.surface, self.sees_back(at));
+        let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
+        let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
+        let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        Side { n, from_behind, black }
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
@@ -259,3 +274,4 @@ mod direct;
 pub(crate) mod secondary;
 #[cfg(test)]
 mod tests;
+mod together;

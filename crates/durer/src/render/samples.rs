@@ -1,6 +1,6 @@
 //! How the samples of a block are taken, for each way of sampling.
 
-use super::aim::{Aim, Batch, Pixel, PixelSample};
+use super::aim::{Aim, Batch, PixelSample};
 use super::error::{MAX_KEPT, center};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, center_ray};
@@ -10,10 +10,10 @@ use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::math::{Color, Vec2, Vec3};
+use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::{SampleId, Sampler};
 use crate::threads;
-use crate::world::{Material, World};
+use crate::world::{Material, TOGETHER, World};
 use std::cell::Cell;
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -109,6 +109,17 @@ pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
+/// Samples that were aimed.
+#[derive(Default)]
+struct Aimed {
+    /// Column, row and number of each, its weight, and whether the camera sees anything there.
+    samples: Vec<((u32, u32, u32), f32, bool)>,
+    /// The rays of those where it does, and which they are.
+    rays: Vec<(Ray, SampleId)>,
+    of: Vec<usize>,
+    colors: Vec<Color>,
+}
+
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
     world: &'a World,
@@ -156,42 +167,64 @@ impl<'a> Samples<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
+        let mut aimed = Aimed::default();
         for (x, y) in part.places() {
             let pixel = self.aim.pixel(x, y);
             for sample in range.clone() {
                 at.set((x, y, Some(sample)));
                 if batch.push(&pixel, sample) {
-                    self.add_batch(film, &mut batch, at, rays)?;
+                    self.aim_batch(&mut batch, &mut aimed);
+                    if aimed.samples.len() >= TOGETHER {
+                        self.add_aimed(film, &mut aimed, at, rays)?;
+                    }
                 }
             }
         }
-        self.add_batch(film, &mut batch, at, rays)?;
+        self.aim_batch(&mut batch, &mut aimed);
+        self.add_aimed(film, &mut aimed, at, rays)?;
         // What was made after a cancel means nothing.
         self.check()
     }
 
-    /// Adds some samples, of which there are none left then.
-    fn add_batch(
+    /// Aims some samples, of which there are none left then.
+    fn aim_batch(&self, batch: &mut Batch, aimed: &mut Aimed) {
+        if batch.is_empty() {
+            return;
+        }
+        let (rays, weights) = self.aim.batch(batch);
+        for ((pixel, sample), (ray, weight)) in batch.take().iter().zip(rays.into_iter().zip(weights)) {
+            if let Some(ray) = ray {
+                aimed.rays.push((ray, pixel.id.of_sample(*sample)));
+                aimed.of.push(aimed.samples.len());
+            }
+            aimed.samples.push(((pixel.x, pixel.y, *sample), weight, ray.is_some()));
+        }
+    }
+
+    /// Adds samples that were aimed, of which there are none left then.
+    fn add_aimed(
         &self,
         film: &mut Film,
-        batch: &mut Batch,
+        aimed: &mut Aimed,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
-        if batch.is_empty() {
-            return Ok(());
+        self.check()?;
+        let Aimed { samples, rays: aims, of, colors } = aimed;
+        colors.resize(aims.len(), Color::ZERO);
+        let begin = |i: usize| {
+            let (x, y, sample) = samples[of[i]].0;
+            at.set((x, y, Some(sample)));
+        };
+        self.integrator.radiances(aims, begin, rays, colors);
+        let mut colors = colors.drain(..);
+        for ((x, y, sample), weight, sees) in samples.drain(..) {
+            let color = if sees { colors.next() } else { None };
+            let color = color.map(|color| self.with_stale((x, y), color));
+            film.add_if_seen(x, y, sample, color, weight);
         }
-        let (aimed, weights) = self.aim.batch(batch);
-        let hits = self.integrator.first_hits(&aimed);
-        for (i, (pixel, sample)) in batch.take().iter().enumerate() {
-            self.check()?;
-            at.set((pixel.x, pixel.y, Some(*sample)));
-            let color = aimed[i].map(|ray| match &hits {
-                Some(hits) => self.integrator.radiance_from(&ray, hits[i], pixel.id.of_sample(*sample), rays),
-                None => self.integrator.radiance(&ray, pixel.id.of_sample(*sample), rays),
-            });
-            film.add_if_seen(pixel.x, pixel.y, *sample, color.map(|color| self.with_stale(pixel, color)), weights[i]);
-        }
+        aims.clear();
+        of.clear();
         Ok(())
     }
 
@@ -200,11 +233,11 @@ impl<'a> Samples<'a> {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
         let color = ray.map(|ray| self.integrator.radiance(&ray, pixel.id.of_sample(sample), rays));
-        (color.map(|color| self.with_stale(&pixel, color)), weight)
+        (color.map(|color| self.with_stale((x, y), color)), weight)
     }
 
-    fn with_stale(&self, pixel: &Pixel, color: Color) -> Color {
-        let stale = self.stale.get(pixel.y as usize * self.job.width as usize + pixel.x as usize);
+    fn with_stale(&self, (x, y): (u32, u32), color: Color) -> Color {
+        let stale = self.stale.get(y as usize * self.job.width as usize + x as usize);
         stale.map_or(color, |&stale| color + stale)
     }
 

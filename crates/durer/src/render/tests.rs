@@ -3,7 +3,8 @@
 use super::verify::{Way, compare};
 use super::*;
 use crate::bvh::RayCount;
-use crate::compile::testing;
+use crate::compile::{AccelKind, testing};
+use crate::dialect::Dialect;
 use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
@@ -89,24 +90,55 @@ fn every_way_gives_one_film() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are aimed side by side, and explained and replayed one by one.
+/// Samples are aimed and shaded with their neighbours, and explained and replayed one by one.
 #[test]
 fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
-    let (world, stop) = (world(), AtomicBool::new(false));
-    for job in jobs().iter().filter(|job| job.sampling.is_local()) {
-        let samples = samples::Samples::new(&world, job, &stop);
-        let part = Crop { left: 3, top: 2, width: 7, height: 5 };
-        let [mut together, mut alone] = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
-        let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
-        let all = 1..job.sampling.samples().max(2);
-        samples.add(&mut together, part, all.clone(), &at, &mut rays[0]).unwrap();
-        for (x, y) in part.places() {
-            for sample in all.clone() {
-                let (color, weight) = samples.sample(x, y, sample, &mut rays[1]);
-                alone.add_if_seen(x, y, sample, color, weight);
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("ball.obj"), include_str!("../../../../scenes/meshes/ball80-smooth.obj"))
+        .unwrap();
+    let more = "Material { diffuseColor 0.1 0.1 0.1 transparentColor 0.8 0.9 0.8 indexOfRefraction 1.5 specularColor 1 1 1 }
+        Checkerboard { materialIndex 0 materialIndex 1 } }
+        Group { MaterialIndex 3 Sphere { center 1 0.2 2 radius 0.4 } MaterialIndex 2 Sphere { center -1 0.2 2 radius 0.5 }
+            MaterialIndex 0 Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }";
+    let of_mesh = TEXT.replace("} }\nGroup {", &format!("}} {more}")).replace("numMaterials 2", "");
+    let of_mesh = of_mesh.replace("numObjects 2\n  MaterialIndex 0 Sphere { center 0 0.5 0 radius 1 }", "");
+    let lamps = |count: u32| {
+        let lamp = |i| format!("PointLight {{ position {} 6 4 color 0.1 0.2 0.1 }} ", i as f32 - 9.0);
+        format!("Lights {{ {} ", (0..count).map(lamp).collect::<String>())
+    };
+    let [lamps_3, lamps_17] = [3, 17].map(|count| of_mesh.replace("Lights { numLights 1", &lamps(count)));
+    let (mut through, mut mirrors) = (small().settings, small().settings);
+    (through.transparent_shadows, mirrors.bounces, mirrors.shade_back) = (true, 3, true);
+    let sane = || Dialect::Durer.rules();
+    let worlds = [
+        (TEXT.to_string(), sane(), small().settings),
+        (TEXT.to_string(), Dialect::F04.rules(), mirrors),
+        (of_mesh.clone(), sane(), mirrors),
+        (of_mesh, sane(), through),
+        (lamps_3, sane(), small().settings),
+        (lamps_17, sane(), mirrors),
+    ];
+    for (text, rules, settings) in worlds {
+        let (world, found) = testing::try_read(&text, rules, AccelKind::Bvh, folder.path());
+        let (world, stop) = (world.unwrap_or_else(|| panic!("{found:?}\n{text}")), AtomicBool::new(false));
+        assert!(world.answers_together(), "{text}");
+        for job in jobs().into_iter().filter(|job| job.sampling.is_local()) {
+            let job = Job { settings, ..job };
+            let samples = samples::Samples::new(&world, &job, &stop);
+            let part = Crop { left: 3, top: 2, width: 27, height: 25 };
+            let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
+            let [mut together, mut alone] = films;
+            let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
+            let all = 1..job.sampling.samples().clamp(2, 7);
+            samples.add(&mut together, part, all.clone(), &at, &mut rays[0]).unwrap();
+            for (x, y) in part.places() {
+                for sample in all.clone() {
+                    let (color, weight) = samples.sample(x, y, sample, &mut rays[1]);
+                    alone.add_if_seen(x, y, sample, color, weight);
+                }
             }
+            assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{text} {:?}", job.sampling);
         }
-        assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{:?}", job.sampling);
     }
 }
 

@@ -10,11 +10,12 @@ mod merged;
 mod object;
 pub mod shading;
 pub mod solid;
+mod together;
 
 use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::light::{Emitter as _, Illumination};
 use crate::material::Pattern;
-use crate::math::{Aabb, Color, Ray, Ray64, Vec2, Vec3};
+use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::ShapeHit;
 use crate::source::Digest;
 use crate::texture::Texture;
@@ -25,6 +26,7 @@ pub use interaction::Interaction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
+pub(crate) use together::TOGETHER;
 
 /// A scene ready to be traced.
 #[derive(Clone, Debug)]
@@ -203,18 +205,6 @@ impl World {
             }
         }
         best
-    }
-
-    /// The first hits of eight rays, as [`World::closest`] has them one by one; `None` where
-    /// nothing is gained by asking for them together. Where there is no ray there is no hit.
-    pub fn closest_of_eight(&self, rays: &[Option<Ray>; 8]) -> Option<[Option<Hit>; 8]> {
-        if self.few.is_empty() {
-            return None;
-        }
-        let nowhere = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
-        let sound = std::array::from_fn(|i| rays[i].filter(crate::bvh::is_sound).unwrap_or(nowhere));
-        let met = self.few.closest_of_eight(&sound);
-        Some(met.map(|met| met.map(|met| Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 })))
     }
 
     /// Whether anything is hit in the ray's interval; the first thing found will do.

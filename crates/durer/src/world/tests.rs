@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
 use crate::math::Ray;
-use crate::math::random::Random;
+use crate::math::random::{Random, rounds};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -231,4 +231,60 @@ fn a_changed_world_has_the_identity_of_what_it_holds() {
     all.sort();
     all.dedup();
     assert_eq!(all.len(), 6);
+}
+
+/// Planes, spheres, solids and meshes, some of them turned or far away, asked about by neighbours
+/// and by rays from anywhere, sound or not.
+#[test]
+fn rays_that_are_asked_about_together_have_their_own_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut random = Random(31);
+    let ball = include_str!("../../../../scenes/meshes/ball80-smooth.obj");
+    std::fs::write(folder.path().join("ball.obj"), ball).unwrap();
+    let mesh = "TriangleMesh { obj_file ball.obj }";
+    let groups = [
+        "Plane { normal 0 1 0 offset -1 } Sphere { center 0 0 0 radius 0.7 } Sphere { center 1 0 0 radius 0.5 }".into(),
+        mesh.to_string(),
+        format!("Plane {{ normal 0 1 0 offset -1 }} {mesh}"),
+        format!(
+            "Sphere {{ center 0.5 0 0 radius 1 }} Transform {{ Translate 1 0 0 Rotate {{ 1 2 3 40 }} Scale 1 2 1 {mesh} }}"
+        ),
+        format!("{mesh} Intersection {{ Box {{ min -1 -1 -1 max 1 1 1 }} Sphere {{ center 0 0 0 radius 1.2 }} }}"),
+        format!("{mesh} Transform {{ Translate 0.5 0 0 {mesh} }}"),
+    ];
+    let mut hits = 0;
+    for group in groups {
+        let text = format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}\n\
+             Materials {{ PhongMaterial {{ diffuseColor 1 1 1 }} }}\nGroup {{ {group} }}"
+        );
+        let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+        let world = world.unwrap_or_else(|| panic!("{found:?}"));
+        assert!(world.answers_together(), "{group}");
+        for round in 0..rounds(200) {
+            let count = 1 + random.below(TOGETHER);
+            let (eye, toward) = (3.0 * random.point(), random.point());
+            let spread = [1e-3, 0.05, 1.0][round % 3];
+            let rays: Vec<Ray64> = (0..count)
+                .map(|_| {
+                    let origin = if round % 2 == 0 { eye } else { eye + spread * random.point() };
+                    let mut ray = Ray::new(origin, toward + spread * random.point() - origin);
+                    (ray.t_min, ray.t_max) = ([0.0, 0.5][random.below(2)], [f32::INFINITY, 1.0][random.below(2)]);
+                    if random.below(50) == 0 {
+                        ray.dir = [Vec3::ZERO, Vec3::NAN][random.below(2)];
+                    }
+                    ray.into()
+                })
+                .collect();
+            let (mut together, mut blocked) = (vec![None; count], vec![false; count]);
+            world.closest_together(&rays, &mut together);
+            world.occluded_together(&rays, &mut blocked);
+            for ((ray, hit), blocked) in rays.iter().zip(together).zip(blocked) {
+                assert_eq!(hit, world.closest(ray, &mut ()), "{group} {ray:?}");
+                assert_eq!(blocked, world.occluded(ray, &mut ()), "{group} {ray:?}");
+                hits += usize::from(blocked);
+            }
+        }
+    }
+    assert!(hits > 5000, "{hits}");
 }

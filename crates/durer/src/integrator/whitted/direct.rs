@@ -18,7 +18,7 @@ impl Whitted<'_> {
     }
 
     #[inline]
-    fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
+    pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
         let rules = self.world.rules();
         // What stands exactly at the light does not block it.
         let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };

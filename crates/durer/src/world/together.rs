@@ -1,0 +1,108 @@
+//! Rays that go nearly the same way, asked about together: with the answers that each has alone.
+
+use super::{Accel, Geometry, Hit, Object, World};
+use crate::bvh::{PackHit, TriangleHit};
+use crate::math::{Ray, Ray64, Vec2, Vec3};
+use crate::shape::ShapeHit;
+use std::array::from_fn;
+
+/// As many rays are asked about together at most.
+pub(crate) const TOGETHER: usize = 64;
+
+/// A ray that meets nothing.
+const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
+
+impl World {
+    /// Whether anything is gained by asking about rays together: in a world of a few planes and
+    /// spheres, and of a few things with a mesh among them.
+    pub(crate) fn answers_together(&self) -> bool {
+        let is_mesh = |&i: &u32| matches!(self.objects()[i as usize].geometry, Geometry::Mesh(_));
+        let alone = matches!(&self.accel, Accel::Bvh(bvh) if bvh.is_empty());
+        !self.few.is_empty() || alone && self.loose.iter().any(is_mesh)
+    }
+
+    /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
+    pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
+        if !self.few.is_empty() {
+            self.few_together(rays, |i, met| hits[i] = met.map(hit_of));
+            return;
+        }
+        hits.fill(None);
+        let offer = |best: &mut Option<Hit>, hit: Option<Hit>| {
+            if let Some(hit) = hit.filter(|hit| hit.is_before(best)) {
+                *best = Some(hit);
+            }
+        };
+        let sound = |i: usize| crate::bvh::is_sound(&rays[i].rounded);
+        for i in (0..rays.len()).filter(|&i| sound(i)) {
+            offer(&mut hits[i], self.packs.closest(&rays[i].rounded, &mut ()).map(hit_of));
+        }
+        for &number in &self.loose {
+            let object = &self.objects()[number as usize];
+            if let Geometry::Mesh(tree) = &object.geometry {
+                let mut found = [const { None::<TriangleHit> }; TOGETHER];
+                let local = local_rays(object, rays.iter());
+                tree.bvh.closest_batch(&local[..rays.len()], &mut found[..rays.len()]);
+                for (best, found) in hits.iter_mut().zip(found) {
+                    offer(best, found.map(|h| Hit { t: h.t, uv: h.uv, object: number, part: h.triangle }));
+                }
+                continue;
+            }
+            for i in (0..rays.len()).filter(|&i| sound(i)) {
+                let found = object.closest(number, &rays[i], false, &mut ());
+                offer(&mut hits[i], found.map(|(ShapeHit { t, uv }, part)| Hit { t, uv, object: number, part }));
+            }
+        }
+    }
+
+    /// Whether anything is hit by each of up to [`TOGETHER`] rays, as [`World::occluded`] has it one
+    /// by one.
+    pub(crate) fn occluded_together(&self, rays: &[Ray64], blocked: &mut [bool]) {
+        if !self.few.is_empty() {
+            self.few_together(rays, |i, met| blocked[i] = met.is_some());
+            return;
+        }
+        for (ray, blocked) in rays.iter().zip(&mut *blocked) {
+            let sound = crate::bvh::is_sound(&ray.rounded);
+            let apart = |&&i: &&u32| !matches!(self.objects()[i as usize].geometry, Geometry::Mesh(_));
+            *blocked = sound
+                && (self.packs.occluded(&ray.rounded, &mut ())
+                    || (self.loose.iter().filter(apart))
+                        .any(|&i| self.objects()[i as usize].closest(i, ray, true, &mut ()).is_some()));
+        }
+        for object in self.loose.iter().map(|&i| &self.objects()[i as usize]) {
+            let Geometry::Mesh(tree) = &object.geometry else { continue };
+            // Those that are in the dark already need not be asked about.
+            let (mut open, mut count) = ([0; TOGETHER], 0);
+            for i in (0..rays.len()).filter(|&i| !blocked[i]) {
+                open[count] = i;
+                count += 1;
+            }
+            let mut found = [false; TOGETHER];
+            let local = local_rays(object, open[..count].iter().map(|&i| &rays[i]));
+            tree.bvh.occluded_batch(&local[..count], &mut found[..count]);
+            open[..count].iter().zip(found).for_each(|(&i, found)| blocked[i] = found);
+        }
+    }
+
+    fn few_together(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
+        for start in (0..rays.len()).step_by(8) {
+            let ray = |i: usize| rays.get(start + i).map(|ray| ray.rounded).filter(crate::bvh::is_sound);
+            let met = self.few.closest_of_eight(&from_fn(|i| ray(i).unwrap_or(NOWHERE)));
+            met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
+        }
+    }
+}
+
+fn hit_of(met: PackHit) -> Hit {
+    Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 }
+}
+
+/// Rays in the space of an object; those that are not sound meet nothing.
+fn local_rays<'r>(object: &Object, rays: impl Iterator<Item = &'r Ray64>) -> [Ray; TOGETHER] {
+    let mut local = [NOWHERE; TOGETHER];
+    for (local, ray) in local.iter_mut().zip(rays).filter(|(_, ray)| crate::bvh::is_sound(&ray.rounded)) {
+        *local = object.local_ray(ray);
+    }
+    local
+}
