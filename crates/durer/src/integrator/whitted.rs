@@ -122,13 +122,13 @@ impl<'w> Whitted<'w> {
         let mut along = ray.into();
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let found = self.world.closest_along(&mut along, tally);
-        let color = self.trace(&along, found, self.from_camera(&Media::default()), tally);
+        let color = self.trace(&along, found, self.camera_path(&Media::default()), tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
     }
 
     /// What a camera ray carries, in the air.
-    fn from_camera<'a>(&self, air: &'a Media) -> Path<'a> {
+    fn camera_path<'a>(&self, air: &'a Media) -> Path<'a> {
         Path { bounces: self.settings.bounces, media: air, weight: 1.0 }
     }
 

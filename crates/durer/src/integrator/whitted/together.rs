@@ -87,7 +87,7 @@ impl Whitted<'_> {
         let mut hits = [None; TOGETHER];
         self.world.closest_together(along, &mut hits[..rays.len()]);
         let air = Media::default();
-        let path = self.from_camera(&air);
+        let path = self.camera_path(&air);
         let waits = self.settings.shadows
             && self.world.lights().len() <= MOST_LAMPS
             && !self.settings.transparent_shadows
