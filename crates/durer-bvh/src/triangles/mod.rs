@@ -16,6 +16,7 @@ use super::node;
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
+use std::cell::Cell;
 pub use nearest::NearestPoint;
 use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
 use tree::number;
@@ -168,8 +169,12 @@ impl TriangleBvh {
     /// If there are not as many places for hits as rays.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
-        let rest = self.packets::<false>(rays, |i, hit| hits[i] = hit);
-        self.each::<Nearest>(rays, &rest, |i, hit| hits[i] = hit);
+        let hits = Cell::from_mut(hits).as_slice_of_cells();
+        self.packets::<false>(
+            rays,
+            |i, hit| hits[i].set(hit),
+            |rest| self.each::<Nearest>(rays, rest, |i, hit| hits[i].set(hit)),
+        );
     }
 
     /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes
@@ -180,8 +185,12 @@ impl TriangleBvh {
     /// If there are not as many places for answers as rays.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
-        let rest = self.packets::<true>(rays, |i, hit| answers[i] = hit.is_some());
-        self.each::<Any>(rays, &rest, |i, answer| answers[i] = answer);
+        let answers = Cell::from_mut(answers).as_slice_of_cells();
+        self.packets::<true>(
+            rays,
+            |i, hit| answers[i].set(hit.is_some()),
+            |rest| self.each::<Any>(rays, rest, |i, answer| answers[i].set(answer)),
+        );
     }
 
     /// How many triangles each ray crosses, in order: see [`TriangleBvh::hit_count`].

@@ -352,8 +352,9 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
         let expected: Vec<_> = rays.iter().map(|ray| brute_force(&mesh, ray)).collect();
         for tree in &trees {
             let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
-            assert!(tree.packets::<false>(&rays, |i, hit| hits[i] = hit).is_empty(), "{dir}");
-            assert!(tree.packets::<true>(&rays, |i, hit| occluded[i] = hit.is_some()).is_empty(), "{dir}");
+            tree.packets::<false>(&rays, |i, hit| hits[i] = hit, |rest| assert!(rest.is_empty(), "{dir}"));
+            let blocked = |i, hit: Option<TriangleHit>| occluded[i] = hit.is_some();
+            tree.packets::<true>(&rays, blocked, |rest| assert!(rest.is_empty(), "{dir}"));
             for (i, (ray, expected)) in rays.iter().zip(&expected).enumerate() {
                 let first = expected.first().map(bits);
                 assert_eq!(hits[i].as_ref().map(bits), first, "{ray:?}");
@@ -388,8 +389,10 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
             .collect();
         for tree in SimdLevel::available().map(|level| tree.clone().at_level(level)) {
             let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
-            let alone = tree.packets::<false>(&rays, |i, hit| hits[i] = hit);
-            assert_eq!(tree.packets::<true>(&rays, |i, hit| occluded[i] = hit.is_some()), alone);
+            let mut alone = Vec::new();
+            tree.packets::<false>(&rays, |i, hit| hits[i] = hit, |rest| alone.extend_from_slice(rest));
+            let blocked = |i, hit: Option<TriangleHit>| occluded[i] = hit.is_some();
+            tree.packets::<true>(&rays, blocked, |rest| assert_eq!(rest, alone));
             assert!(alone.len() < rays.len() && (octant % 8 != 0 || alone.is_empty()), "{octant}");
             for (i, ray) in rays.iter().enumerate().filter(|(i, _)| !alone.contains(&(*i as u32))) {
                 let expected = brute_force(&mesh, ray);

@@ -14,7 +14,7 @@ use crate::math::{Color, Ray, Vec2, Vec3};
 use crate::sampler::{SampleId, Sampler};
 use crate::threads;
 use crate::world::{Material, TOGETHER, World};
-use std::cell::Cell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -120,6 +120,18 @@ struct Aimed {
     colors: Vec<Color>,
 }
 
+impl Aimed {
+    fn clear(&mut self) {
+        self.samples.clear();
+        self.rays.clear();
+        self.of.clear();
+    }
+}
+
+thread_local! {
+    static AIMED: RefCell<Aimed> = RefCell::default();
+}
+
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
     world: &'a World,
@@ -166,22 +178,37 @@ impl<'a> Samples<'a> {
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
+        let mut aimed = AIMED.take();
+        let added = self.add_all(film, part, range, at, rays, &mut aimed);
+        AIMED.set(aimed);
+        added
+    }
+
+    fn add_all(
+        &self,
+        film: &mut Film,
+        part: Crop,
+        range: Range<u32>,
+        at: &SampleCursor,
+        rays: &mut RayCount,
+        aimed: &mut Aimed,
+    ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
-        let mut aimed = Aimed::default();
+        aimed.clear();
         for (x, y) in part.places() {
             let pixel = self.aim.pixel(x, y);
             for sample in range.clone() {
                 at.set((x, y, Some(sample)));
                 if batch.push(&pixel, sample) {
-                    self.aim_batch(&mut batch, &mut aimed);
+                    self.aim_batch(&mut batch, aimed);
                     if aimed.samples.len() >= TOGETHER {
-                        self.add_aimed(film, &mut aimed, at, rays)?;
+                        self.add_aimed(film, aimed, at, rays)?;
                     }
                 }
             }
         }
-        self.aim_batch(&mut batch, &mut aimed);
-        self.add_aimed(film, &mut aimed, at, rays)?;
+        self.aim_batch(&mut batch, aimed);
+        self.add_aimed(film, aimed, at, rays)?;
         // What was made after a cancel means nothing.
         self.check()
     }
@@ -210,21 +237,21 @@ impl<'a> Samples<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         self.check()?;
-        let Aimed { samples, rays: aims, of, colors } = aimed;
+        let Aimed { samples, rays: aims, of, colors } = &mut *aimed;
+        colors.clear();
         colors.resize(aims.len(), Color::ZERO);
         let begin = |i: usize| {
             let (x, y, sample) = samples[of[i]].0;
             at.set((x, y, Some(sample)));
         };
         self.integrator.radiances(aims, begin, rays, colors);
-        let mut colors = colors.drain(..);
-        for ((x, y, sample), weight, sees) in samples.drain(..) {
+        let mut colors = colors.iter();
+        for &((x, y, sample), weight, sees) in samples.iter() {
             let color = if sees { colors.next() } else { None };
-            let color = color.map(|color| self.with_stale((x, y), color));
+            let color = color.map(|&color| self.with_stale((x, y), color));
             film.add_if_seen(x, y, sample, color, weight);
         }
-        aims.clear();
-        of.clear();
+        aimed.clear();
         Ok(())
     }
 

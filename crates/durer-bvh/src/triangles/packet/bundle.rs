@@ -23,5 +23,5 @@ pub struct Packet<'a> {
     /// None of them goes on beyond.
     pub limit: f32,
     /// The first stands for none.
-    pub meetings: Vec<Meeting>,
+    pub meetings: &'a mut Vec<Meeting>,
 }

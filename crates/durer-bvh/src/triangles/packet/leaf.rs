@@ -149,7 +149,7 @@ impl Packet<'_> {
                         *meeting = self.meetings.len() as u32;
                         self.meetings.push(Meeting::new(corners, number(rows, count, lane)));
                     }
-                    met |= e.intersect_node(lanes, &self.axes, &self.meetings, *meeting, crossed);
+                    met |= e.intersect_node(lanes, &self.axes, self.meetings, *meeting, crossed);
                 }
                 all_met |= u64::from(met) << (group * WIDE);
                 if ANY {
@@ -205,7 +205,7 @@ impl Packet<'_> {
                     continue;
                 }
                 let meeting = Meeting::new(corners, number(rows, count, lane));
-                if e.meet_one(&self.axes, &self.meetings, &meeting, i) {
+                if e.meet_one(&self.axes, self.meetings, &meeting, i) {
                     self.meetings.push(meeting);
                     all_met |= 1 << ray;
                 }

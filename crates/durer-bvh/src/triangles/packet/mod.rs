@@ -34,6 +34,7 @@ use bundle::{Packet, RAYS};
 use glam::Vec3A;
 use rays::PacketRays;
 use shared::{Axes, Meeting};
+use std::cell::RefCell;
 use walk::Entry;
 
 /// So few are better off alone.
@@ -47,32 +48,52 @@ const MAX_ANGLE: f32 = 0.5;
 const MAX_START: f32 = 0.25;
 
 impl TriangleBvh {
-    /// Answers for rays that go together, and gives the numbers of the others. Where `ANY`, any hit
-    /// will do, and only whether there is one means anything.
+    /// Answers for rays that go together, and then tells the numbers of the others. Where `ANY`, any
+    /// hit will do, and only whether there is one means anything.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
         answer: impl FnMut(usize, Option<TriangleHit>),
-    ) -> Vec<u32> {
-        if self.nodes.is_empty() || self.least_volume != 0.0 {
-            return (0..rays.len() as u32).collect();
-        }
-        self.level.run(Packets::<_, ANY> { bvh: self, rays, answer })
+        others: impl FnOnce(&[u32]),
+    ) {
+        SCRATCH.with_borrow_mut(|scratch| {
+            scratch.rest.clear();
+            if self.nodes.is_empty() || self.least_volume != 0.0 {
+                scratch.rest.extend(0..rays.len() as u32);
+            } else {
+                self.level.run(Packets::<_, ANY> { bvh: self, rays, answer, scratch });
+            }
+            others(&scratch.rest);
+        });
     }
+}
+
+/// What is used anew for each batch, one a thread: batches may be small.
+#[derive(Default)]
+struct Scratch {
+    /// Numbers of rays that do not go together.
+    rest: Vec<u32>,
+    meetings: Vec<Meeting>,
+    stack: Vec<Entry>,
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
 struct Packets<'a, A, const ANY: bool> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
     answer: A,
+    scratch: &'a mut Scratch,
 }
 
 impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'_, A, ANY> {
-    type Output = Vec<u32>;
+    type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(mut self, lanes: L) -> Vec<u32> {
-        let mut rest = Vec::new();
+    fn run<L: Lanes>(mut self, lanes: L) {
+        let Scratch { rest, meetings, stack } = self.scratch;
         let mut packet = Packet {
             bvh: self.bvh,
             axes: Axes::of_key(0),
@@ -83,9 +104,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             alive: 0,
             met: 0,
             limit: 0.0,
-            meetings: Vec::with_capacity(256),
+            meetings,
         };
-        let mut stack: Vec<Entry> = Vec::with_capacity(256);
         // Where no rays go together, or none are fast, the next are likely to be alike: it is tried
         // ever less often.
         let (mut left_out, mut leave_out) = (0, 0);
@@ -130,13 +150,12 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 }
                 packet.meetings.clear();
                 packet.meetings.push(Meeting::new([Vec3A::ZERO; 3], u32::MAX));
-                packet.traverse::<L, ANY>(lanes, &mut stack);
+                packet.traverse::<L, ANY>(lanes, stack);
                 packet.answer::<L, ANY>(lanes, count, &mut self.answer);
             }
             left_out = if rest.len() < before + rays.len() { 0 } else { MAX_SKIPPED_WINDOWS.min(2 * left_out + 1) };
             leave_out = left_out;
         }
-        rest
     }
 }
 

@@ -63,11 +63,11 @@ impl Whitted<'_> {
             }
             return;
         }
-        SCRATCH.with_borrow_mut(|scratch| {
-            for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
-                self.light_few(rays, |i| begin(TOGETHER * part + i), tally, colors, scratch);
-            }
-        });
+        let mut scratch = SCRATCH.take();
+        for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
+            self.light_few(rays, |i| begin(TOGETHER * part + i), tally, colors, &mut scratch);
+        }
+        SCRATCH.set(scratch);
     }
 
     /// Of not more than [`TOGETHER`].

@@ -1,7 +1,8 @@
 //! What the loop over samples must not do: many threads would wait for each other there.
 
 use super::*;
-use crate::compile::testing;
+use crate::compile::{AccelKind, testing};
+use crate::dialect::Dialect;
 use crate::film::Filter;
 use crate::integrator::Method;
 use crate::render::{Control, PartialRender, Shard};
@@ -29,17 +30,24 @@ fn job(width: u32, samples: u32, method: Method) -> Job {
 
 #[test]
 fn no_sample_allocates() {
-    let world = testing::read(TEXT);
+    let folder = tempfile::tempdir().unwrap();
+    let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
+    std::fs::write(folder.path().join("ball.obj"), ball).unwrap();
+    let mesh = "Group { MaterialIndex 0 TriangleMesh { obj_file ball.obj } MaterialIndex 1 Plane { normal 0 1 0 offset -1 } }";
+    let of_mesh = format!("{}{mesh}", &TEXT[..TEXT.find("Group").unwrap()]);
+    let read = |text: &str| testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path()).0.unwrap();
     let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));
-    for method in [Method::WHITTED, Method::PATH] {
+    let [world, of_mesh] = [read(TEXT), read(&of_mesh)];
+    assert!(of_mesh.answers_together());
+    for (world, method) in [(&world, Method::WHITTED), (&of_mesh, Method::WHITTED), (&world, Method::PATH)] {
         let job = job(32, 64, method);
         let part = job.whole();
-        let samples = Samples::new(&world, &job, &stop);
+        let samples = Samples::new(world, &job, &stop);
         let mut film = Film::window(0, 0, 32, 32);
         let mut take = |range| samples.add(&mut film, part, range, &at, &mut RayCount::default()).unwrap();
-        // What a thread makes once.
-        take(0..1);
-        let made = allocation_counter::measure(|| take(1..16));
+        // What a thread makes once; its lists grow to what a block of samples needs.
+        take(0..16);
+        let made = allocation_counter::measure(|| take(16..32));
         assert_eq!(made.count_total, 0, "{method:?}");
     }
 }
