@@ -7,8 +7,8 @@ use common::Place;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// What a busy machine may take longer than the 0.2 s that an idle one should.
-const SOON: Duration = Duration::from_millis(1000);
+/// An idle machine takes 0.2 s; this is for busy ones.
+const SOON: Duration = Duration::from_secs(8);
 
 #[test]
 fn rendering_stops_soon_and_where_there_is_nothing_leaves_nothing() {
