@@ -16,9 +16,9 @@ use super::node;
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
-use std::cell::Cell;
 pub use nearest::NearestPoint;
 use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
+use std::cell::Cell;
 use tree::number;
 pub use tree::{Facing, TriangleBvh, TriangleHit};
 

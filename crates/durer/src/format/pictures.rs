@@ -59,6 +59,29 @@ impl Pictures<'_> {
         }
     }
 
+    /// The same, divided by the greatest number in it where that is more than 1, and that.
+    pub fn eight_bits_scaled(&self, name: &str, at: Span) -> Option<(PictureBytes, f32)> {
+        let bytes = self.bytes(name, at)?;
+        if Encoded::open(&bytes, name).is_ok_and(|encoded| encoded.depth() == Depth::Float) {
+            let mut image = self.image(name, at)?;
+            let most = image.pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
+            if most > 1.0 && most.is_finite() {
+                image.pixels.iter_mut().for_each(|p| *p /= most);
+                let eight = as_png(image, Transfer::Srgb)?;
+                return Some((PictureBytes::Here(format!("{name}#of-{most}.png"), eight), most));
+            }
+        }
+        Some((self.eight_bits(name, at)?, 1.0))
+    }
+
+    /// A picture of colours, made of one whose bytes have no curve.
+    pub fn curved(&self, picture: &Picture, at: Span) -> Option<Picture> {
+        // What was of another format has a curve already.
+        let PictureBytes::File(path) = &picture.bytes else { return None };
+        let bytes = as_png(self.decoded(path, at, image::decode_linear)?, Transfer::Srgb)?;
+        Some(Picture { bytes: PictureBytes::Here(format!("{path}#curved.png"), bytes), mapping: picture.mapping })
+    }
+
     /// The mean of all values of a picture.
     pub fn mean(&self, picture: &Picture, at: Span) -> Option<f32> {
         match &picture.bytes {

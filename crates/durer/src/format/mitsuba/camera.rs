@@ -204,7 +204,9 @@ impl Reader<'_> {
             }
             other => {
                 let what = format!("the integrator `{other}` has no counterpart: paths from the camera are followed");
-                said.push(Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at));
+                let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
+                let note = Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at);
+                said.push(Diagnostic { help: meant(other, known), ..note });
                 plugin.properties.iter().for_each(|property| property.used.set(true));
             }
         }

@@ -121,9 +121,12 @@ impl Reader<'_> {
         let even = plugin.get("radiance").is_none_or(|property| self.shining(property).is_some());
         let (color, picture) = match even {
             true => (self.strength(plugin, "radiance"), None),
-            false => match self.texture(plugin, "radiance", Vec3::ONE) {
+            false => match self.bright_texture(plugin, "radiance", Vec3::ONE) {
                 Texture::Even(color) => (color, None),
-                Texture::Picture(picture, scale, _) => (scale, Some(picture)),
+                Texture::Picture(picture, scale, raw) => {
+                    let picture = self.without_curve(picture, raw, plugin.place("radiance"));
+                    (scale, Some(picture))
+                }
             },
         };
         plugin.known(&["sampling_weight"]);
@@ -131,7 +134,7 @@ impl Reader<'_> {
         if color == Vec3::ZERO {
             self.said.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
         }
-        Some(Shine { color, picture, at: plugin.at, key: plugin.key() })
+        Some(Shine { color, picture, both: false, at: plugin.at, key: plugin.key() })
     }
 
     /// Puts what is infinitely far away behind the scene.

@@ -18,9 +18,9 @@ pub(super) enum Made {
 }
 
 impl Made {
-    /// What shapes have that nothing is said of.
-    pub fn usual() -> Made {
-        Made::Layers(Box::new(matte(Vec3::splat(0.5))))
+    /// Matte grey: of 0.5 what shapes have that nothing is said of.
+    pub fn matte(grey: f32) -> Made {
+        Made::Layers(Box::new(matte(Vec3::splat(grey))))
     }
 
     /// The same with all layers changed.
@@ -46,6 +46,8 @@ pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
 pub(super) struct Shine {
     pub color: Color,
     pub picture: Option<Picture>,
+    /// Whether it shines to both sides.
+    pub both: bool,
     pub at: Span,
     pub key: Key,
 }

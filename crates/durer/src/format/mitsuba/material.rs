@@ -41,6 +41,9 @@ const KNOWN: [&str; 17] = [
     "mixturebsdf",
 ];
 
+/// The index of refraction of air.
+const AIR: f32 = 1.000277;
+
 impl Reader<'_> {
     /// The material of a plugin.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
@@ -48,7 +51,7 @@ impl Reader<'_> {
             return known.clone();
         }
         if self.too_deep(depth, plugin.at) {
-            return Rc::new(Made::usual());
+            return Rc::new(Made::matte(0.5));
         }
         let made = self.made(plugin, depth);
         plugin.finish(self.said);
@@ -92,7 +95,7 @@ impl Reader<'_> {
                 let parts = self.parts(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
                     self.said.bad(plugin.at, format!("a `blendbsdf` is of two materials, not of {}", parts.len()));
-                    return Rc::new(Made::usual());
+                    return Rc::new(Made::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
                 return Rc::new(Made::Mix(a, b, share));
@@ -103,7 +106,7 @@ impl Reader<'_> {
                 self.said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
                 // What it holds was not looked at.
                 plugin.properties.iter().for_each(|property| property.used.set(true));
-                return Rc::new(Made::usual());
+                return Rc::new(Made::matte(0.5));
             }
         }
         Rc::new(Made::Layers(Box::new(m)))
@@ -115,7 +118,7 @@ impl Reader<'_> {
             Some((_, part)) => self.material(part, depth + 1),
             None => {
                 self.said.bad(plugin.at, format!("a `{}` needs a material inside", plugin.kind));
-                Rc::new(Made::usual())
+                Rc::new(Made::matte(0.5))
             }
         }
     }
@@ -128,6 +131,7 @@ impl Reader<'_> {
             self.said.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
             return inner;
         };
+        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
         let picture = self.numbers(property, |x| x);
         if picture.is_none() {
             self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
@@ -142,6 +146,7 @@ impl Reader<'_> {
             self.said.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
             return inner;
         };
+        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
         let picture = self.bitmap(&texture);
         texture.finish(self.said);
         let Some(picture) = picture else { return inner };
@@ -164,7 +169,15 @@ impl Reader<'_> {
 
     /// The index inside over the index outside.
     fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
-        self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", 1.000277)
+        self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
+    }
+
+    /// The index of a body over that of air. What has the index of another body outside is inside
+    /// of that, and rays know what they are in.
+    fn index_of_body(&self, plugin: &Plugin, usual: f32) -> f32 {
+        let (inside, outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        let nested = (outside - AIR).abs() > 1e-3 && self.clear.iter().any(|index| (index - outside).abs() < 1e-3);
+        inside / if nested { AIR } else { outside }
     }
 
     /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
@@ -205,7 +218,7 @@ impl Reader<'_> {
 
     fn glass(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.transmission_weight = 1.0;
-        m.specular_ior = self.relative_index(plugin, 1.5046);
+        m.specular_ior = self.index_of_body(plugin, 1.5046);
         self.tint(plugin, m);
         (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
         m.transmission_color = m.transmission_color.min(Vec3::ONE);
@@ -233,11 +246,12 @@ impl Reader<'_> {
                 .map(|(name, usual)| Spectrum::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
             metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
-        const REST: f32 = 6.0 / 7.0;
-        let schlick = f0 + (Vec3::ONE - f0) * fp::pow(REST, 5.0);
-        (m.base_metalness, m.specular_color) = (1.0, f82 / schlick.max(Vec3::splat(1e-6)));
         let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
-        (m.base_color, m.base_color_texture) = (f0 * tint, picture);
+        (m.base_metalness, m.base_color, m.base_color_texture) = (1.0, f0 * tint, picture);
+        // A tint counts at all angles.
+        const REST: f32 = 6.0 / 7.0;
+        let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(REST, 5.0);
+        m.specular_color = f82 * tint / schlick.max(Vec3::splat(1e-6));
         self.roughness(plugin, m);
     }
 
@@ -276,7 +290,9 @@ impl Reader<'_> {
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }
-        let mut made = bsdf.map_or_else(|| Rc::new(Made::usual()), |bsdf| self.material(bsdf, 0));
+        // A lamp of which no more is said scatters nothing.
+        let grey = if shine.is_some() { 0.0 } else { 0.5 };
+        let mut made = bsdf.map_or_else(|| Rc::new(Made::matte(grey)), |bsdf| self.material(bsdf, 0));
         if let Some((medium, _)) = inside {
             made = Rc::new(filled(&made, &medium));
         }
@@ -293,6 +309,7 @@ impl Reader<'_> {
                 let most = shine.map_or(0.0, |shine| shine.color.max_element());
                 if let Some(shine) = shine.filter(|_| most > 0.0) {
                     (layers.emission_luminance, layers.emission_color) = (most, shine.color / most);
+                    layers.walls = if shine.both { Walls::Thin } else { layers.walls };
                     if let Some(picture) = &shine.picture {
                         layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), shine.at));
                     }

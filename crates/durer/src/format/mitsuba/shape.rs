@@ -10,10 +10,11 @@ use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
 use crate::format::said::meant;
+use crate::image::Transfer;
 use crate::math::Vec3;
 use crate::scene::{Group, Node, Object};
 use crate::shape::{Disc, MeshData, Sphere};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -40,8 +41,8 @@ impl Reader<'_> {
             }
             "sphere" => self.sphere(plugin, map),
             "disk" => self.disk(plugin, map),
-            "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::rectangle())),
-            "cube" => self.mesh(plugin, "cube", map, || Some(solid::cube())),
+            "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::with_tangents(solid::rectangle()))),
+            "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
             "cylinder" => self.cylinder(plugin, map),
             "obj" | "ply" => self.file(plugin, map),
             "serialized" => {
@@ -58,7 +59,10 @@ impl Reader<'_> {
         if let Some((node, map)) = found {
             let inside = self.inside(plugin);
             let shine = self.parts(plugin, Some("emitter")).into_iter().next();
-            let shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
+            let mut shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
+            if let Some(shine) = shine.as_mut().filter(|_| plugin.kind == "sphere" && self.is_flipped(plugin)) {
+                (shine.both, shine.key) = (true, plugin.key());
+            }
             let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
             match self.number(material.as_ref(), shine.as_ref(), inside, at) {
                 Some(number) => {
@@ -146,14 +150,26 @@ impl Reader<'_> {
     }
 
     /// Whether a picture lies on a shape.
-    fn is_pictured(&self, plugin: &Plugin, depth: u32) -> bool {
-        let parts = plugin.properties.iter().filter_map(|property| self.part(property));
-        depth < super::state::DEEPEST
-            && parts.into_iter().any(|part| match part.class.as_str() {
-                "texture" => matches!(part.kind.as_str(), "bitmap" | "checkerboard"),
-                "bsdf" | "emitter" => self.is_pictured(&part, depth + 1),
-                _ => false,
-            })
+    fn is_pictured(&self, plugin: &Plugin) -> bool {
+        self.has_texture(plugin, &["bitmap", "checkerboard"])
+    }
+
+    /// Whether a shape has a texture of some kinds.
+    fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
+        let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
+        parts.iter().any(|part| part.class == "texture" && kinds.contains(&part.kind.as_str()))
+    }
+
+    /// Whether highlights on a shape are longer than wide, so that it matters where u grows.
+    fn is_brushed(&self, plugin: &Plugin) -> bool {
+        let words = ["alpha_u", "alpha_v", "anisotropic"];
+        let parts = self.reachable(plugin, &["bsdf"]);
+        parts.iter().flat_map(|part| &part.properties).any(|property| words.contains(&property.name.as_str()))
+    }
+
+    /// Whether the material of a shape leans its normals.
+    fn is_leaning(&self, plugin: &Plugin) -> bool {
+        self.reachable(plugin, &["bsdf"]).iter().any(|part| part.kind == "normalmap")
     }
 
     fn is_flipped(&self, plugin: &Plugin) -> bool {
@@ -164,11 +180,11 @@ impl Reader<'_> {
         let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
         if self.is_flipped(plugin) && !self.parts(plugin, Some("emitter")).is_empty() {
-            let what = "a sphere turned inside out has no counterpart: it shines outwards";
+            let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
             self.said.once(plugin.place("flip_normals"), what);
         }
         let map = map * DAffine3::from_translation(center);
-        let (center, map) = match self.is_pictured(plugin, 0) {
+        let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
             // Mitsuba's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
             true => {
                 let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
@@ -181,7 +197,7 @@ impl Reader<'_> {
     }
 
     fn disk(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        if self.is_pictured(plugin, 0) {
+        if self.is_pictured(plugin) {
             self.said.once(plugin.at, "a picture on a `disk` is turned: its coordinates begin elsewhere");
         }
         let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
@@ -199,10 +215,9 @@ impl Reader<'_> {
             said.bad(plugin.place("p1"), "the ends of a cylinder must not be the same point");
             return None;
         }
-        let turn = DMat3::from_quat(DQuat::from_rotation_arc(DVec3::Z, along.normalize()));
-        let axes = turn * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
+        let axes = frame(along.normalize()) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
         let map = map * DAffine3 { matrix3: axes, translation: ends[0] };
-        self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::cylinder(radius)))
+        self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
     }
 
     fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
@@ -220,7 +235,15 @@ impl Reader<'_> {
         let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
         let mirrored = map.matrix3.determinant() < 0.0;
         let input = self.input;
-        let turns = [(flat, "#flat"), (mirrored, "#mirrored"), (over != is_obj, "#turned")];
+        let colored = self.has_texture(plugin, &["mesh_attribute"]);
+        let leaning = !is_obj && self.is_leaning(plugin);
+        let turns = [
+            (flat, "#flat"),
+            (mirrored, "#mirrored"),
+            (over != is_obj, "#turned"),
+            (colored, "#colored"),
+            (leaning, "#leaning"),
+        ];
         let key = turns.iter().filter(|turn| turn.0).fold(path.clone(), |key, turn| key + turn.1);
         self.mesh(plugin, &key, map, || {
             let mut data = written_in_file(input, said, &path, at)?;
@@ -231,7 +254,21 @@ impl Reader<'_> {
             if mirrored && data.triangle_normals.is_empty() {
                 data = oriented(data, true);
             }
+            if !flat && data.triangle_normals.is_empty() {
+                data = solid::smoothed(data);
+            }
+            // Vertices have colours where a texture asks for them; those of PLY have no curve here.
+            let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;
+            data.colors
+                .iter_mut()
+                .for_each(|[r, g, b, a]| (*r, *g, *b, *a) = (number(*r), number(*g), number(*b), 1.0));
+            if !colored {
+                data.colors.clear();
+            }
             data.flat = flat;
+            if leaning && data.triangle_uvs.len() == data.triangles.len() {
+                data = solid::with_tangents(data);
+            }
             Some(if over { solid::turned_over(data) } else { data })
         })
     }
@@ -259,4 +296,18 @@ impl Reader<'_> {
         };
         Some((self.scene.add_mesh(&name, data?, plugin.at), map))
     }
+}
+
+/// The axes that Mitsuba gives a direction, which is the third.
+///
+/// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
+fn frame(n: DVec3) -> DMat3 {
+    let sign = 1f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    DMat3::from_cols(
+        DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        DVec3::new(b, sign + n.y * n.y * a, -n.y),
+        n,
+    )
 }

@@ -2,6 +2,7 @@
 
 use super::load::Loader;
 use super::made::{Infinite, Made};
+use super::metals;
 use super::plugin::{Key, Plugin, Property, Value};
 use crate::diag::{Diagnostic, Span};
 use crate::format::bodies::join_bodies;
@@ -10,7 +11,7 @@ use crate::format::pictures::Pictures;
 use crate::format::said::{Said, meant};
 use crate::scene::{Group, Object, Scene};
 use crate::shape::MeshData;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -34,6 +35,8 @@ pub(super) struct Reader<'a> {
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
     pub count: usize,
     pub infinite: Option<Infinite>,
+    /// Indices of refraction inside of what is clear.
+    pub clear: Vec<f32>,
     pub scene: Scene,
 }
 
@@ -49,12 +52,14 @@ impl<'a> Reader<'a> {
             groups: BTreeMap::new(),
             count: 0,
             infinite: None,
+            clear: Vec::new(),
             scene: Scene::default(),
         }
     }
 
     /// The scene of its plugins.
     pub fn read(mut self, all: &Plugin) -> Scene {
+        self.clear = self.clear_inside(all);
         let mut sensors = Vec::new();
         for (property, plugin) in self.parts(all, None) {
             if self.said.is_full() {
@@ -83,6 +88,38 @@ impl<'a> Reader<'a> {
             self.said.push(warning.code("no-objects").at(at));
         }
         self.scene
+    }
+
+    /// The indices of refraction inside of all that is clear.
+    fn clear_inside(&self, all: &Plugin) -> Vec<f32> {
+        let clear = |part: Rc<Plugin>| match part.get("int_ior") {
+            Some(property) => metals::written(&property.value),
+            None => metals::clear("bk7"),
+        };
+        let inner = self.reachable(all, &["shape", "bsdf"]).into_iter();
+        inner.filter(|part| part.kind.ends_with("dielectric")).filter_map(clear).collect()
+    }
+
+    /// All plugins inside of one, of some tags and through such, each once. Nothing is told, and
+    /// nothing counts as used.
+    pub fn reachable(&self, plugin: &Plugin, classes: &[&str]) -> Vec<Rc<Plugin>> {
+        let part = |property: &Property| match &property.value {
+            Value::Plugin(part) => Some(part.clone()),
+            Value::Ref(id) => self.loader.plugins.get(id).cloned(),
+            _ => None,
+        };
+        let parts = |plugin: &Plugin| -> Vec<Rc<Plugin>> {
+            let parts = plugin.properties.iter().filter_map(part);
+            parts.filter(|part| classes.contains(&part.class.as_str())).collect()
+        };
+        let (mut seen, mut found, mut left) = (HashSet::new(), Vec::new(), parts(plugin));
+        while let Some(part) = left.pop() {
+            if seen.insert(part.key()) {
+                left.extend(parts(&part));
+                found.push(part);
+            }
+        }
+        found
     }
 
     pub fn pictures(&self) -> Pictures<'a> {

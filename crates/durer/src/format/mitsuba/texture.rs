@@ -8,7 +8,7 @@ use crate::format::pictures::{asset, checkerboard};
 use crate::format::said::meant;
 use crate::image::{decode_linear, decode_srgb};
 use crate::math::{Color, Vec3};
-use crate::scene::Picture;
+use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
 use glam::DAffine3;
 
@@ -26,6 +26,21 @@ impl Reader<'_> {
         plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
     }
 
+    /// The same with pictures brighter than 1, which are divided by their greatest number.
+    pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
+        let bitmap = plugin.get(name).and_then(|property| self.part(property)).filter(|part| part.kind == "bitmap");
+        let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
+        let raw = bitmap.truth(self.said, "raw").unwrap_or(false);
+        let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));
+        bitmap.finish(self.said);
+        picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
+    }
+
+    /// A picture of colours whose bytes are numbers without a curve, if they are `raw`.
+    pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
+        if raw { self.pictures().curved(&picture, at).unwrap_or(picture) } else { picture }
+    }
+
     fn texture_of(&self, property: &Property, usual: Color) -> Texture {
         if let Some(color) = self.reflectance(property) {
             return Texture::Even(color);
@@ -41,7 +56,7 @@ impl Reader<'_> {
                 let raw = texture.truth(self.said, "raw").unwrap_or(false);
                 self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
             }
-            "checkerboard" => Some(self.checkerboard(&texture)),
+            "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
             // Colours of vertices multiply what a material says.
             "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
                 texture.known(&["scale"]);
@@ -50,6 +65,7 @@ impl Reader<'_> {
             other => {
                 let message = format!("the texture `{other}` has no counterpart: a middle value is taken");
                 let known = ["bitmap", "checkerboard", "mesh_attribute"];
+                let known = known.into_iter().filter(|word| *word != other);
                 let warning = crate::diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
                 self.said.push(crate::diag::Diagnostic { help: meant(other, known), ..warning });
                 return Texture::Even(usual);
@@ -62,8 +78,17 @@ impl Reader<'_> {
     /// A colour, and the picture that it multiplies.
     pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
         match self.texture(plugin, name, Vec3::splat(usual)) {
-            Texture::Even(color) => (color.max(Vec3::ZERO), None),
-            Texture::Picture(picture, scale, _) => (scale, Some(asset(&mut self.scene, picture, plugin.place(name)))),
+            Texture::Even(color) => {
+                if color.min_element() < 0.0 {
+                    self.said
+                        .once(plugin.place(name), format!("less than 0 of `{name}` has no counterpart: 0 is taken"));
+                }
+                (color.max(Vec3::ZERO), None)
+            }
+            Texture::Picture(picture, scale, raw) => {
+                let picture = self.without_curve(picture, raw, plugin.place(name));
+                (scale, Some(asset(&mut self.scene, picture, plugin.place(name))))
+            }
         }
     }
 
@@ -84,7 +109,17 @@ impl Reader<'_> {
 
     /// What a change makes of the numbers of a picture; `None` of what is no picture.
     pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
-        let Texture::Picture(picture, scale, raw) = self.texture_of(property, Vec3::ZERO) else { return None };
+        let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
+        let texture = match fields {
+            // Mitsuba exchanges the fields where it asks for a number.
+            Some(fields) => {
+                let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
+                fields.finish(self.said);
+                made
+            }
+            None => self.texture_of(property, Vec3::ZERO),
+        };
+        let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw { decode_linear } else { decode_srgb };
         let picture = self.pictures().changed(&picture, property.at, decode, |x| change(scale.x * x))?;
         Some(asset(&mut self.scene, picture, property.at))
@@ -110,6 +145,16 @@ impl Reader<'_> {
 
     /// The picture of a texture `bitmap`.
     pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
+        let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
+        self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
+    }
+
+    /// The same as something makes it of the file, with what multiplies it.
+    fn bitmap_as(
+        &self,
+        texture: &Plugin,
+        make: impl FnOnce(&str, Span) -> Option<(PictureBytes, f32)>,
+    ) -> Option<(Picture, f32)> {
         let said = self.said;
         let Some(name) = texture.text(said, "filename") else {
             said.bad(texture.at, "a `bitmap` needs a `filename`");
@@ -138,8 +183,10 @@ impl Reader<'_> {
             }
         };
         texture.known(&["raw", "accel", "format"]);
-        let bytes = self.pictures().eight_bits(&self.loader.path(&name), texture.place("filename"))?;
-        Some(Picture { bytes, mapping })
+        // Colours have no opacity here: `mask` has.
+        mapping.cutoff = Some(0.0);
+        let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
+        Some((Picture { bytes, mapping }, scale))
     }
 
     /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours
@@ -156,10 +203,10 @@ impl Reader<'_> {
         Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
     }
 
-    /// Fields of half a unit, as a picture of four texels.
-    fn checkerboard(&self, texture: &Plugin) -> Texture {
+    /// Fields of half a unit, as a picture of four texels; the first lies at the origin.
+    fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
         let mapping = Mapping { nearest: true, ..self.mapping(texture) };
-        let [one, other] = [("color0", 0.4), ("color1", 0.2)].map(|(name, usual)| {
+        let [one, other] = fields.map(|(name, usual)| {
             let made = self.texture(texture, name, Vec3::splat(usual));
             if matches!(made, Texture::Picture(..)) {
                 let at: Span = texture.place(name);

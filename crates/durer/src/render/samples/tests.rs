@@ -33,7 +33,8 @@ fn no_sample_allocates() {
     let folder = tempfile::tempdir().unwrap();
     let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
     std::fs::write(folder.path().join("ball.obj"), ball).unwrap();
-    let mesh = "Group { MaterialIndex 0 TriangleMesh { obj_file ball.obj } MaterialIndex 1 Plane { normal 0 1 0 offset -1 } }";
+    let mesh =
+        "Group { MaterialIndex 0 TriangleMesh { obj_file ball.obj } MaterialIndex 1 Plane { normal 0 1 0 offset -1 } }";
     let of_mesh = format!("{}{mesh}", &TEXT[..TEXT.find("Group").unwrap()]);
     let read = |text: &str| testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path()).0.unwrap();
     let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));

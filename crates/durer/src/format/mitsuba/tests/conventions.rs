@@ -1,13 +1,14 @@
 //! Conventions of Mitsuba, in closed form. Where the documents do not tell, Mitsuba 3.9.1 was
 //! asked.
 
-use super::{clean, material, objects, read};
+use super::{clean, folder, material, objects, read, read_in};
 use crate::camera::{Camera, Handedness};
 use crate::describe::FileName;
 use crate::light::Light;
 use crate::material::PrincipledMaterial;
+use crate::material::principled::Walls;
 use crate::math::{Vec2, Vec3, fp};
-use crate::scene::{Material, PictureBytes, Scene};
+use crate::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
 
 fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -131,8 +132,10 @@ fn pictures_say_numbers_too() {
              <rgb name='color1' value='{other}'/></texture>"
         )
     };
-    // The values of a picture that a material names: numbers without a curve.
-    let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, wanted: [f32; 2]| {
+    // The values of a picture that a material names: numbers without a curve. Mitsuba exchanges
+    // fields where it asks for numbers.
+    let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
+        let wanted = [one, other];
         let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
         let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
         let name = get(layers).unwrap_or_else(|| panic!("{bsdf} has a picture"));
@@ -193,4 +196,217 @@ fn what_is_inside_is_extinction_times_albedo() {
     // Nothing alone is not shown.
     let (scene, told) = read("<scene><shape type='sphere'><bsdf type='null'/></shape></scene>");
     assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{told:?}");
+}
+
+/// A scene of a folder's files, of which nothing is to be said.
+fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
+    let folder = folder(files);
+    let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(told, [""; 0], "{inner}");
+    scene.unwrap()
+}
+
+/// A picture of 2 x 1 pixels.
+fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
+    let mut bytes = b"PF\n2 1\n-1.0\n".to_vec();
+    pixels.as_flattened().iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn lamps_scatter_nothing_unless_they_say_so() {
+    let lamp = "<emitter type='area'><rgb name='radiance' value='2'/></emitter>";
+    let alone = layers(lamp);
+    assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
+    assert_eq!(layers(&format!("{lamp}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5));
+    assert_eq!(layers("").base_color, Vec3::splat(0.5));
+    // A sphere turned inside out is a dome around what it lights.
+    let dome = format!("<boolean name='flip_normals' value='true'/>{lamp}");
+    let (scene, told) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
+    assert!(told[0].contains("it shines outwards as well"), "{told:?}");
+    let Material::Principled(dome) = material(scene.as_ref().unwrap()) else { panic!() };
+    assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Thin));
+}
+
+#[test]
+fn pictures_of_lamps_may_be_brighter_than_1() {
+    let lamp = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
+        <string name='filename' value='lamp.pfm'/></texture></emitter></shape>";
+    let scene = clean_in(&[("lamp.pfm", &picture([[8.0, 2.0, 0.0], [4.0, 4.0, 4.0]]))], lamp);
+    let Material::Principled(lamp) = material(&scene) else { panic!() };
+    assert_eq!((lamp.emission_luminance, lamp.emission_color), (8.0, Vec3::ONE));
+    let name = &lamp.emission_texture.as_ref().unwrap().path;
+    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
+    let image = crate::image::read(bytes, path).unwrap();
+    let wanted = [Vec3::new(1.0, 0.25, 0.0), Vec3::splat(0.5)];
+    for (pixel, wanted) in image.pixels.iter().zip(wanted) {
+        let light = Vec3::from_array(pixel.to_array().map(srgb));
+        assert!((light - wanted).abs().max_element() < 0.01, "{light} and not {wanted}");
+    }
+}
+
+/// A number of eight bits with sRGB's curve, without it.
+fn srgb(number: f32) -> f32 {
+    crate::image::decode_srgb((255.0 * number).round() as u8)
+}
+
+#[test]
+fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
+    let grey = b"P6\n1 1\n255\n\x80\x80\x80";
+    let of = |raw: bool| {
+        let inner = format!(
+            "<shape type='rectangle'><bsdf type='diffuse'><texture name='reflectance' type='bitmap'>\
+             <string name='filename' value='grey.ppm'/><boolean name='raw' value='{raw}'/></texture></bsdf></shape>"
+        );
+        let scene = clean_in(&[("grey.ppm", grey)], &inner);
+        let Material::Principled(layers) = material(&scene) else { panic!() };
+        let picture = &scene.assets.pictures[&layers.base_color_texture.as_ref().unwrap().path];
+        // What a picture leaves open is no hole.
+        assert_eq!(picture.mapping.cutoff, Some(0.0));
+        match &picture.bytes {
+            PictureBytes::File(_) => srgb(128.0 / 255.0),
+            PictureBytes::Here(path, bytes) => srgb(crate::image::read(bytes, path).unwrap().pixels[0].x),
+        }
+    };
+    assert!((of(false) - 0.2159).abs() < 1e-3 && (of(true) - 128.0 / 255.0).abs() < 4e-3);
+}
+
+#[test]
+fn glass_in_glass_has_its_own_index() {
+    // Water in glass: its index outside is that of the glass, of which rays know.
+    let body = |radius: f32, inside: &str, outside: &str| {
+        let index = |name: &str, value: &str| match value.parse::<f32>() {
+            Ok(value) => format!("<float name='{name}' value='{value}'/>"),
+            Err(_) => format!("<string name='{name}' value='{value}'/>"),
+        };
+        let (inside, outside) = (index("int_ior", inside), index("ext_ior", outside));
+        format!(
+            "<shape type='sphere'><float name='radius' value='{radius}'/><bsdf type='dielectric'>{inside}{outside}\
+             </bsdf></shape>"
+        )
+    };
+    let indices = |text: &str| -> Vec<f32> {
+        let scene = clean(text);
+        let index = |object: &&crate::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
+            Material::Principled(layers) => layers.specular_ior,
+            _ => panic!(),
+        };
+        objects(&scene).iter().map(index).collect()
+    };
+    let air = 1.000277;
+    let near = |found: Vec<f32>, wanted: &[f32]| {
+        assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} and not {wanted:?}");
+    };
+    for (glass, name) in [("1.5046", "bk7"), ("1.5", "1.5")] {
+        let glass: f32 = glass.parse().unwrap();
+        let outer = body(1.0, name, "air");
+        near(indices(&(outer.clone() + &body(0.5, "water", name))), &[glass / air, 1.333 / air]);
+        near(indices(&(body(0.5, "air", name) + &outer)), &[1.0, glass / air]);
+    }
+    // Where no such body is around, what is written is a quotient.
+    near(indices(&body(1.0, "water", "1.5")), &[1.333 / 1.5]);
+}
+
+#[test]
+fn tints_of_metals_count_at_all_angles() {
+    let metal =
+        |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
+    let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
+    let tint = Vec3::new(0.5, 0.25, 0.5);
+    // At 82 degrees a metal reflects Schlick's value times its specular colour.
+    let at_82 = |m: &PrincipledMaterial| {
+        let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(6.0 / 7.0, 5.0);
+        schlick * m.specular_color
+    };
+    assert!((tinted.base_color - tint * plain.base_color).abs().max_element() < 1e-6);
+    assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
+}
+
+/// Two faces that are folded, of which one vertex has a colour.
+const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
+    element face 2\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 0 0 .5 .2 .8\n1 0 0 1 0 1 1 1\n1 1 0 1 1 1 1 1\n0 1 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n";
+
+#[test]
+fn meshes_of_files_are_smooth_and_without_colours() {
+    let of = |more: &str| {
+        let inner = format!("<shape type='ply'><string name='filename' value='folded.ply'/>{more}</shape>");
+        mesh(&clean_in(&[("folded.ply", FOLDED.as_bytes())], &inner)).clone()
+    };
+    let plain = of("");
+    assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
+    // At the fold both faces count by their angles there: a right one, and of the other 60 degrees.
+    let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
+    let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
+    let angles = [45f32.to_radians(), 60f32.to_radians()];
+    let wanted = (angles[0] * face + angles[1] * other).normalize();
+    let found = plain.normals[plain.triangle_normals[0][a] as usize];
+    assert!((found - wanted).length() < 1e-5, "{found} and not {wanted}");
+    assert!(of("<boolean name='face_normals' value='true'/>").flat);
+    let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
+        <string name='name' value='vertex_color'/></texture></bsdf>");
+    // Numbers of PLY are light without a curve.
+    let wanted = [0.5, 0.2, 0.8];
+    let found = colored.colors[0];
+    assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 4e-3) && found[3] == 1.0, "{found:?}");
+}
+
+#[test]
+fn pictures_of_normals_lean_them_to_where_u_and_v_grow() {
+    let leaning = "<bsdf type='normalmap'><texture name='normalmap' type='bitmap'><boolean name='raw' value='true'/>\
+        <string name='filename' value='n.ppm'/></texture><bsdf type='diffuse'/></bsdf>";
+    let files: [(&str, &[u8]); 2] = [("n.ppm", b"P6\n1 1\n255\n\x80\x80\xff"), ("folded.ply", FOLDED.as_bytes())];
+    for shape in [
+        "<shape type='rectangle'>",
+        "<shape type='ply'><string name='filename' value='folded.ply'/>",
+        "<shape type='cylinder'>",
+    ] {
+        let scene = clean_in(&files, &format!("{shape}{leaning}</shape>"));
+        let data = mesh(&scene);
+        assert_eq!(data.tangents.len(), data.positions.len(), "{shape}");
+        for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
+            for k in 0..3 {
+                // Along the tangent u grows.
+                let tangent = data.tangents[corners[k] as usize];
+                let [x, y, z, side] = tangent;
+                let along = (0..3).filter(|&l| l != k).map(|l| {
+                    let way = data.positions[corners[l] as usize] - data.positions[corners[k] as usize];
+                    (way.dot(Vec3::new(x, y, z)), data.uvs[uvs[l] as usize].x - data.uvs[uvs[k] as usize].x)
+                });
+                for (way, u) in along.filter(|(way, u)| way.abs() > 0.1 && u.abs() > 0.1) {
+                    assert!(way * u > 0.0, "{shape}: {tangent:?}");
+                }
+                assert_eq!(side, 1.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn axes_of_cylinders_are_those_of_mitsuba() {
+    // Where u is 0 on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
+    for (to, start) in [
+        ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
+        ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ([0.5, 1.0, -2.0], [0.97462, -0.05180, 0.21776]),
+        ([-1.0, 0.2, 0.3], [0.30987, 0.13836, 0.94066]),
+    ] {
+        let [x, y, z] = to;
+        let scene = clean(&format!(
+            "<shape type='cylinder'><point name='p0' x='0' y='0' z='0'/><point name='p1' x='{x}' y='{y}' z='{z}'/></shape>"
+        ));
+        let (data, mut map) = (mesh(&scene), glam::DAffine3::IDENTITY);
+        let mut object = &scene.root.as_ref().unwrap().objects[0];
+        while let Node::Transform(ops, inner) = &object.node {
+            (map, object) = (map * MatrixOp::product(ops, 0), inner);
+        }
+        let number = data.uvs.iter().position(|uv| uv.x == 0.0).unwrap();
+        let corner = data.triangle_uvs.iter().zip(&data.triangles).find_map(|(uvs, corners)| {
+            uvs.iter().position(|&uv| uv == number as u32).map(|k| data.positions[corners[k] as usize])
+        });
+        let found = map.transform_vector3(corner.unwrap().with_z(0.0).as_dvec3()).as_vec3();
+        assert!((found - Vec3::from_array(start)).length() < 2e-3, "{to:?}: {found} and not {start:?}");
+    }
 }
