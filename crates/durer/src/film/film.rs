@@ -84,6 +84,29 @@ impl Pixel {
         self.covered = self.covered.wrapping_add(weight);
     }
 
+    /// As [`Film::resolve`].
+    #[inline]
+    pub(super) fn mean(&self) -> Color {
+        if self.weight == 0 {
+            return Vec3::ZERO;
+        }
+        // Each sum is rounded to double precision, then divided: two roundings, and one to single.
+        let weight = self.weight as f64 / WEIGHT_SCALE;
+        Vec3::from(self.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
+    }
+
+    /// As [`Film::coverage`].
+    #[inline]
+    pub(super) fn coverage(&self) -> f32 {
+        // Also where the weights sum to nothing: there all is seen that was looked for.
+        if self.covered == self.weight {
+            return 1.0;
+        }
+        // Filters with negative weights may leave the range; where the weights sum to 0 the
+        // quotient is infinite.
+        (self.covered as f64 / self.weight as f64).clamp(0.0, 1.0) as f32
+    }
+
     #[inline]
     fn sum(&mut self, color: [i128; 3], weight: i64, luminance: i64) {
         self.color.iter_mut().zip(color).for_each(|(sum, c)| *sum = sum.wrapping_add(c));
@@ -257,26 +280,13 @@ impl Film {
     /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the
     /// weights sum to nothing. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
-        let pixel = self.pixel(x, y);
-        if pixel.weight == 0 {
-            return Vec3::ZERO;
-        }
-        // Each sum is rounded to double precision, then divided: two roundings, and one to single.
-        let weight = pixel.weight as f64 / WEIGHT_SCALE;
-        Vec3::from(pixel.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
+        self.pixel(x, y).mean()
     }
 
     /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside
     /// the window.
     pub fn coverage(&self, x: u32, y: u32) -> f32 {
-        let pixel = self.pixel(x, y);
-        // Also where the weights sum to nothing: there all is seen that was looked for.
-        if pixel.covered == pixel.weight {
-            return 1.0;
-        }
-        // Filters with negative weights may leave the range; where the weights sum to 0 the
-        // quotient is infinite.
-        (pixel.covered as f64 / pixel.weight as f64).clamp(0.0, 1.0) as f32
+        self.pixel(x, y).coverage()
     }
 
     /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected
@@ -330,7 +340,7 @@ impl Film {
 /// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an
 /// instruction.
 fn rounded(sum: i128) -> f64 {
-    i64::try_from(sum).map_or(sum as f64, |small| small as f64)
+    i64::try_from(sum).map_or_else(|_| sum as f64, |small| small as f64)
 }
 
 /// The luminance of a colour.

@@ -1,6 +1,7 @@
 //! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
 
 use super::film::{Film, Pixel, WEIGHT_SCALE};
+use crate::math::Color;
 
 /// A film that nothing is added to for a while. It is the same film: what comes out is what went
 /// in.
@@ -54,14 +55,6 @@ impl Small {
         }
     }
 
-    /// Its luminance in few bits, if it is of one sample of weight 1.
-    fn single(&self) -> Option<i32> {
-        let is_single = self.samples == 1
-            && self.weight == WEIGHT_SCALE as i64
-            && self.squares() == i128::from(self.luminance) * i128::from(self.luminance);
-        is_single.then(|| self.luminance.try_into().ok()).flatten()
-    }
-
     fn of_single((&color, &luminance): (&[i64; 3], &i32)) -> Self {
         let luminance = i64::from(luminance);
         Small {
@@ -74,6 +67,26 @@ impl Small {
     }
 }
 
+/// The colour of one sample of weight 1 that saw something, and its luminance in few bits.
+fn single(pixel: &Pixel) -> Option<([i64; 3], i32)> {
+    let is_single = pixel.samples == 1
+        && pixel.weight == WEIGHT_SCALE as i64
+        && pixel.covered == pixel.weight
+        && pixel.squares == i128::from(pixel.luminance) * i128::from(pixel.luminance);
+    let [r, g, b] = pixel.color;
+    let luminance = is_single.then(|| pixel.luminance.try_into().ok()).flatten()?;
+    Some(([r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?], luminance))
+}
+
+/// All of a film's pixels made smaller, if all can be.
+fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
+    let mut made = Vec::with_capacity(film.pixels.len());
+    for pixel in &film.pixels {
+        made.push(smaller(pixel)?);
+    }
+    Some(made)
+}
+
 /// The lower and the upper half.
 fn words(number: i128) -> [u64; 2] {
     [number as u64, (number >> 64) as u64]
@@ -82,14 +95,16 @@ fn words(number: i128) -> [u64; 2] {
 impl Packed {
     /// A film, packed.
     pub fn new(film: Film) -> Self {
-        let small: Option<Box<[Small]>> = match film.rejected() {
-            0 => film.pixels.iter().map(Small::of).collect(),
-            _ => None,
-        };
-        let Some(small) = small else { return Packed::Whole(Box::new(film)) };
-        match small.iter().map(Small::single).collect() {
-            Some(luminances) => Packed::Single(small.iter().map(|pixel| pixel.color).collect(), luminances),
-            None => Packed::Small(small),
+        if film.rejected() > 0 {
+            return Packed::Whole(Box::new(film));
+        }
+        if let Some(singles) = all(&film, single) {
+            let (colors, luminances): (Vec<_>, Vec<_>) = singles.into_iter().unzip();
+            return Packed::Single(colors.into(), luminances.into());
+        }
+        match all(&film, Small::of) {
+            Some(small) => Packed::Small(small.into()),
+            None => Packed::Whole(Box::new(film)),
         }
     }
 
@@ -106,6 +121,19 @@ impl Packed {
             }
             Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
             Packed::Whole(film) => Film::clone(film),
+        }
+    }
+
+    /// The mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
+    /// [`Film::coverage`].
+    pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
+        let mut offer = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
+        match self {
+            Packed::Single(colors, luminances) => {
+                colors.iter().zip(luminances).for_each(|one| offer(&Small::of_single(one).pixel()));
+            }
+            Packed::Small(pixels) => pixels.iter().for_each(|small| offer(&small.pixel())),
+            Packed::Whole(film) => film.pixels.iter().for_each(offer),
         }
     }
 

@@ -98,9 +98,12 @@ impl PartialRender {
         strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
             let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
             for index in blocks {
-                self.each_of_block(state, index, |film, x, y| {
-                    let at = place(strip, x, y);
-                    (colors[at], coverage[at]) = (film.resolve(x, y), film.coverage(x, y));
+                let Some(film) = &state.samples[index].film else { continue };
+                let mut places = self.blocks.rect(index).places();
+                film.means(|color, share| {
+                    if let Some(at) = places.next().map(|(x, y)| place(strip, x, y)) {
+                        (colors[at], coverage[at]) = (color, share);
+                    }
                 });
             }
         });

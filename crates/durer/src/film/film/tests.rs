@@ -38,6 +38,10 @@ proptest! {
             let film = film(samples);
             let packed = Packed::new(film.clone());
             prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
+            let (mut means, bits) = (Vec::new(), |color: Color, share: f32| (color.to_array().map(f32::to_bits), share.to_bits()));
+            packed.means(|color, share| means.push(bits(color, share)));
+            let whole = (0..6).map(|i| (i % 3, i / 3)).map(|(x, y)| bits(film.resolve(x, y), film.coverage(x, y)));
+            prop_assert_eq!(means, whole.collect::<Vec<_>>());
             match (samples.len(), count) {
                 (6, 1) => prop_assert!(matches!(packed, Packed::Single(..))),
                 (_, 120) => prop_assert!(matches!(packed, Packed::Small(..) | Packed::Single(..))),
