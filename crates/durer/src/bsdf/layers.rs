@@ -115,6 +115,8 @@ pub struct View<'a> {
     pub lanes: &'a Lanes,
     /// The local direction from which it is seen.
     pub wo: Vec3,
+    /// The local normal of what is matte: see [`Diffuse::normal`].
+    pub normal: Vec3,
     /// Whether that is from inside.
     pub inside: bool,
     /// The index behind the boundary over that before it.
@@ -189,7 +191,8 @@ impl<'t> Stack<'_, 't> {
             let dielectric = &*self.tables.opaque;
             let boundary = Boundary { dielectric, roughness, reflection: m.reflection };
             let boundary = (dielectric.ior != 1.0).then_some(boundary);
-            let diffuse = Diffuse { color: self.base, roughness: m.base_diffuse_roughness, boundary };
+            let (color, roughness, normal) = (self.base, m.base_diffuse_roughness, view.normal);
+            let diffuse = Diffuse { color, roughness, boundary, normal };
             let weight = opaque * (Spectrum::ONE - m.reflection * given);
             let matte = weight * (1.0 - m.subsurface_weight);
             bsdf.push(diffuse, matte, (matte * self.base).max_element());
@@ -212,7 +215,8 @@ impl<'t> Stack<'_, 't> {
         let color = self.view.lanes.reflectance(m.subsurface_color);
         let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
         let share = (weight * color).max_element();
-        bsdf.push(Diffuse { boundary, ..Diffuse::lambert(color) }, weight * (1.0 - onwards), share * (1.0 - onwards));
+        let diffuse = Diffuse { boundary, normal: self.view.normal, ..Diffuse::lambert(color) };
+        bsdf.push(diffuse, weight * (1.0 - onwards), share * (1.0 - onwards));
         bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
     }
 

@@ -113,9 +113,14 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
             transmitted: Spectrum::ONE,
         })
     };
+    let leaning = Vec3::new(0.6, 0.0, 0.8);
     vec![
         ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
         ("rough matte", Diffuse { roughness: 1.0, ..Diffuse::lambert(Spectrum::ONE) }.into()),
+        (
+            "matte with a normal of its own",
+            Diffuse { normal: leaning, roughness: 0.5, ..Diffuse::lambert(Spectrum::ONE) }.into(),
+        ),
         ("matte, other side", DiffuseTransmission { color: Spectrum::ONE }.into()),
         ("Blinn", Blinn { color: Spectrum::ONE, exponent: 30.0, phong: false }.into()),
         ("Phong", Blinn { color: Spectrum::ONE, exponent: 12.0, phong: true }.into()),
@@ -180,7 +185,7 @@ impl<'a> Furnace<'a> {
 
 /// A material from outside.
 pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
-    let view = layers::View { lanes: &Lanes::Rgb, wo, inside: false, eta: here.specular_ior };
+    let view = layers::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside: false, eta: here.specular_ior };
     let mut bsdf = Bsdf::default();
     layers::scattering(&mut bsdf, 1.0, here, tables, view);
     bsdf

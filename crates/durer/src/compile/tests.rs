@@ -209,7 +209,7 @@ fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {
             let eta = if inside { 1.0 / own.written.specular_ior } else { own.written.specular_ior };
-            let view = crate::bsdf::layers::View { lanes: &lanes, wo, inside, eta };
+            let view = crate::bsdf::layers::View { lanes: &lanes, wo, normal: Vec3::Z, inside, eta };
             crate::bsdf::layers::scattering(&mut Default::default(), 1.0, &own.parameters, &own.tables, view);
         }
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");

@@ -1,7 +1,7 @@
 //! What a model lacks to be a scene: a camera that sees all of it, light, a ground, a material.
 
 use super::extent::points;
-use super::{Group, Material, Node, Object, Scene, Spanned};
+use super::{Background, Group, Material, Node, Object, Scene, Spanned};
 use crate::camera::{Camera, OrthographicCamera, PerspectiveCamera, Projection};
 use crate::diag::Span;
 use crate::light::{DirectionalLight, Light};
@@ -128,8 +128,15 @@ impl Staging {
         }
         give_material(scene);
         let surrounded = self.environment.is_some() && self.studio.is_none();
-        if (!lit && !surrounded) || self.studio.is_some() {
-            self.light(scene, &sides, self.studio.unwrap_or_default(), framed);
+        let missing = !lit && !surrounded;
+        let studio = self.studio.or(missing.then(Studio::default));
+        if let Some(studio) = studio {
+            self.light(scene, &sides, studio, framed);
+        }
+        // Around what has its own light it is dark, unless the file says otherwise.
+        let shines = scene.shines() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
+        if shines && scene.background == Background::default() {
+            scene.background.color = Vec3::ZERO;
         }
     }
 

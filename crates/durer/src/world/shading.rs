@@ -40,6 +40,30 @@ impl Shading<'_> {
     }
 }
 
+/// A normal for shading, bent towards the true one until a mirror there throws what is seen against
+/// a direction to the outside. Interpolated normals and pictures of normals may point away from the
+/// ray; the surface itself does not.
+///
+/// With angles from the true normal, in the plane of both: of a direction (x, z) the mirror at an
+/// angle a shows x sin 2a + z cos 2a above the surface, which is to be as little as `least`.
+fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
+    let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
+    let least = (0.9 * z).min(0.01);
+    if 2.0 * n.dot(wo) * cosine - z >= least && cosine > 0.0 {
+        return n;
+    }
+    let across = n - cosine * n_geo;
+    // What differs by rounding alone has no side.
+    if across.length_squared() < 1e-8 {
+        return n_geo;
+    }
+    let across = across.normalize();
+    let x = wo.dot(across);
+    let square = x * x + z * z;
+    let twice = ((z * least - x * (square - least * least).sqrt()) / square).clamp(-1.0, 1.0);
+    (0.5 * (1.0 - twice)).sqrt() * across + (0.5 * (1.0 + twice)).sqrt() * n_geo
+}
+
 impl World {
     /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
     /// vertices' colours.
@@ -65,10 +89,12 @@ impl World {
         let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
         let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
-        // An interpolated normal may point away from the ray; the surface itself does not.
-        let n = if dir.dot(n) < 0.0 { n.normalize_or(n_geo) } else { n_geo };
-        let frame = self.frame(&parts, at, n);
-        let wo = frame.to_local(-dir.normalize_or(-n));
+        let wo = -dir.normalize_or(-n_geo);
+        let n = n.normalize_or(n_geo);
+        let bent = bent(n, n_geo, wo);
+        let frame = self.frame(&parts, at, bent);
+        let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
+        let wo = frame.to_local(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
         let bsdf = &mut shading.bsdf;
@@ -76,9 +102,14 @@ impl World {
             match &part.phong.principled {
                 Some(own) => {
                     let here = self.parameters_at(own, at);
-                    layers::scattering(bsdf, part.share, &here, &own.tables, View { lanes, wo, inside, eta });
+                    layers::scattering(bsdf, part.share, &here, &own.tables, View { lanes, wo, normal, inside, eta });
                 }
-                None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), wo, eta, lanes),
+                None => phong_lobes(
+                    bsdf,
+                    part,
+                    self.diffuse_color(part.phong, surface),
+                    View { lanes, wo, normal, inside, eta },
+                ),
             }
         }
         shading
@@ -258,7 +289,8 @@ impl World {
 /// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
 /// Phong's highlight, and single directions for mirror and glass. What would give back more than it
 /// gets is scaled down as a whole.
-fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, wo: Vec3, eta: f32, lanes: &Lanes) {
+fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
+    let View { lanes, wo, normal, eta, .. } = view;
     let phong = part.phong;
     let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
     let [color, strength, reflective, transparent] =
@@ -272,7 +304,8 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, wo: Vec3,
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
     let scale = part.share / all.max_element().max(1.0);
-    bsdf.push(Diffuse::lambert(color), Spectrum::splat(scale), scale * color.max_element());
+    let diffuse = Diffuse { normal, ..Diffuse::lambert(color) };
+    bsdf.push(diffuse, Spectrum::splat(scale), scale * color.max_element());
     let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
     bsdf.push(highlight, Spectrum::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
     bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());
@@ -287,3 +320,6 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, wo: Vec3,
 fn hides_backs(phong: &Phong) -> bool {
     phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
 }
+
+#[cfg(test)]
+mod tests;

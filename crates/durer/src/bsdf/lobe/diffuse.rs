@@ -6,7 +6,7 @@
 
 use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::albedo::Dielectric;
-use crate::bsdf::warp;
+use crate::bsdf::{Frame, warp};
 use crate::math::{Vec2, Vec3, fp};
 use crate::spectrum::Spectrum;
 use std::f32::consts::{FRAC_1_PI, PI};
@@ -20,6 +20,9 @@ pub struct Diffuse<'a> {
     pub roughness: f32,
     /// What light passes on its way in. What it passes on its way out is the weight of the lobe.
     pub boundary: Option<Boundary<'a>>,
+    /// The local normal that it has of its own: z, but where that is bent so that mirrors show
+    /// nothing from below the surface. Matte things need not be bent.
+    pub normal: Vec3,
 }
 
 /// The boundary of dielectrics on a matte surface.
@@ -56,7 +59,7 @@ const C2: f32 = 2.0 / 3.0 - 28.0 / (15.0 * PI);
 impl<'a> Diffuse<'a> {
     /// Lambert's, of a colour, with nothing on it.
     pub fn lambert(color: Spectrum) -> Self {
-        Diffuse { color, roughness: 0.0, boundary: None }
+        Diffuse { color, roughness: 0.0, boundary: None, normal: Vec3::Z }
     }
 
     /// The directional albedo of single scattering for a white surface.
@@ -68,42 +71,56 @@ impl<'a> Diffuse<'a> {
         (1.0 + self.roughness * FRAC_1_PI * g) / (1.0 + C1 * self.roughness)
     }
 
-    /// The value without the cosine.
-    pub fn value(&self, wo: Vec3, wi: Vec3) -> Spectrum {
-        let Some(boundary) = &self.boundary else { return self.bare(wo, wi) };
-        let entering = boundary.entering(wi.z);
+    /// The value without the cosine, of directions with an angle between them, by its cosine and
+    /// those to the normal.
+    fn value(&self, between: f32, out: f32, into: f32) -> Spectrum {
+        let Some(boundary) = &self.boundary else { return self.bare(between, out, into) };
+        let entering = boundary.entering(into);
         if self.roughness == 0.0 {
             return self.color * (FRAC_1_PI * entering);
         }
         // Of a rough base the part that is the same in all directions. Of the rest not all would
         // come out again, or more than went in.
         let even = FRAC_1_PI * (1.0 - self.roughness) / (1.0 + C1 * self.roughness);
-        self.bare(wo, wi) + self.color * (even * (entering - 1.0))
+        self.bare(between, out, into) + self.color * (even * (entering - 1.0))
     }
 
     /// The same with nothing on it.
-    fn bare(&self, wo: Vec3, wi: Vec3) -> Spectrum {
+    fn bare(&self, between: f32, out: f32, into: f32) -> Spectrum {
         if self.roughness == 0.0 {
             return self.color * FRAC_1_PI;
         }
         let a = 1.0 / (1.0 + C1 * self.roughness);
-        let s = wo.dot(wi) - wo.z * wi.z;
-        let s_over_t = if s > 0.0 { s / wo.z.max(wi.z) } else { s };
+        let s = between - out * into;
+        let s_over_t = if s > 0.0 { s / out.max(into) } else { s };
         let single = self.color * (FRAC_1_PI * a * (1.0 + self.roughness * s_over_t));
         let mean = a * (1.0 + C2 * self.roughness);
-        let lost = |w: Vec3| (1.0 - self.single(w.z)).max(1e-7);
+        let lost = |cosine: f32| (1.0 - self.single(cosine)).max(1e-7);
         let again = self.color * self.color * mean / (Spectrum::ONE - self.color * (1.0 - mean).max(0.0));
-        single + again * (FRAC_1_PI * lost(wo) * lost(wi) / (1.0 - mean).max(1e-7))
+        single + again * (FRAC_1_PI * lost(out) * lost(into) / (1.0 - mean).max(1e-7))
     }
 }
 
 impl Scatter for Diffuse<'_> {
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
-        if wi.z <= 0.0 { NOTHING } else { (wi.z * self.value(wo, wi), FRAC_1_PI * wi.z) }
+        let into = wi.dot(self.normal);
+        if into <= 0.0 || wi.z <= 0.0 {
+            return NOTHING;
+        }
+        let out = wo.dot(self.normal).max(1e-6);
+        (into * self.value(wo.dot(wi), out, into), FRAC_1_PI * into)
     }
 
     fn sample(&self, _: Vec3, _: f32, u: Vec2) -> Option<Scattered> {
-        Some(Scattered { wi: warp::cosine_hemisphere(u), value: Spectrum::ONE })
+        let mut wi = warp::cosine_hemisphere(u);
+        if self.normal != Vec3::Z {
+            wi = Frame::around(self.normal).to_world(wi);
+            // What leads below the surface stays there.
+            if wi.z <= 0.0 {
+                return None;
+            }
+        }
+        Some(Scattered { wi, value: Spectrum::ONE })
     }
 }
 

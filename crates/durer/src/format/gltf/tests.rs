@@ -250,8 +250,8 @@ fn textures_of_extensions_change_their_parameters() {
     let text = text.replace(
         r#""nodes":[{"mesh":0}]"#,
         &format!(
-            r#""images":[{{"uri":"a.png"}}],"textures":[{{"source":0}}],"materials":[{{"extensions":{{{extensions}}}}}],
-               "nodes":[{{"mesh":0}}]"#
+            r#""images":[{{"uri":"a.png"}}],"textures":[{{"source":0}}],"materials":[{{"extensions":{{{extensions}}},
+               "pbrMetallicRoughness":{{"metallicFactor":0}}}}],"nodes":[{{"mesh":0}}]"#
         ),
     );
     let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
@@ -277,6 +277,35 @@ fn textures_of_extensions_change_their_parameters() {
     assert_eq!((m.thin_film_weight, m.thin_film_thickness, m.thin_film_ior), (0.75, 0.8, 1.25));
     assert_eq!((m.transmission_dispersion_scale, m.transmission_dispersion_abbe_number), (0.5, 20.0));
     assert!((m.specular_rotation - 0.25).abs() < 1e-4);
+}
+
+#[test]
+fn reflection_of_dielectrics_is_not_that_of_metals() {
+    let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
+    let attributes = r#""attributes":{"POSITION":0},"material":0"#;
+    let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
+    let of = |metallic: f32, more: &str| {
+        let specular = r#""KHR_materials_specular":{"specularFactor":0.25,"specularColorFactor":[1,0,0]}"#;
+        let material = format!(
+            r#""materials":[{{"pbrMetallicRoughness":{{"metallicFactor":{metallic}}},"extensions":{{{specular}{more}}}}}],"nodes":[{{"mesh":0}}]"#
+        );
+        let text = text.replace(r#""nodes":[{"mesh":0}]"#, &material);
+        let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+        let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
+        let Material::Principled(m) = &scene.materials[0].value else { panic!() };
+        (m.specular_weight, m.specular_ior, m.specular_color)
+    };
+    let red = Vec3::X;
+    assert_eq!(of(0.0, ""), (0.25, 1.5, red));
+    // Metals are as if the extension were not there.
+    assert_eq!(of(1.0, ""), (1.0, 1.5, Vec3::ONE));
+    // In between a smaller index stands for the weight: a quarter of 0.04 at right angles.
+    let (weight, ior, _) = of(0.5, "");
+    let root = (ior - 1.0) / (ior + 1.0);
+    assert!(weight == 1.0 && (root * root - 0.01).abs() < 1e-6, "{weight} {ior}");
+    // Light is bent as it was where it goes through.
+    assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
 }
 
 #[test]

@@ -110,6 +110,11 @@ fn only_what_is_missing_is_added() {
     let same = staged(own.clone(), &Staging::default());
     assert_eq!((&same.camera, &same.lights), (&own.camera, &own.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
+    // Around what has its own light it is dark; where nothing shines it is not, so that something is
+    // seen.
+    assert_eq!(same.background.color, Vec3::ZERO);
+    let none = Staging { studio: Some(Studio::None), ..Staging::default() };
+    assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());
     let asked = Staging { view: Some(View::Iso), studio: Some(Studio::None), ..Staging::default() };
     let other = staged(own.clone(), &asked);
     assert!(other.camera != own.camera && other.lights == own.lights);

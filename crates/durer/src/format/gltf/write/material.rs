@@ -54,6 +54,10 @@ impl Writer<'_> {
             (false, true) if m.transmission_weight >= 0.5 => m.transmission_color,
             _ => m.base_weight * m.base_color,
         };
+        // There metals have neither weight nor tint.
+        let textured = m.metallic_roughness_texture.is_some() || m.base_metalness_texture.is_some();
+        let is_metal = m.base_metalness == 1.0 && !textured;
+        let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
         let [r, g, b] = base.clamp(Vec3::ZERO, Vec3::ONE).to_array();
         let mut pbr = json!({
             "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": m.specular_roughness,
@@ -96,7 +100,7 @@ impl Writer<'_> {
             extend("KHR_materials_ior", json!({ "ior": m.specular_ior.max(1.0) }));
         }
         let pictured = m.specular_weight_texture.is_some() || m.specular_color_texture.is_some();
-        if m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured {
+        if !is_metal && (m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured) {
             // A weight above 1 goes into the colour, which has no bound.
             let weight = m.specular_weight.min(1.0);
             let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
@@ -158,6 +162,9 @@ impl Writer<'_> {
                     row.field
                 ));
             }
+        }
+        if is_metal && m.specular_color != Vec3::ONE {
+            self.left_out("glTF's metals have no tint at their border: it is left out");
         }
         if m.bump_texture.is_some() || m.opacity_texture.is_some() {
             self.left_out("glTF has no pictures of bumps and of opacity alone: they are left out");

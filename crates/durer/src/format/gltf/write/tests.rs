@@ -37,13 +37,14 @@ const HEAD: &str = "PerspectiveCamera { center 1 2 9 direction 0 0 -1 up 0 1 0 a
 
 #[test]
 fn materials_come_back() {
-    let words = "PrincipledMaterial { baseColor 0.1 0.2 0.3 baseMetalness 0.25 specularRoughness 0.5 specularIor 1.7 specularWeight 0.5
+    let words = "PrincipledMaterial { baseColor 0.1 0.2 0.3 specularRoughness 0.5 specularIor 1.7 specularWeight 0.5
         coatWeight 0.75 coatRoughness 0.1 coatIor 1.5 coatDarkening 0 fuzzWeight 0.5 fuzzColor 1 0.5 0.25 fuzzRoughness 0.3 specularAnisotropy 0.4
         specularRotation 0.125 emissionLuminance 8 emissionColor 1 0.5 0 opacity 0.5 }
       PrincipledMaterial { baseColor 1 1 1 specularRoughness 0 transmissionWeight 1 transmissionDepth 2 transmissionColor 0.9 0.5 0.1 }
-      PrincipledMaterial { baseColor 0.5 1 0.5 specularRoughness 0 transmissionWeight 1 transmissionColor 0.5 1 0.5 walls thin }";
-    let balls: String = (0..3).map(|i| format!("MaterialIndex {i} Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
-    let before = scene(&format!("{HEAD} Materials {{ numMaterials 3 {words} }} Group {{ numObjects 3 {balls} }}"));
+      PrincipledMaterial { baseColor 0.5 1 0.5 specularRoughness 0 transmissionWeight 1 transmissionColor 0.5 1 0.5 walls thin }
+      PrincipledMaterial { baseColor 0.9 0.6 0.3 baseMetalness 0.25 specularRoughness 0.5 }";
+    let balls: String = (0..4).map(|i| format!("MaterialIndex {i} Sphere {{ center {i} 0 0 radius 0.4 }} ")).collect();
+    let before = scene(&format!("{HEAD} Materials {{ numMaterials 4 {words} }} Group {{ numObjects 4 {balls} }}"));
     for name in ["a.glb", "a.gltf"] {
         let (after, told) = again(&before, name);
         assert_eq!(told, [""; 0]);
@@ -55,7 +56,7 @@ fn materials_come_back() {
             let (old, new) = (layers(&old.value), layers(&new.value));
             assert_eq!(old, new, "{name} {i}");
         }
-        assert_eq!(after.assets.meshes.len(), 3);
+        assert_eq!(after.assets.meshes.len(), 4);
     }
 }
 
