@@ -24,6 +24,7 @@ mod radiance;
 mod report;
 mod said;
 pub mod scene;
+mod smooth;
 mod sticks;
 mod stl;
 mod threemf;

@@ -39,6 +39,8 @@ enum Statement {
     Material,
     /// Names files of materials.
     Library,
+    /// Says with which others the following faces are smooth, where they have no normals.
+    Smoothing,
     /// Known, and without effect on the mesh.
     Ignored,
 }
@@ -53,7 +55,7 @@ const STATEMENTS: &[(&str, Statement)] = &[
     ("fo", Statement::Face),
     ("o", Statement::Ignored),
     ("g", Statement::Ignored),
-    ("s", Statement::Ignored),
+    ("s", Statement::Smoothing),
     ("mg", Statement::Ignored),
     ("usemtl", Statement::Material),
     ("mtllib", Statement::Library),
@@ -98,14 +100,23 @@ fn recognise(bytes: &[u8]) -> bool {
 
 /// Reads a file; see [`read_mesh`](super::read_mesh).
 fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
-    read_with(bytes, file, &mut Vec::new(), diagnostics)
+    read_with(bytes, file, &mut Switches::default(), diagnostics)
 }
 
-/// From which triangle on a material is current, and where it is named.
-type Switch = (usize, Range<usize>);
+/// From which triangle on something is current, and what.
+type Switch<T> = (usize, T);
 
-/// The same, with the places where the material changes.
-fn read_with(bytes: &[u8], file: u32, switches: &mut Vec<Switch>, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+/// What changes from face to face.
+#[derive(Default)]
+struct Switches {
+    /// Where the material is named.
+    materials: Vec<Switch<Range<usize>>>,
+    /// The number of the smoothing group; 0 for none.
+    groups: Vec<Switch<u32>>,
+}
+
+/// The same, with what changes from face to face.
+fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
     if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {

@@ -6,6 +6,7 @@
 use super::Model;
 use super::json::At;
 use crate::bsdf::fresnel::ior_of_reflectance;
+use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::{Backs, Walls};
@@ -214,6 +215,14 @@ impl Model<'_> {
             m.specular_anisotropy = share(&e, "anisotropyStrength", 0.0);
             let turn = e.get("anisotropyRotation").and_then(|turn| turn.number()).unwrap_or(0.0);
             m.specular_rotation = turn / TAU;
+            let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
+            if m.specular_anisotropy > 0.0 && !pictured {
+                // Along the highlight alpha grows towards 1 by the square of the strength; across it is
+                // that of the roughness. What pictures say is only like that.
+                let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
+                let along = alpha + (1.0 - alpha) * m.specular_anisotropy * m.specular_anisotropy;
+                [m.specular_roughness, m.specular_anisotropy, _] = Ggx::parameters([along, alpha]);
+            }
             m.specular_anisotropy_texture = number(&e, "anisotropyTexture", Channel::Blue);
             m.specular_rotation_texture = number(&e, "anisotropyTexture", Channel::Angle);
         }

@@ -279,21 +279,43 @@ fn textures_of_extensions_change_their_parameters() {
     assert!((m.specular_rotation - 0.25).abs() < 1e-4);
 }
 
-#[test]
-fn reflection_of_dielectrics_is_not_that_of_metals() {
+/// The material of a triangle, by its factors and extensions.
+fn layers(factors: &str, extensions: &str) -> crate::material::PrincipledMaterial {
     let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
     let attributes = r#""attributes":{"POSITION":0},"material":0"#;
     let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
+    let material = format!(
+        r#""materials":[{{"pbrMetallicRoughness":{{{factors}}},"extensions":{{{extensions}}}}}],"nodes":[{{"mesh":0}}]"#
+    );
+    let text = text.replace(r#""nodes":[{"mesh":0}]"#, &material);
+    let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
+    let Material::Principled(m) = &scene.materials[0].value else { panic!() };
+    (**m).clone()
+}
+
+#[test]
+fn brushed_things_have_the_alphas_of_the_extension() {
+    let of = |roughness: f32, strength: f32| {
+        let factors = format!(r#""roughnessFactor":{roughness}"#);
+        let m = layers(&factors, &format!(r#""KHR_materials_anisotropy":{{"anisotropyStrength":{strength}}}"#));
+        crate::bsdf::microfacet::Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha
+    };
+    for (roughness, strength) in [(0.3, 0.8), (0.6, 0.2), (0.0, 0.5), (1.0, 0.7), (0.5, 0.0)] {
+        let alpha = f32::max(roughness * roughness, if strength > 0.0 { 1e-3 } else { 0.0 });
+        let along = alpha + (1.0 - alpha) * strength * strength;
+        let wanted = crate::math::Vec2::new(along, alpha);
+        let found = of(roughness, strength);
+        assert!((found - wanted).abs().max_element() < 1e-5, "{roughness} {strength}: {found} and not {wanted}");
+    }
+}
+
+#[test]
+fn reflection_of_dielectrics_is_not_that_of_metals() {
     let of = |metallic: f32, more: &str| {
         let specular = r#""KHR_materials_specular":{"specularFactor":0.25,"specularColorFactor":[1,0,0]}"#;
-        let material = format!(
-            r#""materials":[{{"pbrMetallicRoughness":{{"metallicFactor":{metallic}}},"extensions":{{{specular}{more}}}}}],"nodes":[{{"mesh":0}}]"#
-        );
-        let text = text.replace(r#""nodes":[{"mesh":0}]"#, &material);
-        let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
-        let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
-        let Material::Principled(m) = &scene.materials[0].value else { panic!() };
+        let m = layers(&format!(r#""metallicFactor":{metallic}"#), &format!("{specular}{more}"));
         (m.specular_weight, m.specular_ior, m.specular_color)
     };
     let red = Vec3::X;

@@ -10,6 +10,7 @@ use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
 use crate::format::said::meant;
+use crate::format::smooth::smoothed;
 use crate::image::Transfer;
 use crate::math::Vec3;
 use crate::scene::{Group, Node, Object};
@@ -255,7 +256,10 @@ impl Reader<'_> {
                 data = oriented(data, true);
             }
             if !flat && data.triangle_normals.is_empty() {
-                data = solid::smoothed(data);
+                // Vertices at one place with other texture coordinates are others.
+                let uvs = std::mem::take(&mut data.triangle_uvs);
+                smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
+                data.triangle_uvs = uvs;
             }
             // Vertices have colours where a texture asks for them; those of PLY have no curve here.
             let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;

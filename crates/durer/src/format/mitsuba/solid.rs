@@ -1,11 +1,9 @@
 //! Shapes that are meshes here.
 
 use crate::format::pbrt::mesh::tube;
-use crate::math::{Vec2, Vec3, fp};
+use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
-use std::array::from_fn;
-use std::collections::HashMap;
 
 /// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in
 /// the order of [`AROUND`].
@@ -66,33 +64,6 @@ pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
         corners.iter().filter(|_| u.is_finite()).for_each(|&i| tangents[i as usize] += u);
     }
     data.tangents = tangents.into_iter().map(|u| u.extend(1.0).to_array()).collect();
-    data
-}
-
-/// The same with a normal at each vertex: the mean of those of the faces around it, by their angles
-/// there.
-///
-/// Source: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, Journal of
-/// Graphics Tools 3(1), 1998.
-pub(super) fn smoothed(mut data: MeshData) -> MeshData {
-    // Vertices at one place with other texture coordinates are others.
-    let mut numbers = HashMap::new();
-    let uvs = |i: usize| data.triangle_uvs.get(i).copied().unwrap_or_default();
-    let mut normals: Vec<Vec3> = Vec::new();
-    let mut triangle_normals = Vec::with_capacity(data.triangles.len());
-    for (i, corners) in data.triangles.iter().enumerate() {
-        let at = corners.map(|i| data.positions[i as usize]);
-        let face = (at[1] - at[0]).cross(at[2] - at[0]).normalize_or_zero();
-        triangle_normals.push(from_fn(|k| {
-            let number = *numbers.entry((corners[k], uvs(i)[k])).or_insert(normals.len() as u32);
-            normals.resize(normals.len().max(number as usize + 1), Vec3::ZERO);
-            let [to, other] = [1, 2].map(|step| (at[(k + step) % 3] - at[k]).normalize_or_zero());
-            normals[number as usize] += fp::atan2(to.cross(other).length(), to.dot(other)) * face;
-            number
-        }));
-    }
-    normals.iter_mut().for_each(|n| *n = n.normalize_or(Vec3::Y));
-    (data.normals, data.triangle_normals) = (normals, triangle_normals);
     data
 }
 

@@ -1,6 +1,6 @@
 //! The faces of a Wavefront file, once all of its vertices are known.
 
-use super::{Counts, Statement, Switch, counts, statement, words::Words};
+use super::{Counts, Statement, Switches, counts, statement, words::Words};
 use crate::format::number::parse_integer;
 use crate::format::polygon::Cutter;
 use crate::format::report::{Report, counted, shown};
@@ -20,7 +20,7 @@ const KINDS: [(&str, &str, &str); 3] =
 /// What a part of a file has of faces.
 struct Faces {
     mesh: MeshData,
-    switches: Vec<Switch>,
+    switches: Switches,
     /// The first face that names a vertex twice, and how many do.
     degenerate: Option<(Range<usize>, usize)>,
     report: Report,
@@ -33,7 +33,7 @@ pub(super) fn read_faces(
     parts: &[Range<usize>],
     before: &[Counts],
     mesh: &mut MeshData,
-    switches: &mut Vec<Switch>,
+    switches: &mut Switches,
     report: &mut Report,
 ) {
     let read = |(part, so_far): (&Range<usize>, &Counts)| faces(bytes, part.clone(), *so_far, mesh, report.part());
@@ -53,7 +53,9 @@ pub(super) fn read_faces(
                 all.extend(own);
             }
         }
-        switches.extend(part.switches.into_iter().map(|(triangle, at)| (first + triangle, at)));
+        let Switches { materials, groups } = part.switches;
+        switches.materials.extend(materials.into_iter().map(|(triangle, at)| (first + triangle, at)));
+        switches.groups.extend(groups.into_iter().map(|(triangle, group)| (first + triangle, group)));
         report.join(part.report);
         if let Some((first, count)) = part.degenerate {
             degenerate.get_or_insert((first, 0)).1 += count;
@@ -82,7 +84,7 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
         positions: &whole.positions,
         corners: Vec::new(),
         cutter: Cutter::new(part.len()),
-        found: Faces { mesh: MeshData::default(), switches: Vec::new(), degenerate: None, report },
+        found: Faces { mesh: MeshData::default(), switches: Switches::default(), degenerate: None, report },
     };
     let mut words = Words::within(bytes, part);
     while let Some(keyword) = words.next_statement() {
@@ -93,7 +95,13 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
             Some(Statement::Face) => reader.face(keyword, &mut words),
             Some(Statement::Material) => {
                 let name = rest_of(&mut words, keyword.end);
-                reader.found.switches.push((reader.found.mesh.triangles.len(), name));
+                reader.found.switches.materials.push((reader.found.mesh.triangles.len(), name));
+            }
+            Some(Statement::Smoothing) => {
+                // `off` is no number.
+                let word = words.next_word().map_or(&[][..], |word| &bytes[word]);
+                let group = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(0);
+                reader.found.switches.groups.push((reader.found.mesh.triangles.len(), group));
             }
             Some(Statement::Line | Statement::Point | Statement::Library | Statement::Ignored) | None => {}
         }

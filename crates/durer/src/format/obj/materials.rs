@@ -274,7 +274,9 @@ impl<'a, 'i> Reader<'a, 'i> {
     /// Brings the words together. A material that is there keeps its place: the first of a name
     /// counts.
     fn finish(&mut self, w: Written) {
-        let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(Vec3::splat(0.8)), ..w.pictures };
+        // A picture alone is not darkened.
+        let usual = if w.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
+        let mut m = PrincipledMaterial { base_color: w.diffuse.unwrap_or(usual), ..w.pictures };
         m.base_color_texture = w.diffuse_map;
         // Black under a picture is what programs write that mean the picture alone.
         if w.pictured && m.base_color == Vec3::ZERO {

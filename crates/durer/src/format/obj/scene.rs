@@ -4,10 +4,11 @@ use super::faces::rest_of;
 use super::materials::{self, Library};
 use super::wires::{WireReader, Wires};
 use super::words::Words;
-use super::{Statement, Switch, read_with, statement};
+use super::{Statement, Switch, Switches, read_with, statement};
 use crate::diag::{Diagnostic, Diagnostics, Span, did_you_mean};
 use crate::format::model::{Input, SceneFormat};
 use crate::format::report::{Report, shown};
+use crate::format::smooth::smoothed;
 use crate::format::{sticks, too_large};
 use crate::math::Aabb;
 use crate::scene::{Group, Material, Object, Scene};
@@ -35,8 +36,9 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         diagnostics.push(error);
         return None;
     }
-    let mut switches = Vec::new();
-    let data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
+    let mut switches = Switches::default();
+    let mut data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
+    smooth(&mut data, &switches.groups);
     let span = |at: &Range<usize>| Span { file: input.file, start: at.start as u32, end: at.end as u32 };
     let mut library = Library::default();
     let mut report = Report::new(input.file, diagnostics);
@@ -77,7 +79,8 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     scene.assets.pictures = std::mem::take(&mut library.pictures);
     let mut objects = Vec::new();
     let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
-    let mut shown_parts = if data.triangles.is_empty() { Vec::new() } else { parts(&data, input.bytes, &switches) };
+    let mut shown_parts =
+        if data.triangles.is_empty() { Vec::new() } else { parts(&data, input.bytes, &switches.materials) };
     let vertices = MeshData { positions: data.positions, colors: data.colors, ..MeshData::default() };
     let thick = |wires: Wires| (sticks::thickened(&vertices, &wires.lines, &wires.points), wires.material);
     shown_parts.extend(wires.into_iter().map(thick));
@@ -101,9 +104,20 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
+/// Gives the triangles of smoothing groups normals, where the file has none.
+fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
+    if switches.iter().all(|&(_, group)| group == 0) {
+        return;
+    }
+    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
+    let mut groups = vec![0; data.triangles.len()];
+    switches.iter().zip(ends).for_each(|(&(start, group), end)| groups[start..end].fill(group));
+    smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
+}
+
 /// A mesh for each name of a material, in the order of the names' first triangles, and a place
 /// where it is named.
-fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch]) -> Vec<(MeshData, Range<usize>)> {
+fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
     let runs = switches.iter().zip(ends).map(|((start, at), end)| (*start..end, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);

@@ -1,7 +1,7 @@
 use crate::format::testing::{folder, read_in};
 use crate::format::tests::{abuse, read, read_clean};
 use crate::math::{Vec2, Vec3};
-use crate::scene::Scene;
+use crate::scene::{Material, Scene, Spanned};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
 use std::sync::Arc;
@@ -192,4 +192,47 @@ fn names_of_files_of_materials_may_have_blanks() {
         let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
         assert!(told.is_empty(), "{names}: {told:?}");
     }
+}
+
+#[test]
+fn faces_of_a_smoothing_group_are_smooth() {
+    // Two squares at a right angle along the x axis.
+    let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 1 0 1\nv 0 0 1\n";
+    let of = |faces: &str| {
+        let (scene, told) = read_in(&std::env::temp_dir(), "m.obj", &format!("{corners}{faces}"));
+        assert_eq!(told, [""; 0], "{faces}");
+        let scene = scene.unwrap();
+        let data = scene.assets.meshes.values().next().unwrap();
+        // The normal of each face's first corner, which is the origin.
+        let normal = |triangle: usize| data.normals[data.triangle_normals[triangle][0] as usize];
+        data.triangle_normals.first().map(|_| [normal(0), normal(2)])
+    };
+    let half = (Vec3::Z + Vec3::Y).normalize();
+    let [one, other] = of("s 1\nf 1 2 3 4\nf 1 6 5 2\n").unwrap();
+    // Two triangles meet at a corner of a square, and count by their angles.
+    assert!((one - half).length() < 1e-6 && one == other, "{one} {other}");
+    // Of two groups, each its own.
+    assert_eq!(of("s 1\nf 1 2 3 4\ns 2\nf 1 6 5 2\n").unwrap(), [Vec3::Z, Vec3::Y]);
+    assert_eq!(of("s off\nf 1 2 3 4\nf 1 6 5 2\n"), None);
+    assert_eq!(of("f 1 2 3 4\nf 1 6 5 2\n"), None);
+    // Normals of the file stay.
+    let [one, other] = of("vn 0 1 0\ns 1\nf 1//1 2//1 3//1 4//1\nf 1 6 5 2\n").unwrap();
+    assert_eq!([one, other], [Vec3::Y, Vec3::Y]);
+}
+
+#[test]
+fn a_picture_alone_is_shown_as_it_is() {
+    let folder = folder(&[
+        ("m.mtl", b"newmtl a\nmap_Kd a.ppm\nnewmtl b\nKd 0.5 0.5 0.5\nmap_Kd a.ppm\nnewmtl c\n"),
+        ("a.ppm", b"P6\n1 1\n255\n\x80\x80\x80"),
+    ]);
+    let faces = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl c\nf 1 2 3\n";
+    let (scene, told) = read_in(folder.path(), "m.obj", &format!("mtllib m.mtl\n{faces}"));
+    assert_eq!(told, [""; 0]);
+    let base = |material: &Spanned<Material>| match &material.value {
+        Material::Principled(layers) => layers.base_color.x,
+        _ => panic!(),
+    };
+    // The last is that of the ground.
+    assert_eq!(scene.unwrap().materials[..3].iter().map(base).collect::<Vec<_>>(), [1.0, 0.5, 0.8]);
 }

@@ -2,11 +2,12 @@
 //! than they are read.
 
 use super::Writer;
+use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::material::parameters::TEXTURED;
 use crate::material::principled::{Backs, Walls};
 use crate::material::{Pattern, PhongMaterial, PrincipledMaterial};
-use crate::math::{Vec3, fp};
+use crate::math::{Vec2, Vec3, fp};
 use crate::scene::{Material, Picture};
 use crate::texture::{Channel, Mapping};
 use serde_json::{Map, Value, json};
@@ -59,8 +60,9 @@ impl Writer<'_> {
         let is_metal = m.base_metalness == 1.0 && !textured;
         let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
         let [r, g, b] = base.clamp(Vec3::ZERO, Vec3::ONE).to_array();
+        let (roughness, strength) = brushed(m);
         let mut pbr = json!({
-            "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": m.specular_roughness,
+            "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": roughness,
         });
         let mut blended = holes || m.opacity < 1.0;
         if let Some((info, mapping)) = self.texture(m.base_color_texture.as_ref()) {
@@ -134,7 +136,7 @@ impl Writer<'_> {
         }
         if m.specular_anisotropy > 0.0 {
             let turn = m.specular_rotation * TAU;
-            let value = json!({ "anisotropyStrength": m.specular_anisotropy, "anisotropyRotation": turn });
+            let value = json!({ "anisotropyStrength": strength, "anisotropyRotation": turn });
             extend("KHR_materials_anisotropy", value);
         }
         if m.thin_film_weight > 0.0 {
@@ -223,6 +225,22 @@ impl Writer<'_> {
         }
         true
     }
+}
+
+/// The roughness and the strength of anisotropy that glTF has for a material's.
+fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
+    let pictured = m.metallic_roughness_texture.is_some()
+        || m.specular_roughness_texture.is_some()
+        || m.specular_anisotropy_texture.is_some();
+    if m.specular_anisotropy == 0.0 || pictured {
+        return (m.specular_roughness, m.specular_anisotropy);
+    }
+    // Across the highlight alpha is that of the roughness, and along it grows towards 1.
+    let Vec2 { x: along, y: across } = Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha;
+    if across >= 1.0 {
+        return (1.0, 0.0);
+    }
+    (across.sqrt(), ((along - across) / (1.0 - across)).max(0.0).sqrt())
 }
 
 /// Pictures of parameters: the extension, where in it they are, and the channel that counts.
