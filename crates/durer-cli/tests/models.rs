@@ -175,6 +175,11 @@ fn an_environment_lights_a_model() {
     assert_ne!(hash("--environment sky.hdr"), hash(""));
     // Light from above is not light from the side.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
+    // A black one is meant so, but told.
+    place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
+    let dark = place.gives(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
+    assert!(dark.err.contains("around the scene is black"), "{}", dark.err);
+    assert!(place.bytes("dark.pfm").iter().rev().take(48).all(|&byte| byte == 0));
     place.refused(2, "render a.stl -o a.png --environment none.hdr", &["none.hdr"]);
     place.refused(2, "render a.stl -o a.png --environment scene.txt", &["scene.txt"]);
 }

@@ -5,7 +5,7 @@ use super::decoded::{Encoding, decode, used};
 use super::kept::Origin;
 use crate::bvh::BuildQuality;
 use crate::describe::FileName;
-use crate::diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
+use crate::diag::{Diagnostic, Diagnostics, Severity, Span, at_least, at_most};
 use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image::{self, Encoded};
@@ -320,8 +320,10 @@ impl<'r> Loader<'r> {
         let (turn, scale) = written.environment_placing();
         let environment = Environment::new(width, height, picture.pixels, turn, scale);
         if environment.is_none() {
-            let message = format!("the picture `{}` around the scene is black", name.path);
-            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+            let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);
+            let warning = Diagnostic::warning(message).code("bad-file");
+            // What an option names has no place in the file.
+            diagnostics.push(if name.span == Span::default() { warning } else { warning.at(name.span) });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
     }

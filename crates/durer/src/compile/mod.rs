@@ -140,7 +140,12 @@ pub fn compile(
     let contents = Contents {
         frame: CameraBasis::of(&camera, rules),
         camera,
-        background: scene.background.color,
+        // A picture around the scene takes the place of the colour, a black one too.
+        background: if environment.is_none() && scene.background.environment.is_some() {
+            Color::ZERO
+        } else {
+            scene.background.color
+        },
         ambient,
         lights,
         materials: compiled,

@@ -7,7 +7,7 @@ use super::accessor::Component;
 use super::json::At;
 use crate::math::Vec3;
 use crate::shape::MeshData;
-use glam::{DAffine3, DMat4, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DVec3};
 
 /// How the vertices of a primitive are moved.
 #[derive(Clone, Default)]
@@ -150,12 +150,12 @@ impl Pose {
             for i in 0..data.positions.len() {
                 let map = self.bone(i, bones);
                 data.positions[i] = map.transform_point3(data.positions[i].as_dvec3()).as_vec3();
-                let turn = |v: Vec3| map.transform_vector3(v.as_dvec3()).normalize_or(v.as_dvec3()).as_vec3();
+                let turn = |matrix: DMat3, v: Vec3| (matrix * v.as_dvec3()).normalize_or(v.as_dvec3()).as_vec3();
                 if let Some(normal) = data.normals.get_mut(i) {
-                    *normal = turn(*normal);
+                    *normal = turn(of_normals(map.matrix3), *normal);
                 }
                 if let Some([x, y, z, _]) = data.tangents.get_mut(i) {
-                    [*x, *y, *z] = turn(Vec3::new(*x, *y, *z)).to_array();
+                    [*x, *y, *z] = turn(map.matrix3, Vec3::new(*x, *y, *z)).to_array();
                 }
             }
         }
@@ -181,9 +181,39 @@ impl Pose {
     }
 }
 
+/// What turns normals as a map turns a surface: its inverse transposed, but for a positive factor;
+/// so that flat maps have one too.
+fn of_normals(map: DMat3) -> DMat3 {
+    let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
+    1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
+}
+
 /// Adds copies of some values, where there are any.
 pub(super) fn copy<T: Copy>(values: &mut Vec<T>, originals: &[u32]) {
     if !values.is_empty() {
         values.extend(originals.iter().map(|&i| values[i as usize]).collect::<Vec<_>>());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn normals_of_skins_stay_at_right_angles() {
+        let pose = Pose { joints: vec![[0; 4]], weights: vec![[1.0, 0.0, 0.0, 0.0]], ..Pose::default() };
+        let (n, u) = (Vec3::new(0.48, 0.6, 0.64), Vec3::new(0.8, 0.0, -0.6));
+        let v = n.cross(u);
+        let tall = DMat3::from_diagonal(DVec3::new(1.0, 1.0, 3.0));
+        let sheared = DMat3::from_cols(DVec3::X, DVec3::new(0.7, 1.0, 0.0), DVec3::new(0.0, -0.3, 2.0));
+        for map in [tall, sheared, DMat3::from_diagonal(DVec3::new(-1.0, 2.0, 1.0)), DMat3::from_rotation_x(1.0)] {
+            let mut data = MeshData { positions: vec![n], normals: vec![n], ..MeshData::default() };
+            pose.apply(&mut data, &[], Some(&[DAffine3::from_mat3(map)]));
+            let turned = data.normals[0];
+            for along in [u, v] {
+                assert!((map * along.as_dvec3()).as_vec3().dot(turned).abs() < 1e-5, "{map}: {turned}");
+            }
+            assert!((map * n.as_dvec3()).as_vec3().dot(turned) > 0.0 && (turned.length() - 1.0).abs() < 1e-5);
+        }
     }
 }

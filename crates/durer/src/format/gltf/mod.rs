@@ -24,7 +24,6 @@ use super::model::{Input, SceneFormat};
 use super::report::Report;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::material::PrincipledMaterial;
-use crate::math::Vec3;
 use crate::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
 use crate::texture::Mapping;
 use accessor::Accessor;
@@ -88,8 +87,6 @@ struct Model<'a> {
     blends: Vec<bool>,
     /// Whether each material wants to know how its surface moves as u grows.
     leans: Vec<bool>,
-    /// Number of the material for what has colours and no material.
-    white: Option<u32>,
     meshes: Vec<Primitives>,
     /// Weights of each mesh's morph targets.
     weights: Vec<Vec<f32>>,
@@ -165,7 +162,6 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         variant: None,
         blends: Vec::new(),
         leans: Vec::new(),
-        white: None,
         meshes: Vec::new(),
         weights: Vec::new(),
         skins: Vec::new(),
@@ -187,7 +183,6 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     let materials = model.materials(&root);
     model.material_count = materials.len();
     model.variant = model.chosen_variant(&root);
-    model.white = Some(materials.len() as u32);
     let alpha = |at: &At| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
     let of_materials = |what: &dyn Fn(&At) -> bool| match root.get("materials") {
         Some(materials) => materials.items().map(|material| what(&material)).collect(),
@@ -214,8 +209,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         value: Material::Principled(Box::new(m)),
         span: root.findings.span(&format!("/materials/{i}")),
     };
-    let white = PrincipledMaterial { base_color: Vec3::ONE, ..PrincipledMaterial::default() };
-    scene.materials = materials.into_iter().chain([white]).enumerate().map(spanned).collect();
+    scene.materials = materials.into_iter().enumerate().map(spanned).collect();
     for &i in &order {
         model.show(i, &nodes, &maps, &mut scene);
         model.light(&nodes[i], maps[i], &mut scene);

@@ -4,8 +4,9 @@ use super::Model;
 use super::deform::Skin;
 use super::json::At;
 use crate::diag::Span;
+use crate::material::PrincipledMaterial;
 use crate::math::{Affine, Vec3};
-use crate::scene::{MatrixOp, Node, Object, Scene};
+use crate::scene::{Material, MatrixOp, Node, Object, Scene, Spanned};
 use glam::{DAffine3, DMat4, DQuat, DVec3};
 
 /// A node as written.
@@ -243,14 +244,25 @@ impl Model<'_> {
             self.once("flat", "a node that is scaled to nothing, or beyond the range of numbers, is left out");
             return None;
         }
-        // Colours of vertices are as they are; a neutral grey would darken them.
-        let white = self.white.filter(|_| material.is_none() && !data.colors.is_empty());
-        let material = material.or(white);
+        let material = match material {
+            None if !data.colors.is_empty() => Some(self.white(span, scene)),
+            material => material,
+        };
         let mesh = scene.add_mesh(name, data.clone(), span);
         if to_world == DAffine3::IDENTITY {
             return Some(Object { node: mesh, material, span });
         }
         let inner = Object { node: mesh, material, span };
         Some(Object { node: Node::Transform(vec![op], Box::new(inner)), material, span })
+    }
+
+    /// The number of the material for what has colours and no material. Colours of vertices are as
+    /// they are; a neutral grey would darken them.
+    fn white(&self, span: Span, scene: &mut Scene) -> u32 {
+        if scene.materials.len() == self.material_count {
+            let white = PrincipledMaterial { base_color: Vec3::ONE, ..PrincipledMaterial::default() };
+            scene.materials.push(Spanned { value: Material::Principled(Box::new(white)), span });
+        }
+        self.material_count as u32
     }
 }

@@ -296,6 +296,19 @@ fn layers(factors: &str, extensions: &str) -> crate::material::PrincipledMateria
 }
 
 #[test]
+fn a_white_material_is_there_only_for_colours_without_one() {
+    let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
+    let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
+    let count = |attributes: &str| {
+        let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
+        let bare = Staging { bare: true, ..Staging::default() };
+        let (scene, findings) = staged(text.as_bytes(), Path::new("."), "a.gltf", &bare);
+        scene.unwrap_or_else(|| panic!("{findings:?}")).materials.len()
+    };
+    assert_eq!([count(r#""attributes":{"POSITION":0}"#), count(r#""attributes":{"POSITION":0,"COLOR_0":0}"#)], [0, 1]);
+}
+
+#[test]
 fn brushed_things_have_the_alphas_of_the_extension() {
     let of = |roughness: f32, strength: f32| {
         let factors = format!(r#""roughnessFactor":{roughness}"#);
