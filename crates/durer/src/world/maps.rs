@@ -59,9 +59,12 @@ impl World {
 
     /// Whether a material in layers may be there in part only. Vertices may say so of any.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
-        own.written.opacity < 1.0
-            || own.maps.opacity.is_some()
-            || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
+        own.written.opacity < 1.0 || self.has_holes(own)
+    }
+
+    /// Whether a picture says what of a material is there.
+    pub(super) fn has_holes(&self, own: &Principled) -> bool {
+        own.maps.opacity.is_some() || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
 
     fn texel(&self, map: Option<u32>, at: &Interaction) -> Option<[f32; 4]> {

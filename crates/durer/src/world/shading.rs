@@ -128,12 +128,15 @@ impl World {
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 
-    /// The light of a material's own, if points that shine can be chosen: the same everywhere.
-    pub(super) fn emission_of(&self, material: u32) -> Option<&Emission> {
-        match self.materials().get(material as usize)? {
-            Material::Phong(phong) => phong.emission.as_ref().filter(|emission| !emission.textured),
-            Material::Solid(..) => None,
-        }
+    /// The light of a material's own, if points that shine can be chosen: the same everywhere, for
+    /// the share of it that is there.
+    pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
+        let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
+        let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
+        let Some(own) = &phong.principled else { return Some(*emission) };
+        let radiance = own.written.opacity * emission.radiance;
+        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own);
+        chosen.then(|| Emission { radiance, ..*emission })
     }
 
     /// The light that a surface sends towards one side: from where its normal points, or from

@@ -140,6 +140,18 @@ fn lights_with_extent_shine_by_their_view_factors() {
 }
 
 #[test]
+fn what_is_there_in_part_shines_in_part() {
+    // A sphere of radius r at a height h makes pi L (r / h)^2.
+    let whole = std::f64::consts::PI * 3.0 * 0.25 * 0.25;
+    for (opacity, share) in [("1", 1.0), ("0.5", 0.5), ("0.25", 0.25)] {
+        let lamp =
+            format!("PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 opacity {opacity} }}");
+        let group = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 4 0 radius 1 }";
+        assert_light(opacity, &scene(&format!("{MATTE} {lamp}"), "", group), to_origin(), 0, shown(share * whole));
+    }
+}
+
+#[test]
 fn what_is_found_by_chance_and_what_is_connected_with_agree() {
     // An ellipsoid has no points to choose: directions alone find it. Stretched by 1 it is the
     // sphere that can be chosen.
