@@ -136,7 +136,7 @@ impl World {
         let Some(own) = &phong.principled else { return Some(*emission) };
         let radiance = own.written.opacity * emission.radiance;
         let chosen = radiance.max_element() > 0.0 && !self.has_holes(own);
-        chosen.then(|| Emission { radiance, ..*emission })
+        chosen.then_some(Emission { radiance, ..*emission })
     }
 
     /// The light that a surface sends towards one side: from where its normal points, or from
