@@ -87,7 +87,7 @@ impl Tables {
 }
 
 /// The index of an opaque base: `specularWeight` scales what reflects at right angles.
-fn opaque_ior(material: &PrincipledMaterial) -> f32 {
+pub fn opaque_ior(material: &PrincipledMaterial) -> f32 {
     if material.specular_weight == 1.0 {
         return material.specular_ior;
     }

@@ -178,37 +178,23 @@ impl<'a> Samples<'a> {
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
-        let mut aimed = AIMED.take();
-        let added = self.add_all(film, part, range, at, rays, &mut aimed);
-        AIMED.set(aimed);
-        added
-    }
-
-    fn add_all(
-        &self,
-        film: &mut Film,
-        part: Crop,
-        range: Range<u32>,
-        at: &SampleCursor,
-        rays: &mut RayCount,
-        aimed: &mut Aimed,
-    ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
-        aimed.clear();
+        let mut aimed = AIMED.take();
         for (x, y) in part.places() {
             let pixel = self.aim.pixel(x, y);
             for sample in range.clone() {
                 at.set((x, y, Some(sample)));
                 if batch.push(&pixel, sample) {
-                    self.aim_batch(&mut batch, aimed);
+                    self.aim_batch(&mut batch, &mut aimed);
                     if aimed.samples.len() >= TOGETHER {
-                        self.add_aimed(film, aimed, at, rays)?;
+                        self.add_aimed(film, &mut aimed, at, rays)?;
                     }
                 }
             }
         }
-        self.aim_batch(&mut batch, aimed);
-        self.add_aimed(film, aimed, at, rays)?;
+        self.aim_batch(&mut batch, &mut aimed);
+        self.add_aimed(film, &mut aimed, at, rays)?;
+        AIMED.set(aimed);
         // What was made after a cancel means nothing.
         self.check()
     }

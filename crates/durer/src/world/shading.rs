@@ -96,20 +96,16 @@ impl World {
         let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
         let wo = frame.to_local(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
+        let view = View { lanes, wo, normal, inside, eta };
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
         let bsdf = &mut shading.bsdf;
         for part in &parts {
             match &part.phong.principled {
                 Some(own) => {
                     let here = self.parameters_at(own, at);
-                    layers::scattering(bsdf, part.share, &here, &own.tables, View { lanes, wo, normal, inside, eta });
+                    layers::scattering(bsdf, part.share, &here, &own.tables, view);
                 }
-                None => phong_lobes(
-                    bsdf,
-                    part,
-                    self.diffuse_color(part.phong, surface),
-                    View { lanes, wo, normal, inside, eta },
-                ),
+                None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), view),
             }
         }
         shading

@@ -5,7 +5,7 @@
 
 use super::Model;
 use super::json::At;
-use crate::bsdf::fresnel::ior_of_reflectance;
+use crate::bsdf::layers::opaque_ior;
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::material::PrincipledMaterial;
@@ -174,7 +174,7 @@ impl Model<'_> {
             m.specular_color = e.get("specularColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
             m.specular_weight_texture = number(&e, "specularTexture", Channel::Alpha);
             m.specular_color_texture = picture(&e, "specularColorTexture");
-            self.not_of_metals(m, extensions.get("KHR_materials_transmission").is_some());
+            not_of_metals(m, extensions.get("KHR_materials_transmission").is_some());
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = share(&e, "transmissionFactor", 0.0);
@@ -257,21 +257,19 @@ impl Model<'_> {
     }
 }
 
-impl Model<'_> {
-    /// KHR_materials_specular is of dielectrics alone; ours is of metals too.
-    fn not_of_metals(&self, m: &mut PrincipledMaterial, clear: bool) {
-        let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
-        if is_metal {
-            (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
-            (m.specular_weight_texture, m.specular_color_texture) = (None, None);
-        } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
-            // A smaller index reflects less, which is all that a weight does to what is no metal.
-            let root = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
-            m.specular_ior = ior_of_reflectance(m.specular_weight * root * root);
-            m.specular_weight = 1.0;
-        }
+/// KHR_materials_specular is of dielectrics alone; ours is of metals too.
+fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
+    let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
+    if is_metal {
+        (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
+        (m.specular_weight_texture, m.specular_color_texture) = (None, None);
+    } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
+        // A smaller index reflects less, which is all that a weight does to what is no metal.
+        (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
     }
+}
 
+impl Model<'_> {
     /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in
     /// a colour of its own.
     fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {

@@ -104,22 +104,26 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
+/// From switch to switch the triangles for which it counts, of so many.
+fn runs<T>(switches: &[Switch<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
+    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
+    switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
+}
+
 /// Gives the triangles of smoothing groups normals, where the file has none.
 fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     if switches.iter().all(|&(_, group)| group == 0) {
         return;
     }
-    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
     let mut groups = vec![0; data.triangles.len()];
-    switches.iter().zip(ends).for_each(|(&(start, group), end)| groups[start..end].fill(group));
+    runs(switches, groups.len()).for_each(|(run, &group)| groups[run].fill(group));
     smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
 }
 
 /// A mesh for each name of a material, in the order of the names' first triangles, and a place
 /// where it is named.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
-    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([data.triangles.len()]);
-    let runs = switches.iter().zip(ends).map(|((start, at), end)| (*start..end, at.clone()));
+    let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
     let mut order: Vec<(Vec<Range<usize>>, Range<usize>)> = Vec::new();
     let mut known: BTreeMap<&[u8], usize> = BTreeMap::new();

@@ -73,10 +73,8 @@ impl Beams {
         for source in &emitters.sources {
             match source {
                 Source::Area(area) => {
-                    let material = world.objects()[area.object as usize].material;
                     let sides = if area.two_sided { 2.0 } else { 1.0 };
-                    let radiance = world.emission_of(material).map_or(0.0, |light| light.radiance.max_element());
-                    beams.add(Lamp::Area(*area), PI * sides * area.form.area() * radiance);
+                    beams.add(Lamp::Area(*area), PI * sides * area.form.area() * area.radiance.max_element());
                 }
                 Source::Light(number) => beams.add(Lamp::Near(*number), 4.0 * PI * PI * strength(world, *number)),
             }
@@ -131,8 +129,7 @@ impl Beams {
                 if cosine == 0.0 || cosine < 0.0 && !area.two_sided {
                     return None;
                 }
-                let material = world.objects()[area.object as usize].material;
-                let power = world.emission_of(material)?.radiance * (cosine.abs() / (density * pdf * choice));
+                let power = area.radiance * (cosine.abs() / (density * pdf * choice));
                 // Beside its own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
@@ -140,7 +137,7 @@ impl Beams {
                     ray: Ray64::new(origin, dir, 0.0, f32::INFINITY),
                     power,
                     light: None,
-                    material: Some(material),
+                    material: Some(world.objects()[area.object as usize].material),
                 })
             }
             Lamp::Near(light) => {

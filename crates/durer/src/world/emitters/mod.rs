@@ -5,6 +5,7 @@ pub mod emission;
 pub mod shape;
 pub mod tree;
 
+use super::material::Emission;
 use super::{Hit, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
@@ -30,6 +31,8 @@ pub struct AreaLight {
     pub two_sided: bool,
     /// How far what rays meet may be beside it, by rounding of the object's own coordinates.
     pub error: f32,
+    /// Its radiance, for the share of it that is there.
+    pub radiance: Color,
 }
 
 /// One of the things that the tree chooses.
@@ -114,9 +117,9 @@ impl Emitters {
             let (start, error) = (emitters.sources.len(), object.rounding());
             for part in 0..object.parts() {
                 let Some((form, normal)) = Form::of(object, part) else { break };
-                let (number, two_sided) = (number as u32, emission.two_sided);
-                let area = AreaLight { form, normal, object: number, part, two_sided, error };
-                bounds.push(area.bounds(emission.radiance.max_element()));
+                let Emission { radiance, two_sided, .. } = emission;
+                let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
+                bounds.push(area.bounds());
                 emitters.sources.push(Source::Area(area));
             }
             if emitters.sources.len() > start {
@@ -179,7 +182,7 @@ impl Emitters {
         let choice = even * probability;
         match &self.sources[source as usize] {
             Source::Light(light) => Some(of_light(world, *light, point, choice)),
-            Source::Area(area) => area.sample(world, point, choice, u),
+            Source::Area(area) => area.sample(point, choice, u),
         }
     }
 
@@ -249,11 +252,11 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 }
 
 impl AreaLight {
-    fn bounds(&self, radiance: f32) -> Bounds {
+    fn bounds(&self) -> Bounds {
         let round = self.form.is_round();
         // What is seen of what bulges is a quarter of its surface, on the mean.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
-        let power = area * radiance;
+        let power = area * self.radiance.max_element();
         Bounds {
             bounds: self.form.bounds(),
             power: if power.is_finite() { power.max(0.0) } else { 0.0 },
@@ -264,12 +267,11 @@ impl AreaLight {
         }
     }
 
-    fn sample(&self, world: &World, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
+    fn sample(&self, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
         let place = self.form.sample(self.normal, point, u)?;
         if place.cosine <= 0.0 && !self.two_sided {
             return None;
         }
-        let radiance = world.emission_of(world.objects()[self.object as usize].material)?.radiance;
         let light = LightId::Surface(self.object, self.part);
         Some(LightSample {
             light,
@@ -277,7 +279,7 @@ impl AreaLight {
             reach: place.distance,
             error: self.error + gamma(8) * place.distance,
             cosine: place.cosine.abs().max(1e-3),
-            radiance,
+            radiance: self.radiance,
             choice,
             pdf: place.pdf,
         })
