@@ -57,8 +57,15 @@ impl Body {
 /// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
 /// Images*, Journal of Graphics Tools 7(2), 2002; there the order is given by priorities that are
 /// written.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Debug, Default, PartialEq)]
 pub struct Media(SmallVec<[Body; 2]>);
+
+impl Clone for Media {
+    // Faster than one after another.
+    fn clone(&self) -> Self {
+        Media(SmallVec::from_slice(&self.0))
+    }
+}
 
 impl Media {
     /// Nothing but this.

@@ -136,8 +136,9 @@ impl<'w> Whitted<'w> {
     fn trace<T: TraceListener>(&self, ray: &Ray64, mut found: Option<Hit>, path: Path, tally: &mut T) -> Color {
         // What it runs in behind surfaces that are none.
         let mut inside = None;
+        let mut at = Interaction::NOWHERE;
         while let Some(hit) = found {
-            let at = self.world.interaction_along(ray, hit);
+            self.world.meet(ray, hit, &mut at);
             let media = inside.as_ref().unwrap_or(path.media);
             match self.passage(&at, media) {
                 Some(Passage { hidden: true, behind, .. }) => {

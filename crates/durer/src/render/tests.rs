@@ -9,6 +9,7 @@ use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
 use crate::image::{Depth, FORMATS, WriteOptions, read};
+use crate::integrator::Settings;
 use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
 use crate::source::Digest;
@@ -102,6 +103,12 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
             MaterialIndex 0 Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }";
     let of_mesh = TEXT.replace("} }\nGroup {", &format!("}} {more}")).replace("numMaterials 2", "");
     let of_mesh = of_mesh.replace("numObjects 2\n  MaterialIndex 0 Sphere { center 0 0.5 0 radius 1 }", "");
+    let balls = "MaterialIndex 2 Sphere { center -0.8 0.3 2.2 radius 0.4 }
+            MaterialIndex 3 Sphere { center 0.6 0.4 2.6 radius 0.3 }";
+    let of_balls = of_mesh.replace(
+        "Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }",
+        &format!("Sphere {{ center 0 0.5 0 radius 0.9 }} {balls}"),
+    );
     let lamps = |count: u32| {
         let lamp = |i| format!("PointLight {{ position {} 6 4 color 0.1 0.2 0.1 }} ", i as f32 - 9.0);
         format!("Lights {{ {} ", (0..count).map(lamp).collect::<String>())
@@ -109,12 +116,18 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
     let [lamps_3, lamps_17] = [3, 17].map(|count| of_mesh.replace("Lights { numLights 1", &lamps(count)));
     let (mut through, mut mirrors) = (small().settings, small().settings);
     (through.transparent_shadows, mirrors.bounces, mirrors.shade_back) = (true, 3, true);
+    let mut deep = Settings { bounces: 7, ..through };
+    (deep.reflection, deep.refraction) = (true, true);
     let sane = || Dialect::Durer.rules();
     let worlds = [
         (TEXT.to_string(), sane(), small().settings),
         (TEXT.to_string(), Dialect::F04.rules(), mirrors),
         (of_mesh.clone(), sane(), mirrors),
-        (of_mesh, sane(), through),
+        (of_mesh.clone(), sane(), through),
+        (of_mesh, sane(), deep),
+        (of_balls.clone(), sane(), deep),
+        (of_balls.clone(), sane(), Settings { transparent_shadows: false, least_weight: 0.05, ..deep }),
+        (of_balls, Dialect::F04.rules(), deep),
         (lamps_3, sane(), small().settings),
         (lamps_17, sane(), mirrors),
     ];
@@ -147,8 +160,7 @@ fn a_difference_is_found_and_named() {
     let world = world();
     let (a, b) = (all(&world, &small()), all(&world, &Job { seed: 1, ..small() }));
     assert!(compare(&a, &b).is_none(), "one ray through the centre needs no random numbers");
-    let b =
-        all(&world, &Job { settings: crate::integrator::Settings { shadows: false, ..small().settings }, ..small() });
+    let b = all(&world, &Job { settings: Settings { shadows: false, ..small().settings }, ..small() });
     let difference = compare(&a, &b).unwrap();
     assert!(difference.place.starts_with("pixel ") && difference.expected != difference.found, "{difference:?}");
 }

@@ -216,6 +216,7 @@ impl Mesh {
     }
 
     /// The surface of a triangle at a crossing.
+    #[inline]
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
         // All that lies far away in memory is asked for before anything waits for it.
         let (corners, normals) = (self.corners(part), self.corner_normals(part));

@@ -136,6 +136,21 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// Nothing yet: zeros, which are written fastest.
+    pub(crate) const NOWHERE: Surface = Surface {
+        position: Vec3::ZERO,
+        rest: Vec3::ZERO,
+        error: Vec3::ZERO,
+        curvature: 0.0,
+        n_geo: Vec3::ZERO,
+        n_shade: Vec3::ZERO,
+        uv: Uv::None,
+        barycentric: Vec3::ZERO,
+        shadow_offsets: [Vec3::ZERO; 2],
+        color: [0.0; 4],
+        solid: None,
+    };
+
     /// The surface at a point that is placed on it in double precision, so that it is known to its
     /// rounding and to `floor`; flat unless a curvature is set.
     pub(crate) fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {

@@ -3,7 +3,7 @@
 use super::{Geometry, Hit, PlacementQuirks, World};
 use crate::bvh::TraversalCounter;
 use crate::dialect::Compat;
-use crate::math::Ray64;
+use crate::math::{Ray, Ray64, Side, Vec2, Vec3};
 use crate::shape::{ShapeHit, Surface};
 
 /// What a ray met: made once, by [`World::interaction`], and asked by all that shades it.
@@ -22,6 +22,19 @@ pub struct Interaction {
 }
 
 impl Interaction {
+    /// Nothing yet.
+    pub(crate) const NOWHERE: Interaction = Interaction {
+        surface: Surface::NOWHERE,
+        ray: Ray64 {
+            rounded: Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::ZERO) },
+            rest: Vec3::ZERO,
+            side: Side::ANY,
+        },
+        hit: Hit { t: 0.0, uv: Vec2::ZERO, object: 0, part: 0 },
+        material: 0,
+        width: 0.0,
+    };
+
     /// Whether the ray comes from the side that the true normal does not point to.
     pub fn inside(&self) -> bool {
         self.ray.dir().dot(self.surface.n_geo) > 0.0
@@ -43,6 +56,14 @@ impl World {
     /// The same with one copy of the ray.
     #[inline]
     pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> Interaction {
+        let mut at = Interaction::NOWHERE;
+        self.meet(ray, hit, &mut at);
+        at
+    }
+
+    /// The same, in its place: a copy of what was just written would take long.
+    #[inline]
+    pub(crate) fn meet(&self, ray: &Ray64, hit: Hit, at: &mut Interaction) {
         let object = &self.objects()[hit.object as usize];
         let t = f64::from(hit.t);
         let point = match &object.to_world {
@@ -55,14 +76,12 @@ impl World {
             moved_normals: self.rules().has(Compat::MovedNormals),
             mesh_textures: self.rules().has(Compat::MeshTextures),
         };
-        let material = self.material_of(&hit);
-        let surface = object.own_surface(ray, point, &crossing, hit.part, quirks);
-        let mut at = Interaction { surface, ray: *ray, hit, material, width: 0.0 };
+        object.own_surface(ray, point, &crossing, hit.part, quirks, &mut at.surface);
+        (at.ray, at.hit, at.material, at.width) = (*ray, hit, self.material_of(&hit), 0.0);
         object.place(&mut at.surface, ray, &crossing, quirks);
         if let Geometry::Solid(_) = &object.geometry {
             at.surface.solid = Some(hit.object);
         }
-        at
     }
 
     /// The number of the material at a hit.

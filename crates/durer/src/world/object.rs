@@ -165,7 +165,8 @@ impl Object {
         part: u32,
         quirks: PlacementQuirks,
     ) -> Surface {
-        let mut surface = self.own_surface(ray, point, crossing, part, quirks);
+        let mut surface = Surface::NOWHERE;
+        self.own_surface(ray, point, crossing, part, quirks, &mut surface);
         self.place(&mut surface, ray, crossing, quirks);
         surface
     }
@@ -178,8 +179,11 @@ impl Object {
         crossing: &ShapeHit,
         part: u32,
         quirks: PlacementQuirks,
-    ) -> Surface {
-        match &self.geometry {
+        surface: &mut Surface,
+    ) {
+        *surface = match &self.geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) => sphere.surface(point, crossing),
+            Geometry::Primitive(Primitive::Plane(plane)) => plane.surface(point, crossing),
             Geometry::Primitive(shape) => shape.surface(point, crossing),
             Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
             Geometry::Solid(solid) => solid.surface(ray, crossing, part, quirks),

@@ -7,7 +7,10 @@ use crate::integrator::trace::{Shadow, TermKind, TraceListener};
 use crate::light::Illumination;
 use crate::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use crate::shape::Surface;
-use crate::world::{HighlightModel, Material, Phong};
+use crate::world::{HighlightModel, Hit, Material, Phong};
+
+/// So many transparent surfaces are looked through.
+const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
     /// What a witness is told of a shadow ray.
@@ -40,10 +43,22 @@ impl Whitted<'_> {
         if !self.settings.transparent_shadows {
             return if self.world.occluded_along(&ray, tally) { Color::ZERO } else { Color::ONE };
         }
+        let first = self.world.closest_along(&mut ray, tally);
+        self.let_through(ray, first, seen.to_light, tally)
+    }
+
+    /// What things in the way of a light let through, from the first hit of the ray to it on.
+    pub(super) fn let_through<T: TraceListener>(
+        &self,
+        mut ray: Ray64,
+        mut found: Option<Hit>,
+        to_light: Vec3,
+        tally: &mut T,
+    ) -> Color {
         let mut share = Color::ONE;
         // A thing with many layers is followed only so far.
-        for _ in 0..64 {
-            let Some(hit) = self.world.closest_along(&mut ray, tally) else { return share };
+        for layer in 1.. {
+            let Some(hit) = found else { return share };
             // What lets nothing through need not be looked at.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
@@ -52,11 +67,12 @@ impl Whitted<'_> {
             let blocker = self.world.interaction_along(&ray, hit);
             let parts = self.world.parts(&blocker);
             share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
-            if share == Color::ZERO {
+            if share == Color::ZERO || layer == MOST_LAYERS {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
-            ray = spawn_ray(&blocker.surface, seen.to_light, rest, self.world.rules().epsilon);
+            ray = spawn_ray(&blocker.surface, to_light, rest, self.world.rules().epsilon);
+            found = self.world.closest_along(&mut ray, tally);
         }
         Color::ZERO
     }

@@ -9,16 +9,61 @@ use crate::math::{Color, Vec3, reflect};
 use crate::shape::Surface;
 use crate::world::{Interaction, Material, WeightedMaterial};
 
+/// What goes on from a hit: directions, and the colours by which their light is weighed.
+pub(super) struct Parted {
+    mirrored: Vec3,
+    reflective: Color,
+    /// `None` for total reflection, and where nothing goes through.
+    transmitted: Option<Vec3>,
+    transparent: Color,
+    /// The mirrored share, where the two divide the light by Fresnel's law.
+    fresnel: Option<f32>,
+}
+
 impl Whitted<'_> {
     /// Mirrored and transmitted light.
     pub(super) fn secondary<T: TraceListener>(
         &self,
         at: &Interaction,
-        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
+        blend: Blend,
         passage: Passage,
         path: Path,
         tally: &mut T,
     ) -> Color {
+        let parted = self.parted(at, blend, &passage);
+        let total = blend.transparent != Color::ZERO && parted.transmitted.is_none();
+        let Passage { here, there, .. } = passage;
+        tally.begin(|| TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let mut color = Color::ZERO;
+        if let Some((dir, weight)) = self.mirrored(&parted) {
+            color += self.bounce(RayKind::Reflected, &at.surface, dir, weight, path, tally);
+        }
+        if let Some((dir, weight)) = self.transmitted(&parted) {
+            let path = Path { media: &passage.behind, ..path };
+            color += self.bounce(RayKind::Transmitted, &at.surface, dir, weight, path, tally);
+        }
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+
+    /// The mirrored ray's direction and weight, if it is asked for.
+    pub(super) fn mirrored(&self, parted: &Parted) -> Option<(Vec3, Color)> {
+        self.settings.reflection.then_some((parted.mirrored, parted.reflective))
+    }
+
+    /// The same of the transmitted one.
+    pub(super) fn transmitted(&self, parted: &Parted) -> Option<(Vec3, Color)> {
+        let asked = parted.transmitted.filter(|_| self.settings.refraction)?;
+        Some((asked, parted.transparent))
+    }
+
+    /// How light is divided at a hit.
+    pub(super) fn parted(
+        &self,
+        at: &Interaction,
+        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
+        passage: &Passage,
+    ) -> Parted {
         // The normal on the ray's side.
         let Interaction { ray, surface, .. } = at;
         let leaving = self.sees_back(at);
@@ -33,31 +78,20 @@ impl Whitted<'_> {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
-        let Passage { here, there, .. } = passage;
+        let Passage { here, there, .. } = *passage;
         let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir(), n, here / there) };
-        let total = transparent != Color::ZERO && transmitted.is_none();
         // With one of the two left out, the other has all the light.
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         // Total reflection weighs 1.
-        let r = divided.then(|| {
+        let fresnel = divided.then(|| {
             let zero = leaving && self.world.rules().has(Compat::ExitR0);
             transmitted.map_or(1.0, |t| fresnel_share(ray.dir(), n, t, (here, there), zero))
         });
-        if let Some(r) = r {
+        if let Some(r) = fresnel {
             reflective *= r;
             transparent *= 1.0 - r;
         }
-        tally.begin(|| TermKind::Secondary { here, there, fresnel: r, total });
-        let mut color = Color::ZERO;
-        if self.settings.reflection {
-            color += self.bounce(RayKind::Reflected, surface, mirrored, reflective, path, tally);
-        }
-        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction) {
-            let path = Path { media: &passage.behind, ..path };
-            color += self.bounce(RayKind::Transmitted, surface, transmitted, transparent, path, tally);
-        }
-        tally.end(Color::ONE, Color::ONE, color);
-        color
+        Parted { mirrored, reflective, transmitted, transparent, fresnel }
     }
 
     /// How light that may go through at a hit does; `None` where none may.
@@ -92,6 +126,13 @@ impl Whitted<'_> {
         Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
     }
 
+    /// How much a ray counts for that a colour weighs. The course takes the length of the colour,
+    /// which for grey is more than what is left of the light.
+    pub(super) fn weight_after(&self, before: f32, weight: Color) -> f32 {
+        let old = self.world.rules().is_official();
+        before * if old { weight.length() } else { weight.max_element() }
+    }
+
     /// One secondary ray, weighed by a colour.
     fn bounce<T: TraceListener>(
         &self,
@@ -105,10 +146,7 @@ impl Whitted<'_> {
         if weight.max_element() <= 0.0 {
             return Color::ZERO;
         }
-        // The course takes the length of the colour, which for grey is more than what is left of
-        // the light.
-        let old = self.world.rules().is_official();
-        let total = path.weight * if old { weight.length() } else { weight.max_element() };
+        let total = self.weight_after(path.weight, weight);
         if total < self.settings.least_weight {
             tally.begin(|| TermKind::Cut { weight: total });
             tally.end(weight, Color::ONE, Color::ZERO);

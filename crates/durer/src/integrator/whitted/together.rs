@@ -1,50 +1,76 @@
-//! Camera rays that are neighbours: what they hit, and whether lamps see it, is asked for together.
+//! Camera rays that are neighbours, and what becomes of them: what rays of one depth hit, and what
+//! lamps see of that, is asked for together.
 
 use super::direct::direct;
 use super::secondary::Blend;
-use super::{Side, Whitted};
+use super::{Path, Side, Whitted};
 use crate::dialect::Compat;
 use crate::integrator::media::{Media, Passage};
+use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::TraceListener;
-use crate::math::{Color, Ray, Ray64};
+use crate::math::{Color, Ray, Ray64, Vec3};
 use crate::sampler::SampleId;
-use crate::world::{Interaction, Material, Phong, TOGETHER, WeightedMaterial};
+use crate::world::{Hit, Interaction, Material, Phong, TOGETHER, WeightedMaterial};
+use smallvec::SmallVec;
 use std::cell::RefCell;
 
 /// Of more lamps, what waits for them would be more than is near.
 const MOST_LAMPS: usize = 16;
 
-/// A hit whose lamps are not known yet to see it.
+/// Fewer rays are followed one by one.
+const FEWEST: usize = 3;
+
+/// A hit whose lamps and rays that go on are not known yet.
 struct Waiting {
     /// The number of its ray.
     ray: usize,
-    /// Where its shadow rays end in the list of all.
-    end: usize,
-    /// Its number in the list of those that mirror.
-    mirror: Option<usize>,
+    /// Where what it scatters ends in the list of all.
+    lit: usize,
+    /// Where its rays that go on end in the list of all; `None` where none do.
+    branches: Option<usize>,
 }
 
 /// What a hit scatters of a lamp.
 struct Lit {
     /// The lamp's number.
     lamp: usize,
-    /// The ray that asks whether anything is in the way.
+    /// The ray that asks what is in the way.
     shadow: Ray64,
+    to_light: Vec3,
     light: Color,
 }
 
-/// What is used anew for each few rays, one a thread.
+/// Rays that go on from hits.
 #[derive(Default)]
-struct Scratch {
-    along: Vec<Ray64>,
+struct Branches {
+    rays: Vec<Ray64>,
+    /// What each runs in.
+    media: Vec<Media>,
+    weights: Vec<Weight>,
+}
+
+/// What a ray that goes on brings.
+#[derive(Clone, Copy)]
+struct Weight {
+    /// How much it counts for in the pixel.
+    weight: f32,
+    /// The colour that weighs its light, and that light.
+    color: Color,
+    light: Color,
+}
+
+/// What is used anew for each few rays of one depth.
+#[derive(Default)]
+struct Level {
     waiting: Vec<Waiting>,
-    mirrors: Vec<(Interaction, Blend)>,
     lit: Vec<Lit>,
     shadows: Vec<Ray64>,
+    branches: Branches,
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    /// By depth.
+    static LEVELS: RefCell<Vec<Level>> = RefCell::default();
 }
 
 impl Whitted<'_> {
@@ -63,103 +89,182 @@ impl Whitted<'_> {
             }
             return;
         }
-        let mut scratch = SCRATCH.take();
+        let mut levels = LEVELS.take();
+        levels.resize_with(levels.len().max(self.settings.bounces as usize + 1), Level::default);
+        let air = Media::default();
         for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
-            self.light_few(rays, |i| begin(TOGETHER * part + i), tally, colors, &mut scratch);
+            let along: SmallVec<[Ray64; TOGETHER]> = rays.iter().map(|(ray, _)| Ray64::from(ray)).collect();
+            let path = |i: usize| {
+                begin(TOGETHER * part + i);
+                self.camera_path(&air)
+            };
+            self.light_level(&along, path, &mut levels, tally, |i, color| colors[i] = color);
         }
-        SCRATCH.set(scratch);
+        LEVELS.set(levels);
     }
 
-    /// Of not more than [`TOGETHER`].
-    fn light_few<T: TraceListener>(
+    /// The light along not more than [`TOGETHER`] rays of one depth. `path` says what each carries,
+    /// `take` gets the light of each; `levels` are of this depth and those below.
+    fn light_level<'a, T: TraceListener>(
         &self,
-        rays: &[(Ray, SampleId)],
-        begin: impl Fn(usize),
+        rays: &[Ray64],
+        path: impl Fn(usize) -> Path<'a>,
+        levels: &mut [Level],
         tally: &mut T,
-        colors: &mut [Color],
-        Scratch { along, waiting, mirrors, lit, shadows }: &mut Scratch,
+        mut take: impl FnMut(usize, Color),
     ) {
+        let Some((Level { waiting, lit, shadows, branches }, deeper)) = levels.split_first_mut() else { return };
         waiting.clear();
-        mirrors.clear();
         lit.clear();
-        along.clear();
-        along.extend(rays.iter().map(|(ray, _)| Ray64::from(ray)));
-        let mut hits = [None; TOGETHER];
-        self.world.closest_together(along, &mut hits[..rays.len()]);
-        let air = Media::default();
-        let path = self.camera_path(&air);
-        let waits = self.settings.shadows
-            && self.world.lights().len() <= MOST_LAMPS
-            && !self.settings.transparent_shadows
-            && !self.world.rules().has(Compat::ShadowFronts);
-        for (i, ray) in along.iter().enumerate() {
-            begin(i);
+        branches.clear();
+        let (mut hits, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
+        self.world.closest_together(rays, &mut hits[..rays.len()]);
+        let mut at = Interaction::NOWHERE;
+        for (i, ray) in rays.iter().enumerate() {
+            let path = path(i);
             tally.ray();
-            let opaque = hits[i].filter(|_| waits).and_then(|hit| {
-                match &self.world.materials()[self.world.material_of(&hit) as usize] {
-                    Material::Phong(phong) if phong.transparent == Color::ZERO => Some((hit, phong)),
-                    _ => None,
-                }
-            });
-            let Some((hit, phong)) = opaque else {
+            let Some((hit, phong)) = hits[i].and_then(|hit| Some((hit, self.plain(&hit)?))) else {
                 colors[i] = self.trace(ray, hits[i], path, tally);
                 continue;
             };
-            let at = self.world.interaction_along(ray, hit);
-            colors[i] = self.unshadowed(&at, phong, tally, |lamp, shadow, light| {
-                lit.push(Lit { lamp, shadow, light });
+            self.world.meet(ray, hit, &mut at);
+            let passage = self.passage(&at, path.media);
+            if passage.as_ref().is_some_and(|passage| passage.hidden) {
+                colors[i] = self.trace(ray, hits[i], path, tally);
+                continue;
+            }
+            colors[i] = self.unshadowed(&at, phong, lit, tally);
+            let blend = Blend::of(&[WeightedMaterial { phong, share: 1.0 }]);
+            let parts = self.goes_on(path) && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO);
+            let branches = parts.then(|| {
+                self.branch(&at, blend, passage.unwrap_or_default(), path, branches);
+                branches.weights.len()
             });
-            let mirror = (phong.reflective != Color::ZERO).then(|| {
-                mirrors.push((at, Blend::of(&[WeightedMaterial { phong, share: 1.0 }])));
-                mirrors.len() - 1
-            });
-            waiting.push(Waiting { ray: i, end: lit.len(), mirror });
+            waiting.push(Waiting { ray: i, lit: lit.len(), branches });
         }
-        lit.iter().for_each(|_| tally.ray());
-        // Rays to one lamp are the most alike.
-        for lamp in 0..self.world.lights().len() {
-            shadows.clear();
-            shadows.extend(lit.iter().filter(|lit| lit.lamp == lamp).map(|lit| lit.shadow));
-            let mut blocked = [false; TOGETHER];
-            self.world.occluded_together(shadows, &mut blocked[..shadows.len()]);
-            for (lit, blocked) in lit.iter_mut().filter(|lit| lit.lamp == lamp).zip(blocked) {
-                lit.light = if blocked { Color::ZERO } else { lit.light };
+        self.ask_lamps(lit, shadows, tally);
+        if !branches.rays.is_empty() {
+            self.follow(branches, deeper, path(0).bounces - 1, tally);
+        }
+        let (mut first_lit, mut first_branch) = (0, 0);
+        for waiting in waiting.iter() {
+            let color = &mut colors[waiting.ray];
+            lit[first_lit..waiting.lit].iter().for_each(|lit| *color += lit.light);
+            first_lit = waiting.lit;
+            if let Some(end) = waiting.branches {
+                let weights = &branches.weights[first_branch..end];
+                *color += weights.iter().fold(Color::ZERO, |sum, it| sum + it.color * it.light);
+                first_branch = end;
             }
         }
-        let mut start = 0;
-        for Waiting { ray, end, mirror } in waiting.iter() {
-            begin(*ray);
-            let color = &mut colors[*ray];
-            lit[start..*end].iter().for_each(|lit| *color += lit.light);
-            start = *end;
-            if let Some((at, blend)) = mirror.map(|i| &mirrors[i]).filter(|_| self.goes_on(path)) {
-                *color += self.secondary(at, *blend, Passage::default(), path, tally);
-            }
+        (0..rays.len()).for_each(|i| take(i, colors[i]));
+    }
+
+    /// What a hit is made of, if its lamps can be asked about together with those of others.
+    fn plain(&self, hit: &Hit) -> Option<&Phong> {
+        let waits = self.settings.shadows
+            && self.world.lights().len() <= MOST_LAMPS
+            && !self.world.rules().has(Compat::ShadowFronts);
+        match &self.world.materials()[self.world.material_of(hit) as usize] {
+            Material::Phong(phong) if waits => Some(phong),
+            _ => None,
         }
     }
 
-    /// Ambient light at a hit; and the light of each lamp that it scatters if nothing is in the
-    /// way, with the ray that asks for that.
+    /// Ambient light at a hit; what it scatters of each lamp if nothing is in the way is added to a
+    /// list.
     #[inline]
     fn unshadowed<T: TraceListener>(
         &self,
         at: &Interaction,
         phong: &Phong,
+        lit: &mut Vec<Lit>,
         tally: &mut T,
-        mut offer: impl FnMut(usize, Ray64, Color),
     ) -> Color {
         let Side { n, black, .. } = self.side(at);
         if black {
             return Color::ZERO;
         }
         let diffuse = self.world.diffuse_color(phong, &at.surface);
-        for number in 0..self.world.lights().len() {
-            let seen = self.world.illuminate(number, at.surface.point());
+        for lamp in 0..self.world.lights().len() {
+            let seen = self.world.illuminate(lamp, at.surface.point());
             let light = direct(phong, diffuse, n, at.ray.dir(), &seen, tally);
             if light != Color::ZERO {
-                offer(number, self.shadow_ray(&at.surface, &seen), light);
+                lit.push(Lit { lamp, shadow: self.shadow_ray(&at.surface, &seen), to_light: seen.to_light, light });
             }
         }
         self.world.ambient() * phong.ambient.unwrap_or(diffuse)
+    }
+
+    /// Adds the rays that go on from a hit to a list.
+    fn branch(&self, at: &Interaction, blend: Blend, passage: Passage, path: Path, branches: &mut Branches) {
+        let parted = self.parted(at, blend, &passage);
+        let mut add = |(dir, color): (Vec3, Color), media: Media| {
+            let weight = self.weight_after(path.weight, color);
+            if color.max_element() > 0.0 && weight >= self.settings.least_weight {
+                let ray = spawn_ray(&at.surface, dir, f32::INFINITY, self.world.rules().epsilon);
+                branches.rays.push(ray);
+                branches.media.push(media);
+                branches.weights.push(Weight { weight, color, light: Color::ZERO });
+            }
+        };
+        if let Some(mirrored) = self.mirrored(&parted) {
+            add(mirrored, path.media.clone());
+        }
+        if let Some(transmitted) = self.transmitted(&parted) {
+            add(transmitted, passage.behind);
+        }
+    }
+
+    /// Takes from what is scattered what does not arrive.
+    fn ask_lamps<T: TraceListener>(&self, lit: &mut [Lit], shadows: &mut Vec<Ray64>, tally: &mut T) {
+        lit.iter().for_each(|_| tally.ray());
+        // Rays to one lamp are the most alike.
+        for lamp in 0..self.world.lights().len() {
+            shadows.clear();
+            shadows.extend(lit.iter().filter(|lit| lit.lamp == lamp).map(|lit| lit.shadow));
+            let of_lamp = lit.iter_mut().filter(|lit| lit.lamp == lamp);
+            if self.settings.transparent_shadows {
+                let mut hits = [None; TOGETHER];
+                self.world.closest_together(shadows, &mut hits[..shadows.len()]);
+                for (lit, hit) in of_lamp.zip(hits) {
+                    let share = self.let_through(lit.shadow, hit, lit.to_light, tally);
+                    lit.light = if share == Color::ZERO { Color::ZERO } else { share * lit.light };
+                }
+            } else {
+                let mut blocked = [false; TOGETHER];
+                self.world.occluded_together(shadows, &mut blocked[..shadows.len()]);
+                for (lit, blocked) in of_lamp.zip(blocked) {
+                    lit.light = if blocked { Color::ZERO } else { lit.light };
+                }
+            }
+        }
+    }
+
+    /// Finds the light along rays that go on.
+    fn follow<T: TraceListener>(&self, branches: &mut Branches, levels: &mut [Level], bounces: u32, tally: &mut T) {
+        let Branches { rays, media, weights } = branches;
+        let parts = rays.chunks_mut(TOGETHER).zip(media.chunks(TOGETHER)).zip(weights.chunks_mut(TOGETHER));
+        for ((rays, media), weights) in parts {
+            let counts = weights.iter().map(|it| it.weight).collect::<SmallVec<[f32; TOGETHER]>>();
+            let path = |i: usize| Path { bounces, media: &media[i], weight: counts[i] };
+            let mut take = |i: usize, light| weights[i].light = light;
+            if rays.len() >= FEWEST {
+                self.light_level(rays, path, levels, tally, take);
+                continue;
+            }
+            for (i, ray) in rays.iter_mut().enumerate() {
+                let found = self.world.closest_along(ray, tally);
+                take(i, self.trace(ray, found, path(i), tally));
+            }
+        }
+    }
+}
+
+impl Branches {
+    fn clear(&mut self) {
+        self.rays.clear();
+        self.media.clear();
+        self.weights.clear();
     }
 }
