@@ -103,11 +103,31 @@ impl Names<'_> {
         }
     }
 
+    /// What is written at a place.
+    fn word(&self, span: Span) -> String {
+        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
+    }
+
+    /// What a thing is called of which no keyword tells, since it is a model's: a mesh, by its name
+    /// if it has one.
+    pub fn mesh(&self, span: Span) -> Option<String> {
+        let word = self.word(span);
+        match word.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
+            Some(name) => Some(format!("mesh `{name}`")),
+            None => ["", "{"].contains(&word.as_str()).then(|| "mesh".into()),
+        }
+    }
+
+    fn keyword(&self, object: u32) -> (String, Span) {
+        let span = self.world.objects()[object as usize].span;
+        (self.mesh(span).unwrap_or_else(|| self.word(span)), span)
+    }
+
     /// An object's keyword and line.
     pub fn short_object(&self, number: u32) -> String {
-        let span = self.world.objects()[number as usize].span;
-        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
-        format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.line(span))
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.line(span))
     }
 
     /// A material's number and line.
@@ -137,9 +157,8 @@ impl Names<'_> {
 
     /// An object's keyword and place.
     pub fn object(&self, number: u32) -> String {
-        let span = self.world.objects()[number as usize].span;
-        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
-        format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.place(span))
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.place(span))
     }
 
     /// A material's number and place.
