@@ -19,11 +19,12 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     // Solids of which nothing is left are told of as that.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
-    let Some(_) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
-    let diagnostic = Diagnostic::warning("the scene has no objects: its group is empty")
-        .effect("every ray misses; the whole picture is background")
-        .help("write some into the `Group`");
-    vec![Finding::from(diagnostic).whole(true)]
+    let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
+    let diagnostic = match root.objects.is_empty() {
+        true => Diagnostic::warning("the scene has no objects: its group is empty").help("write some into the `Group`"),
+        false => Diagnostic::warning("nothing is to be seen: the meshes have no triangles"),
+    };
+    vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
 }
 
 /// Objects that are no room for others, but around the eye.

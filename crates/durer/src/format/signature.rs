@@ -31,7 +31,11 @@ pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str])
     let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
     let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
     let message = format!("`{last}` is {what}, by its first bytes");
-    let error = Diagnostic::error(message).code("bad-file").at(Span { file, start: 0, end: start.len() as u32 });
+    let error = Diagnostic::error(message).code("bad-file").at(Span {
+        file,
+        start: 0,
+        end: start.trim_ascii_end().len() as u32,
+    });
     Some(error.help(match (own, what.starts_with("a picture")) {
         (Some(own), _) => format!("if it is, give it its name: `{stem}.{own}`"),
         (None, true) => "a picture is no model; `--environment` puts one around a model".into(),

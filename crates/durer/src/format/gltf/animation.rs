@@ -143,9 +143,11 @@ impl Track {
 fn at_rest(animations: &At) {
     let mut all = animations.items();
     let count = all.len();
-    let moment = match (count, all.next()) {
-        (2.., Some(first)) => format!("the first moment of the first{}", first.name()),
-        _ => "its first moment".into(),
+    let name = all.next().map_or(String::new(), |first| first.name());
+    let moment = match (count, name.is_empty()) {
+        (0 | 1, _) => "its first moment".into(),
+        (_, true) => "the first moment of the first".into(),
+        (_, false) => format!("the first moment of the first,{name}"),
     };
     let count = counted(count, "animation", "animations");
     animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));

@@ -79,9 +79,9 @@ impl Model<'_> {
             mapping.transform = transformed(&transform);
         }
         if set > 1 {
+            let name = at.name();
             let message = format!(
-                "this texture of material{} lies by texture coordinates {set}, and of 0 and 1 alone are read: 0 are taken",
-                at.name()
+                "this texture of material{name} asks for TEXCOORD_{set}, and only two sets are read: TEXCOORD_0 is taken"
             );
             at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
