@@ -179,8 +179,8 @@ impl<'a> ProbeGrid<'a> {
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
         let (line, column) = self.subject.files.position(span).unwrap_or_default();
-        match self.names().mesh(span) {
-            Some(mesh) => format!("{mesh} at {line}:{column}"),
+        match self.names().unworded(number) {
+            Some(name) => format!("{name} at {line}:{column}"),
             None => format!("`{}` of line {line}", self.text(span)),
         }
     }

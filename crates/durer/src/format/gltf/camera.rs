@@ -134,7 +134,7 @@ impl Model<'_> {
     }
 
     /// Adds the light of a node, if it has one.
-    pub(super) fn light(&self, node: &NodeData, map: DAffine3, scene: &mut Scene) {
+    pub(super) fn light(&self, number: usize, node: &NodeData, map: DAffine3, scene: &mut Scene) {
         let Some(LightData { is_directional, cone, color }) = node.light.and_then(|i| self.lights[i].clone()) else {
             return;
         };
@@ -148,6 +148,9 @@ impl Model<'_> {
             }
             (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
         };
-        scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.span("/nodes") });
+        scene
+            .lights
+            .get_or_insert_default()
+            .push(Spanned { value, span: self.findings.span(&format!("/nodes/{number}/name")) });
     }
 }

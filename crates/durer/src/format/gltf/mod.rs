@@ -226,7 +226,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     scene.materials = materials.into_iter().enumerate().map(spanned).collect();
     for &i in &order {
         model.show(i, &nodes, &maps, &mut scene);
-        model.light(&nodes[i], maps[i], &mut scene);
+        model.light(i, &nodes[i], maps[i], &mut scene);
     }
     scene.assets.pictures = model.pictures.take();
     if scene.root.is_none() && !root.findings.has_errors() {

@@ -2,7 +2,7 @@
 
 use super::Model;
 use super::deform::Skin;
-use super::flat::flattened;
+use super::flat::{flattened, is_sheet};
 use super::json::At;
 use crate::diag::Span;
 use crate::format::report::shown;
@@ -51,8 +51,8 @@ impl Local {
     }
 }
 
-/// A mesh on its way into the scene.
-struct Shown {
+/// A mesh at a place on its way into the scene.
+struct Instance {
     to_world: DAffine3,
     name: String,
     data: Arc<MeshData>,
@@ -238,19 +238,21 @@ impl Model<'_> {
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
             for (copy, place) in node.copies.as_deref().unwrap_or(&own).iter().enumerate() {
-                let mut shown = Shown { to_world: here * *place, name: name.clone(), data: data.clone(), span };
-                if matrix_of(shown.to_world).is_none() {
-                    if self.charge_at(data.bytes(), 1, &pointer).is_none() {
+                let mut instance = Instance { to_world: here * *place, name: name.clone(), data: data.clone(), span };
+                if matrix_of(instance.to_world).is_none() {
+                    let is_sheet = is_sheet(instance.to_world);
+                    if is_sheet && self.charge_at(data.bytes(), 1, &pointer).is_none() {
                         return;
                     }
-                    let Some(flat) = flattened(&data, shown.to_world) else {
+                    let flat = is_sheet.then(|| flattened(&data, instance.to_world)).flatten();
+                    let Some(flat) = flat else {
                         self.nothing(number, node);
                         continue;
                     };
-                    shown.name += &format!("@/nodes/{number}/{copy}");
-                    (shown.data, shown.to_world) = (flat.into(), DAffine3::IDENTITY);
+                    instance.name += &format!("@/nodes/{number}/{copy}");
+                    (instance.data, instance.to_world) = (flat.into(), DAffine3::IDENTITY);
                 }
-                let object = self.object(shown, primitive.material, scene);
+                let object = self.object(instance, primitive.material, scene);
                 scene.root.get_or_insert_default().objects.extend(object);
             }
         }
@@ -263,8 +265,8 @@ impl Model<'_> {
         self.once_at("flat", &format!("/nodes/{number}"), &message);
     }
 
-    fn object(&self, shown: Shown, material: Option<u32>, scene: &mut Scene) -> Option<Object> {
-        let Shown { to_world, name, data, span } = shown;
+    fn object(&self, instance: Instance, material: Option<u32>, scene: &mut Scene) -> Option<Object> {
+        let Instance { to_world, name, data, span } = instance;
         let op = matrix_of(to_world)?;
         let material = match material {
             None if !data.colors.is_empty() => Some(self.white(span, scene)),

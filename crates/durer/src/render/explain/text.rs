@@ -11,7 +11,7 @@ use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightId;
-use crate::world::{Material, World};
+use crate::world::{Geometry, Material, World};
 
 /// What things are called, and where they are written.
 #[derive(Clone, Copy, Debug)]
@@ -109,19 +109,25 @@ impl Names<'_> {
         String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
     }
 
-    /// What a thing is called of which no keyword tells, since it is a model's: a mesh, by its name
-    /// if it has one.
-    pub fn mesh(&self, span: Span) -> Option<String> {
-        let word = self.word(span);
+    /// What an object is called of which no keyword tells, as in JSON: by its kind, and its name if
+    /// it has one.
+    pub fn unworded(&self, object: u32) -> Option<String> {
+        let object = &self.world.objects()[object as usize];
+        let kind = match &object.geometry {
+            Geometry::Primitive(shape) => shape.keywords()[0].0,
+            Geometry::Mesh(_) => "mesh",
+            Geometry::Solid(_) => "solid",
+        };
+        let word = self.word(object.span);
         match word.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
-            Some(name) => Some(format!("mesh `{name}`")),
-            None => ["", "{"].contains(&word.as_str()).then(|| "mesh".into()),
+            Some(name) => Some(format!("{kind} `{name}`")),
+            None => ["", "{"].contains(&word.as_str()).then(|| kind.into()),
         }
     }
 
     fn keyword(&self, object: u32) -> (String, Span) {
         let span = self.world.objects()[object as usize].span;
-        (self.mesh(span).unwrap_or_else(|| self.word(span)), span)
+        (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
     }
 
     /// An object's keyword and line.

@@ -110,7 +110,8 @@ fn what_is_flat_along_one_axis_is_a_sheet() {
     assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
     assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
     // Turned, nothing of it is exact.
-    let turned = sheet(r#""scale":[1,1,0],"rotation":[0.1825742,0.3651484,0.5477226,0.7302967]"#);
+    let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
+    let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
     assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);
     // A map that no rotation has brought about, flat along no axis of its own.
     let leaning = sheet(r#""matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]"#);
