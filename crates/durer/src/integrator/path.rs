@@ -333,7 +333,7 @@ impl<'w> Path<'w> {
         let emitted = self.world.emission(at);
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(at.material));
-            let carried = self.world.emitters().chooses(&at.hit);
+            let carried = self.world.emitters().chooses(&at.hit, at.ray.dir());
             let weight = self.weight(state, carried, |from| self.pdf_of_hit(at, from));
             tally.begin(|| TermKind::Emission { mis: weight });
             tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));

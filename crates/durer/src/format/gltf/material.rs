@@ -86,8 +86,13 @@ impl Model<'_> {
         }
         // Of glass both sides of the skin are seen.
         let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
-        if !both && m.transmission_weight == 0.0 {
-            m.backs = Backs::Hidden;
+        if m.transmission_weight == 0.0 {
+            match both {
+                false => m.backs = Backs::Hidden,
+                // What shines does so to both sides, as a sheet does.
+                true if m.emission_luminance > 0.0 => m.walls = Walls::Thin,
+                true => {}
+            }
         }
         m
     }
@@ -174,7 +179,9 @@ impl Model<'_> {
             m.specular_color = e.get("specularColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
             m.specular_weight_texture = number(&e, "specularTexture", Channel::Alpha);
             m.specular_color_texture = picture(&e, "specularColorTexture");
-            not_of_metals(m, extensions.get("KHR_materials_transmission").is_some());
+            let clear = extensions.get("KHR_materials_transmission").is_some();
+            weighed_by_brightness(m, clear);
+            not_of_metals(m, clear);
         }
         if let Some(e) = extensions.get("KHR_materials_transmission") {
             m.transmission_weight = share(&e, "transmissionFactor", 0.0);
@@ -266,6 +273,20 @@ fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
     } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
         // A smaller index reflects less, which is all that a weight does to what is no metal.
         (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
+    }
+}
+
+/// Only what reflects at right angles has the colour there: how bright that is belongs to our
+/// weight, which leaves grazing angles as they are. Glass has no weight.
+fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
+    let most = m.specular_color.max_element();
+    if clear {
+        m.specular_color = m.specular_color.min(Vec3::ONE);
+    } else if most > 0.0 {
+        m.specular_weight *= most;
+        m.specular_color /= most;
+    } else {
+        (m.specular_weight, m.specular_color) = (0.0, Vec3::ONE);
     }
 }
 

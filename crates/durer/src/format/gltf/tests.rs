@@ -4,6 +4,8 @@
 use crate::describe::FileName;
 use crate::diag::{Diagnostics, Files, Severity};
 use crate::format::scene::{Input, find_scene_format, read_model};
+use crate::material::PrincipledMaterial;
+use crate::material::principled::{Backs, Walls};
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3};
 use crate::scene::{Material, Scene, Staging};
@@ -282,14 +284,16 @@ fn textures_of_extensions_change_their_parameters() {
 }
 
 /// The material of a triangle, by its factors and extensions.
-fn layers(factors: &str, extensions: &str) -> crate::material::PrincipledMaterial {
+fn layers(factors: &str, extensions: &str) -> PrincipledMaterial {
+    material(&format!(r#""pbrMetallicRoughness":{{{factors}}},"extensions":{{{extensions}}}"#))
+}
+
+fn material(words: &str) -> PrincipledMaterial {
     let bytes: Vec<u8> = (0..9).flat_map(|i| (i as f32).to_le_bytes()).collect();
     let accessors = format!(r#"{{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",{BOUNDS}}}"#);
     let attributes = r#""attributes":{"POSITION":0},"material":0"#;
     let text = document(r#"{"buffer":0,"byteLength":36}"#, &accessors, attributes, &bytes);
-    let material = format!(
-        r#""materials":[{{"pbrMetallicRoughness":{{{factors}}},"extensions":{{{extensions}}}}}],"nodes":[{{"mesh":0}}]"#
-    );
+    let material = format!(r#""materials":[{{{words}}}],"nodes":[{{"mesh":0}}]"#);
     let text = text.replace(r#""nodes":[{"mesh":0}]"#, &material);
     let (scene, findings) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
     let scene = scene.unwrap_or_else(|| panic!("{findings:?}"));
@@ -343,6 +347,34 @@ fn reflection_of_dielectrics_is_not_that_of_metals() {
     assert!(weight == 1.0 && (root * root - 0.01).abs() < 1e-6, "{weight} {ior}");
     // Light is bent as it was where it goes through.
     assert_eq!(of(0.5, r#","KHR_materials_transmission":{"transmissionFactor":1}"#), (0.25, 1.5, red));
+}
+
+/// At right angles 0.04 times weight and colour is reflected, at grazing angles everything.
+#[test]
+fn the_brightness_of_specular_colors_is_a_weight() {
+    let of = |weight: f32, color: &str| {
+        let extension = format!(r#""specularFactor":{weight},"specularColorFactor":{color}"#);
+        let m = layers(r#""metallicFactor":0"#, &format!(r#""KHR_materials_specular":{{{extension}}}"#));
+        (m.specular_weight, m.specular_color)
+    };
+    assert_eq!(of(1.0, "[2,2,2]"), (2.0, Vec3::ONE));
+    assert_eq!(of(0.5, "[0.5,0.5,0.5]"), (0.25, Vec3::ONE));
+    assert_eq!(of(0.5, "[2,1,0]"), (1.0, Vec3::new(1.0, 0.5, 0.0)));
+    assert_eq!(of(1.0, "[0,0,0]"), (0.0, Vec3::ONE));
+}
+
+#[test]
+fn double_sided_things_shine_to_both_sides() {
+    let of = |words: &str| {
+        let m = material(words);
+        (m.walls, m.backs)
+    };
+    let shining = r#","emissiveFactor":[1,1,1]"#;
+    assert_eq!(of(&format!(r#""doubleSided":true{shining}"#)), (Walls::Thin, Backs::Shown));
+    assert_eq!(of(&format!(r#""doubleSided":false{shining}"#)), (Walls::Solid, Backs::Hidden));
+    assert_eq!(of(r#""doubleSided":true"#), (Walls::Solid, Backs::Shown));
+    let unlit = r#""doubleSided":true,"extensions":{"KHR_materials_unlit":{}}"#;
+    assert_eq!(of(unlit), (Walls::Thin, Backs::Shown));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::spectrum::ColorMode;
 
 mod caustics;
 mod media;
+mod sides;
 
 /// The mean of many samples along a ray, and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {

@@ -6,7 +6,8 @@ pub mod shape;
 pub mod tree;
 
 use super::material::Emission;
-use super::{Hit, World};
+use super::object::Geometry;
+use super::{Hit, Object, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
@@ -15,6 +16,9 @@ use serde::Serialize;
 pub use shape::{Form, Place};
 use std::f32::consts::PI;
 use tree::{Bounds, LightTree};
+
+/// More objects than that are not asked whether one is inside another.
+const MANY: usize = 10_000;
 
 /// A part of an object that shines and can be chosen points of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,7 +31,7 @@ pub struct AreaLight {
     pub object: u32,
     /// Number of its part.
     pub part: u32,
-    /// Whether it shines to both sides, and not only to that of its normal.
+    /// Whether points are chosen for both sides, and not only for that of its normal.
     pub two_sided: bool,
     /// How far what rays meet may be beside it, by rounding of the object's own coordinates.
     pub error: f32,
@@ -113,11 +117,11 @@ impl Emitters {
         let mut emitters = Emitters { first: vec![u32::MAX; world.objects().len()], ..Emitters::default() };
         let mut bounds = Vec::new();
         for (number, object) in world.objects().iter().enumerate() {
-            let Some(emission) = world.emission_of(object.material) else { continue };
+            let Some(Emission { radiance, two_sided, .. }) = world.emission_of(object.material) else { continue };
+            let two_sided = two_sided && !has_empty_inside(world, number);
             let (start, error) = (emitters.sources.len(), object.rounding());
             for part in 0..object.parts() {
                 let Some((form, normal)) = Form::of(object, part) else { break };
-                let Emission { radiance, two_sided, .. } = emission;
                 let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
                 bounds.push(area.bounds());
                 emitters.sources.push(Source::Area(area));
@@ -197,20 +201,24 @@ impl Emitters {
         }
     }
 
-    /// Whether points of what was hit can be chosen, if it shines.
-    pub fn chooses(&self, hit: &Hit) -> bool {
-        self.first[hit.object as usize] != u32::MAX
+    /// What was hit, if it can be chosen for the side that a ray met.
+    fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
+        let source = self.first[hit.object as usize].checked_add(hit.part)?;
+        match self.sources.get(source as usize)? {
+            Source::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
+            _ => None,
+        }
+    }
+
+    /// Whether points of what a ray hit can be chosen, if it shines.
+    pub fn chooses(&self, hit: &Hit, dir: Vec3) -> bool {
+        self.chosen(hit, dir).is_some()
     }
 
     /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface
     /// that shines; 0 where it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
-        let first = self.first[hit.object as usize];
-        if first == u32::MAX {
-            return 0.0;
-        }
-        let source = first + hit.part;
-        let Source::Area(area) = &self.sources[source as usize] else { return 0.0 };
+        let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
         let choice = self.tree.probability(point.as_vec3(), n, source) / self.choices(world) as f32;
         let pdf = area.form.pdf(area.normal, point, wi, distance);
         if pdf.is_finite() { choice * pdf } else { 0.0 }
@@ -222,6 +230,30 @@ impl Emitters {
         let (light, pdf) = environment.at_with_pdf(wi);
         (light, pdf / self.choices(world) as f32)
     }
+}
+
+/// Whether an object is a closed mesh whose normals point outwards, with no other object in it: to
+/// choose points of it for what is inside would be in vain. Rays that meet its inside find it
+/// shining all the same.
+fn has_empty_inside(world: &World, number: usize) -> bool {
+    let objects = world.objects();
+    let object = &objects[number];
+    let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
+    let center = bounds.center().as_dvec3();
+    // Six times the volume of the cone from the middle to a part.
+    let cone = |part| match Form::of(object, part) {
+        Some((Form::Triangle(p, [e, f]), normal)) => {
+            e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
+        }
+        _ => 0.0,
+    };
+    let within =
+        |other: &Object| other.bounds().is_some_and(|other| bounds.holds(other.min) && bounds.holds(other.max));
+    let others = || objects.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, other)| other);
+    objects.len() <= MANY
+        && object.extent().is_some()
+        && (0..object.parts()).map(cone).sum::<f64>() > 0.0
+        && !others().any(within)
 }
 
 /// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance

@@ -43,11 +43,13 @@ impl Writer<'_> {
     }
 
     fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
-        let mut material = json!({ "doubleSided": m.backs == Backs::Shown });
-        let mut extensions = Map::new();
         let solid = m.walls == Walls::Solid;
-        let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
         let clear = m.transmission_weight > 0.0;
+        // There both sides shine, or the other is not seen.
+        let dark_backs = solid && !clear && m.emission_luminance > 0.0;
+        let mut material = json!({ "doubleSided": m.backs == Backs::Shown && !dark_backs });
+        let mut extensions = Map::new();
+        let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
         // What passes a surface has the base colour.
         let tinted = clear && m.transmission_depth == 0.0;
         let base = match (unlit, tinted) {
@@ -164,6 +166,9 @@ impl Writer<'_> {
                     row.field
                 ));
             }
+        }
+        if dark_backs && m.backs == Backs::Shown {
+            self.left_out("glTF has no surface that shines on one side alone: its back is left out");
         }
         if is_metal && m.specular_color != Vec3::ONE {
             self.left_out("glTF's metals have no tint at their border: it is left out");

@@ -6,6 +6,7 @@ use crate::format::scene::{Output, SCENE_FORMATS};
 use crate::format::testing::{folder, read_in};
 use crate::light::Light;
 use crate::material::PrincipledMaterial;
+use crate::material::principled::{Backs, Walls};
 use crate::math::Vec3;
 use crate::scene::{Material, Scene, Staging};
 use crate::source::Source;
@@ -39,7 +40,7 @@ const HEAD: &str = "PerspectiveCamera { center 1 2 9 direction 0 0 -1 up 0 1 0 a
 fn materials_come_back() {
     let words = "PrincipledMaterial { baseColor 0.1 0.2 0.3 specularRoughness 0.5 specularIor 1.7 specularWeight 0.5
         coatWeight 0.75 coatRoughness 0.1 coatIor 1.5 coatDarkening 0 fuzzWeight 0.5 fuzzColor 1 0.5 0.25 fuzzRoughness 0.3 specularAnisotropy 0.4
-        specularRotation 0.125 emissionLuminance 8 emissionColor 1 0.5 0 opacity 0.5 }
+        specularRotation 0.125 emissionLuminance 8 emissionColor 1 0.5 0 opacity 0.5 walls thin }
       PrincipledMaterial { baseColor 1 1 1 specularRoughness 0 transmissionWeight 1 transmissionDepth 2 transmissionColor 0.9 0.5 0.1 }
       PrincipledMaterial { baseColor 0.5 1 0.5 specularRoughness 0 transmissionWeight 1 transmissionColor 0.5 1 0.5 walls thin }
       PrincipledMaterial { baseColor 0.9 0.6 0.3 baseMetalness 0.25 specularRoughness 0.5 }";
@@ -66,6 +67,22 @@ fn materials_come_back() {
         }
         assert_eq!(after.assets.meshes.len(), 4);
     }
+}
+
+#[test]
+fn what_shines_on_one_side_loses_its_back() {
+    let materials = "numMaterials 2 PrincipledMaterial { emissionLuminance 8 } PrincipledMaterial { emissionLuminance 8 walls thin }";
+    let lamps: String = (0..2)
+        .map(|i| format!("MaterialIndex {i} Rectangle {{ corner {i} 0 0 edge0 0.5 0 0 edge1 0 0.5 0 }} "))
+        .collect();
+    let before = scene(&format!("{HEAD} Materials {{ {materials} }} Group {{ numObjects 2 {lamps} }}"));
+    let (after, told) = again(&before, "a.glb");
+    assert_eq!(told, ["glTF has no surface that shines on one side alone: its back is left out"]);
+    let sides = after.materials.iter().map(|material| match &material.value {
+        Material::Principled(m) => (m.walls, m.backs),
+        other => panic!("{other:?}"),
+    });
+    assert_eq!(sides.collect::<Vec<_>>(), [(Walls::Solid, Backs::Hidden), (Walls::Thin, Backs::Shown)]);
 }
 
 #[test]
