@@ -60,6 +60,31 @@ fn what_is_wrong_with_a_model_is_said_at_line_and_column() {
     assert!(!place.path("a.png").exists());
 }
 
+#[test]
+fn things_of_models_are_told_once_by_their_names() {
+    let place = Place::new();
+    place.put("empty.gltf", r#"{"asset":{"version":"2.0"},"scenes":[{"name":"S"}]}"#);
+    let ran = place.gives(0, &format!("render empty.gltf -o a.png {SMALL}"));
+    assert!(ran.err.contains("empty.gltf:1:38") && !ran.err.contains("Group"), "{}", ran.err);
+    assert_eq!(ran.err.matches("no-objects").count(), 1, "{}", ran.err);
+    place.put("empty.obj", "# nothing\n");
+    let found = place.run("check empty.obj");
+    assert!(found.out.contains("nothing is to be seen") && !found.out.contains("Group"), "{}", found.out);
+    let room = "PerspectiveCamera { center 0 0 0 direction 0 0 -1 up 0 1 0 angle 40 }\nLights { DirectionalLight { direction \
+                0 -1 0 color 1 1 1 } }\nMaterials { PhongMaterial { diffuseColor 1 1 1 } }\nGroup { MaterialIndex 0 Box { min \
+                -1 -1 -1 max 1 1 1 } }\n";
+    place.put("room.txt", room);
+    place.gives(0, "convert room.txt -o room.gltf");
+    let text = String::from_utf8(place.bytes("room.gltf")).unwrap();
+    place.put("named.gltf", text.replacen("\"mesh\": 0", "\"name\": \"Room\", \"mesh\": 0", 1));
+    assert!(place.run("check room.gltf").out.contains("the camera is inside the mesh at "));
+    assert!(place.run("check named.gltf").out.contains("the camera is inside the mesh `Room` at "));
+    place.put("a.obj", "ply\nformat ascii 1.0\n");
+    place.refused(2, "render a.obj -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "`a.ply`"]);
+    place.put("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } } PerspectiveCamera { direction 0 0 -1 }");
+    place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "asked for here"]);
+}
+
 const RAD: &str = "void plastic grey 0 0 5 .5 .5 .5 0 0\nvoid light lamp 0 0 3 9 9 9\ngrey polygon floor 0 0 12 -4 -4 0 4 -4 0 4 4 0 -4 4 0\n\
     lamp sphere bulb 0 0 4 0 0 3 .5\n!genbox grey box 1 1 1 | xform -t 1 0 0\n";
 

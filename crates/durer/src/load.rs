@@ -6,7 +6,7 @@ use crate::dialect::{Compat, Dialect, PathBase, Rules};
 use crate::format::beside::{Beside, put_beside};
 use crate::format::course::{self, Guess, Hint, ReadOptions};
 use crate::format::json;
-use crate::format::scene::{Input, Output, find_scene_format, read_model, scene_format_for};
+use crate::format::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
 use crate::scene::{Scene, Staging};
 use crate::source::{Source, SourceError, is_packed, unpacked};
 use crate::threads;
@@ -124,7 +124,12 @@ pub fn load_text(
     let file = files.add(path.display().to_string(), bytes.clone());
     let json = json::recognise(&bytes, &name).then(|| json::Document::open(&bytes, file, diagnostics));
     let is_model = json.is_none() && options.dialect.is_none() && !options.course;
-    if let Some(format) = find_scene_format(&bytes, &name).filter(|_| is_model) {
+    let format = find_scene_format(&bytes, &name).filter(|_| is_model);
+    if let Some(error) = other_format(&bytes, file, &name, format) {
+        diagnostics.push(error);
+        return None;
+    }
+    if let Some(format) = format {
         let dialect = Dialect::Durer;
         let source = source.budget(budget(options));
         let known = RefCell::new(std::mem::take(files));

@@ -6,6 +6,7 @@ use crate::terminal::complain;
 use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::picture::{Oddity, oddity};
 use durer::check::{Subject, check};
+use durer::diag::Diagnostic;
 use durer::image::{Display, Layer, Tone};
 use durer::math::Color;
 use durer::render::{Job, Statistics};
@@ -59,11 +60,17 @@ impl After<'_> {
         let (scene, world, dialect) = (&loaded.scene, &self.opened.world, loaded.dialect);
         let subject = Subject { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
         let found = check(&subject, &self.opened.diagnostics);
-        let told: Vec<_> =
-            found.iter().filter(|f| f.is_serious()).take(MOST).map(|finding| &finding.diagnostic).collect();
-        complain(&match told.is_empty() {
-            true => format!("warning: {what}"),
-            false => format!("warning: {what}; `durer check` says:"),
+        let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
+        // What was said before the render need not be said again.
+        let is_known = |diagnostic: &Diagnostic| {
+            let same = |known: &Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
+            self.opened.diagnostics.iter().any(same)
+        };
+        let told: Vec<_> = serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MOST).copied().collect();
+        complain(&match (serious.is_empty(), told.is_empty()) {
+            (true, _) => format!("warning: {what}"),
+            (false, true) => format!("warning: {what}: why is said above"),
+            (false, false) => format!("warning: {what}; `durer check` says:"),
         });
         report::print_to(StandardStream::stderr(report::colors(&std::io::stderr())), files, &told);
     }

@@ -175,11 +175,14 @@ impl<'a> ProbeGrid<'a> {
         Names { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
     }
 
-    /// An object's keyword and line.
+    /// An object's keyword and line; what is a model's, by its name and place.
     pub(super) fn object(&self, number: u32) -> String {
-        let span = self.world().objects()[number as usize].span;
-        let line = self.subject.files.position(span).map_or(0, |place| place.0);
-        format!("`{}` of line {line}", self.text(span))
+        let span = self.object_span(number);
+        let (line, column) = self.subject.files.position(span).unwrap_or_default();
+        match self.names().unworded(number) {
+            Some(name) => format!("{name} at {line}:{column}"),
+            None => format!("`{}` of line {line}", self.text(span)),
+        }
     }
 
     pub(super) fn object_span(&self, number: u32) -> Span {

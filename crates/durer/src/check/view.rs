@@ -9,6 +9,7 @@ use super::visibility::{Visibility, aims, has_eye, pixels};
 use super::within::around;
 use crate::camera::{Camera, Projection};
 use crate::diag::{Diagnostic, Severity};
+use crate::format::course::place::section;
 use crate::math::{Aabb, Color, Vec3, fp};
 use crate::scene::{Group, Node};
 use crate::shape::Primitive;
@@ -19,11 +20,15 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     // Solids of which nothing is left are told of as that.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
-    let Some(_) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
-    let diagnostic = Diagnostic::warning("the scene has no objects: its group is empty")
-        .effect("every ray misses; the whole picture is background")
-        .help("write some into the `Group`");
-    vec![Finding::from(diagnostic).whole(true)]
+    let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
+    // Models and scenes as JSON have no such word.
+    let file = scout.subject.scene.camera_span.file;
+    let group = scout.subject.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
+    let diagnostic = match group && root.objects.is_empty() {
+        true => Diagnostic::warning("the scene has no objects: its group is empty").help("write some into the `Group`"),
+        false => Diagnostic::warning("nothing is to be seen: there are no surfaces"),
+    };
+    vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
 }
 
 /// Objects that are no room for others, but around the eye.

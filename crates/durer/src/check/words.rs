@@ -26,6 +26,10 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
             }
         }
         "no-falloff" => finding.whole = true,
+        "no-objects" => {
+            finding.whole = true;
+            finding.diagnostic.effect = Some("every ray misses; the whole picture is background".into());
+        }
         "empty-solid" => {
             finding.diagnostic.effect.get_or_insert("it is not seen".into());
             finding

@@ -103,6 +103,8 @@ pub fn compile(
     };
     match &scene.root {
         Some(root) => flattener.group(root, DAffine3::IDENTITY),
+        // The reader of a model has said so in its own words.
+        None if diagnostics.iter().any(|known| known.code == "no-objects") => {}
         None => {
             let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
             flattener.diagnostics.push(warning.code("no-objects"));

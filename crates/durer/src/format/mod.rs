@@ -24,6 +24,7 @@ mod radiance;
 mod report;
 mod said;
 pub mod scene;
+mod signature;
 mod smooth;
 mod sticks;
 mod stl;
@@ -38,6 +39,7 @@ use crate::scene::Axis;
 use crate::shape::mesh::MeshData;
 pub use model::SceneFormat;
 pub use scene::{SCENE_FORMATS, scene_format_for};
+use signature::mistaken;
 use std::borrow::Cow;
 
 /// A format of mesh files.
@@ -100,7 +102,12 @@ pub fn read_mesh_as(
         diagnostics.push(error);
         return None;
     }
-    match find_format(bytes, name) {
+    let format = find_format(bytes, name);
+    if let Some(error) = mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions)) {
+        diagnostics.push(error);
+        return None;
+    }
+    match format {
         Some(format) => (format.read)(&(format.known)(bytes, quirks), file, diagnostics),
         None => {
             diagnostics.push(unknown_format(name));

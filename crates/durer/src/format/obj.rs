@@ -12,6 +12,7 @@ pub(super) mod scene;
 mod wires;
 mod words;
 mod write;
+mod written;
 
 use super::MeshFormat;
 use super::number::{NumberError, parse_f32, report_number};

@@ -4,6 +4,7 @@
 use super::model::SceneFormat;
 pub use super::model::{Input, Output, WriteScene};
 use super::pictures::unusable;
+use super::signature::mistaken;
 use super::{
     MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
 };
@@ -52,6 +53,12 @@ pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
 /// text of the course's language, or nothing that is known.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
     scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+}
+
+/// The error about a file that is read as of a format, or of the course's language, and by its first
+/// bytes is of another.
+pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
+    mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions))
 }
 
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.

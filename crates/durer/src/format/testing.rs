@@ -6,12 +6,12 @@ use crate::{LoadOptions, load_text};
 use std::path::Path;
 use tempfile::TempDir;
 
-/// Reads a text in a folder; findings as `file:line:column severity message`, in their order.
-pub(super) fn read_in(folder: &Path, name: &str, text: &str) -> (Option<Scene>, Vec<String>) {
+/// Reads a file as if it were in a folder; findings as `file:line:column severity message`, in their order.
+pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join(name);
     let options = LoadOptions::default();
-    let loaded = load_text(&path, text.as_bytes().into(), &options, &mut files, &mut diagnostics);
+    let loaded = load_text(&path, text.as_ref().into(), &options, &mut files, &mut diagnostics);
     assert_eq!(loaded.is_none(), diagnostics.has_errors(), "{diagnostics:?}");
     let told = diagnostics.iter().map(|found| {
         let severity = match found.severity {

@@ -5,6 +5,7 @@
 use super::Model;
 use super::json::At;
 use super::nodes::NodeData;
+use crate::format::report::counted;
 use crate::math::fp;
 use glam::{DQuat, DVec3, DVec4};
 
@@ -28,11 +29,11 @@ struct Track {
 impl Model<'_> {
     /// Moves nodes to where the first animation has them at the moment that is wanted.
     pub(super) fn animate(&self, root: &At, nodes: &mut [NodeData]) {
-        let (Some(at), Some(animations)) = (self.input.staging.at, root.get("animations")) else {
-            if self.input.staging.at.is_some() {
-                root.warning("no-animation", "there is no animation: `--at` changes nothing");
-            }
-            return;
+        let (at, animations) = match (self.input.staging.at, root.get("animations")) {
+            (Some(at), Some(animations)) => (at, animations),
+            (Some(_), None) => return root.warning("no-animation", "there is no animation: `--at` changes nothing"),
+            (None, Some(animations)) => return at_rest(&animations),
+            (None, None) => return,
         };
         let Some(first) = animations.items().next() else { return };
         let (Some(channels), Some(samplers)) = (first.need("channels"), first.need("samplers")) else { return };
@@ -136,6 +137,20 @@ impl Track {
         };
         Some((0..width).map(mix).collect())
     }
+}
+
+/// Says that there is more to be seen than how the nodes stand by themselves.
+fn at_rest(animations: &At) {
+    let mut all = animations.items();
+    let count = all.len();
+    let name = all.next().map_or(String::new(), |first| first.name());
+    let moment = match (count, name.is_empty()) {
+        (0 | 1, _) => "its first moment".into(),
+        (_, true) => "the first moment of the first".into(),
+        (_, false) => format!("the first moment of the first,{name}"),
+    };
+    let count = counted(count, "animation", "animations");
+    animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
 }
 
 /// Rotations in between, evenly along the shorter way.

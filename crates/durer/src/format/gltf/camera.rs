@@ -84,8 +84,8 @@ impl Model<'_> {
         })
     }
 
-    /// The camera that is wanted, or the first of the scene.
-    pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<Camera> {
+    /// The camera that is wanted, or the first of the scene, with its node.
+    pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
         let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
         let there: Vec<(usize, &CameraData)> = there.collect();
         let names = |&(i, camera): &(usize, &CameraData)| [nodes[i].name.clone(), camera.name.clone()];
@@ -120,7 +120,7 @@ impl Model<'_> {
         let center = map.translation.as_vec3();
         // Here angles and sizes are those of the picture's larger side.
         let wide = self.input.staging.aspect.unwrap_or(1.0).max(1.0);
-        Some(match camera.view {
+        let camera = match camera.view {
             Seen::Perspective(angle) => {
                 let half = fp::tan_f64(f64::from(angle) / 2.0) * f64::from(wide);
                 let angle = (2.0 * fp::atan_f64(half)).to_degrees() as f32;
@@ -129,11 +129,12 @@ impl Model<'_> {
             Seen::Orthographic(half) => {
                 OrthographicCamera { center, direction, up, size: 2.0 * half * wide, ..Default::default() }.into()
             }
-        })
+        };
+        Some((camera, node))
     }
 
     /// Adds the light of a node, if it has one.
-    pub(super) fn light(&self, node: &NodeData, map: DAffine3, scene: &mut Scene) {
+    pub(super) fn light(&self, number: usize, node: &NodeData, map: DAffine3, scene: &mut Scene) {
         let Some(LightData { is_directional, cone, color }) = node.light.and_then(|i| self.lights[i].clone()) else {
             return;
         };
@@ -147,6 +148,9 @@ impl Model<'_> {
             }
             (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
         };
-        scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.span("/nodes") });
+        scene
+            .lights
+            .get_or_insert_default()
+            .push(Spanned { value, span: self.findings.span(&format!("/nodes/{number}/name")) });
     }
 }

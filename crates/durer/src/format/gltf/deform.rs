@@ -183,7 +183,7 @@ impl Pose {
 
 /// What turns normals as a map turns a surface: its inverse transposed, but for a positive factor;
 /// so that flat maps have one too.
-fn of_normals(map: DMat3) -> DMat3 {
+pub(super) fn of_normals(map: DMat3) -> DMat3 {
     let [x, y, z] = [map.x_axis, map.y_axis, map.z_axis];
     1f64.copysign(map.determinant()) * DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
 }

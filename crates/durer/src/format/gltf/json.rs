@@ -14,17 +14,16 @@ use std::ops::{Range, RangeBounds};
 
 /// What is said about a file, by whoever reads a part of it.
 pub(super) struct Findings<'a> {
-    /// The text of the JSON, and where it begins in the file.
+    /// The text of the JSON: a file, or what a binary file has of it.
     text: &'a [u8],
-    start: usize,
     /// Where the items of the document's lists begin.
     starts: RefCell<HashMap<String, Vec<usize>>>,
     report: RefCell<Report>,
 }
 
 impl<'a> Findings<'a> {
-    pub fn new(text: &'a [u8], start: usize, report: Report) -> Self {
-        Findings { text, start, starts: RefCell::default(), report: RefCell::new(report) }
+    pub fn new(text: &'a [u8], report: Report) -> Self {
+        Findings { text, starts: RefCell::default(), report: RefCell::new(report) }
     }
 
     pub fn finish(self) -> Report {
@@ -37,8 +36,7 @@ impl<'a> Findings<'a> {
 
     /// Where a value stands in the file, or what is nearest around it.
     fn range(&self, pointer: &str) -> Range<usize> {
-        let at = self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer));
-        self.start + at.start..self.start + at.end
+        self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer))
     }
 
     /// The same for what is in one of the lists that make up a document: each is walked over once.
@@ -98,6 +96,17 @@ impl<'a> At<'a> {
 
     pub fn span(&self) -> Span {
         self.findings.span(&self.pointer())
+    }
+
+    /// The name of what this value is a part of, as words to follow a noun: a blank and the name in
+    /// backquotes, or nothing.
+    pub fn name(&self) -> String {
+        let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
+        match (own, self.parent) {
+            (Some(name), _) => format!(" {}", shown(name.as_bytes())),
+            (None, Some(parent)) => parent.name(),
+            (None, None) => String::new(),
+        }
     }
 
     pub fn error(&self, code: &'static str, message: impl AsRef<str>) {

@@ -11,6 +11,7 @@ mod camera;
 mod container;
 mod deform;
 mod draco;
+mod flat;
 mod json;
 mod material;
 mod meshopt;
@@ -22,7 +23,7 @@ mod write;
 
 use super::model::{Input, SceneFormat};
 use super::report::Report;
-use crate::diag::{Diagnostic, Diagnostics};
+use crate::diag::{Diagnostic, Diagnostics, Span};
 use crate::material::PrincipledMaterial;
 use crate::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
 use crate::texture::Mapping;
@@ -77,7 +78,8 @@ struct Model<'a> {
     views: Vec<Option<View>>,
     accessors: Vec<Option<Accessor>>,
     images: Vec<Option<PictureBytes>>,
-    textures: Vec<Option<(PictureBytes, Mapping)>>,
+    /// With the place of each one's picture.
+    textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
     /// The pictures that materials show, by name.
     pictures: RefCell<BTreeMap<String, Picture>>,
     material_count: usize,
@@ -118,13 +120,21 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         return None;
     };
     let text = &input.bytes[parts.json.clone()];
-    let start = parts.json.start;
+    let mut end = parts.json.end;
+    if parts.is_glb {
+        // Lines and columns in a binary file are those of its text.
+        report.finish(diagnostics, ());
+        let mut files = input.files.borrow_mut();
+        let name = files.name(input.file).unwrap_or(input.name).to_string();
+        report = Report::new(files.add(name, text.into()), diagnostics);
+        end = 0;
+    }
     let value = match serde_json::from_slice::<Value>(text) {
         Ok(value) => value,
         Err(error) => {
             let line: usize =
                 text.split_inclusive(|&b| b == b'\n').take(error.line().max(1) - 1).map(<[u8]>::len).sum();
-            let at = (start + line + error.column().saturating_sub(1)).min(input.bytes.len());
+            let at = (line + error.column().saturating_sub(1)).min(text.len());
             let message = error.to_string();
             let message = message.split(" at line ").next().unwrap_or_default();
             report.add(at..at, Diagnostic::error(format!("invalid JSON: {message}")).code("INVALID_JSON"));
@@ -132,8 +142,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
             return None;
         }
     };
-    let findings = Findings::new(text, start, report);
-    let end = parts.json.end;
+    let findings = Findings::new(text, report);
     let scene = scene(input, parts, At::root(&value, &findings));
     let scene = findings.finish().finish(diagnostics, scene)?;
     input.files.borrow_mut().cut(input.file, end, diagnostics);
@@ -204,7 +213,12 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     }
     model.animate(&root, &mut nodes);
     let (order, maps) = model.placed(&root, &nodes);
-    let mut scene = Scene { camera: model.camera(&order, &nodes, &maps), ..Scene::default() };
+    let camera = model.camera(&order, &nodes, &maps);
+    let camera_span = match camera {
+        Some((_, node)) => root.findings.span(&format!("/nodes/{node}/name")),
+        None => root.span(),
+    };
+    let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, ..Scene::default() };
     let spanned = |(i, m): (usize, PrincipledMaterial)| Spanned {
         value: Material::Principled(Box::new(m)),
         span: root.findings.span(&format!("/materials/{i}")),
@@ -212,11 +226,13 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     scene.materials = materials.into_iter().enumerate().map(spanned).collect();
     for &i in &order {
         model.show(i, &nodes, &maps, &mut scene);
-        model.light(&nodes[i], maps[i], &mut scene);
+        model.light(i, &nodes[i], maps[i], &mut scene);
     }
     scene.assets.pictures = model.pictures.take();
     if scene.root.is_none() && !root.findings.has_errors() {
-        root.warning("no-objects", "the file shows no triangles");
+        let number = root.get("scene").and_then(|number| number.value.as_u64()).unwrap_or(0);
+        let at = format!("/scenes/{number}");
+        root.findings.say(Diagnostic::warning, "no-objects", &at, "nothing is shown that has triangles");
     }
     Some(scene)
 }
@@ -278,8 +294,13 @@ fn required(root: &At) -> bool {
 impl Model<'_> {
     /// Says something once for the whole file.
     fn once(&self, code: &'static str, message: &str) {
+        self.once_at(code, "", message);
+    }
+
+    /// Says something of the first place of which it holds.
+    fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
         if self.said.borrow_mut().insert(code) {
-            self.findings.say(Diagnostic::warning, code, "", message);
+            self.findings.say(Diagnostic::warning, code, pointer, message);
         }
     }
 

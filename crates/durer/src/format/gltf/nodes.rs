@@ -2,12 +2,16 @@
 
 use super::Model;
 use super::deform::Skin;
+use super::flat::{flattened, is_sheet};
 use super::json::At;
 use crate::diag::Span;
+use crate::format::report::shown;
 use crate::material::PrincipledMaterial;
 use crate::math::{Affine, Vec3};
 use crate::scene::{Material, MatrixOp, Node, Object, Scene, Spanned};
+use crate::shape::MeshData;
 use glam::{DAffine3, DMat4, DQuat, DVec3};
+use std::sync::Arc;
 
 /// A node as written.
 #[derive(Clone, Default)]
@@ -45,6 +49,20 @@ impl Local {
         let trs = || DAffine3::from_scale_rotation_translation(self.scale, self.rotation, self.translation);
         self.matrix.unwrap_or_else(trs)
     }
+}
+
+/// A mesh at a place on its way into the scene.
+struct Instance {
+    to_world: DAffine3,
+    name: String,
+    data: Arc<MeshData>,
+    span: Span,
+}
+
+/// A map as a transform; `None` where it is flat, or beyond the range of numbers.
+fn matrix_of(map: DAffine3) -> Option<MatrixOp> {
+    let op = MatrixOp::Matrix(DMat4::from(map).transpose().to_cols_array().map(|x| x as f32));
+    Affine::new(op.matrix()).map(|_| op)
 }
 
 fn vector(at: &At) -> Option<DVec3> {
@@ -197,7 +215,8 @@ impl Model<'_> {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
         let bones = node.skin.and_then(|skin| self.skins[skin].as_ref()).map(|skin: &Skin| skin.bones(maps));
-        let span = self.findings.span(&format!("/nodes/{number}"));
+        let span = self.findings.span(&format!("/nodes/{number}/name"));
+        let pointer = || format!("/nodes/{number}");
         for (i, primitive) in self.meshes[mesh].iter().enumerate() {
             let Some(primitive) = primitive else { continue };
             let mut name = format!("{}#/meshes/{mesh}/primitives/{i}", self.input.name);
@@ -205,7 +224,6 @@ impl Model<'_> {
             if let Some(pose) = &primitive.pose {
                 let weights = if node.weights.is_empty() { &self.weights[mesh] } else { &node.weights };
                 if pose.moves(weights, bones.is_some()) {
-                    let pointer = || format!("/nodes/{number}");
                     if self.charge_at(data.bytes(), 1, &pointer).is_none() {
                         return;
                     }
@@ -219,36 +237,42 @@ impl Model<'_> {
             // Bones lead to the world already.
             let here = if bones.is_some() { DAffine3::IDENTITY } else { maps[number] };
             let own = [DAffine3::IDENTITY];
-            for copy in node.copies.as_deref().unwrap_or(&own) {
-                let Some(object) = self.object(here * *copy, &name, &data, primitive.material, span, scene) else {
-                    continue;
-                };
-                scene.root.get_or_insert_default().objects.push(object);
+            for (copy, place) in node.copies.as_deref().unwrap_or(&own).iter().enumerate() {
+                let mut instance = Instance { to_world: here * *place, name: name.clone(), data: data.clone(), span };
+                if matrix_of(instance.to_world).is_none() {
+                    let is_sheet = is_sheet(instance.to_world);
+                    if is_sheet && self.charge_at(data.bytes(), 1, &pointer).is_none() {
+                        return;
+                    }
+                    let flat = is_sheet.then(|| flattened(&data, instance.to_world)).flatten();
+                    let Some(flat) = flat else {
+                        self.nothing(number, node);
+                        continue;
+                    };
+                    instance.name += &format!("@/nodes/{number}/{copy}");
+                    (instance.data, instance.to_world) = (flat.into(), DAffine3::IDENTITY);
+                }
+                let object = self.object(instance, primitive.material, scene);
+                scene.root.get_or_insert_default().objects.extend(object);
             }
         }
     }
 
-    fn object(
-        &self,
-        to_world: DAffine3,
-        name: &str,
-        data: &std::sync::Arc<crate::shape::MeshData>,
-        material: Option<u32>,
-        span: Span,
-        scene: &mut Scene,
-    ) -> Option<Object> {
-        let matrix = DMat4::from(to_world).transpose().to_cols_array().map(|x| x as f32);
-        let op = MatrixOp::Matrix(matrix);
-        // A scale of 0 hides a thing.
-        if Affine::new(op.matrix()).is_none() {
-            self.once("flat", "a node that is scaled to nothing, or beyond the range of numbers, is left out");
-            return None;
-        }
+    /// Says that a node is left out.
+    fn nothing(&self, number: usize, node: &NodeData) {
+        let name = if node.name.is_empty() { String::new() } else { format!(" {}", shown(node.name.as_bytes())) };
+        let message = format!("node{name} is scaled to a line or less, or beyond the range of numbers, and left out");
+        self.once_at("flat", &format!("/nodes/{number}"), &message);
+    }
+
+    fn object(&self, instance: Instance, material: Option<u32>, scene: &mut Scene) -> Option<Object> {
+        let Instance { to_world, name, data, span } = instance;
+        let op = matrix_of(to_world)?;
         let material = match material {
             None if !data.colors.is_empty() => Some(self.white(span, scene)),
             material => material,
         };
-        let mesh = scene.add_mesh(name, data.clone(), span);
+        let mesh = scene.add_mesh(&name, data, span);
         if to_world == DAffine3::IDENTITY {
             return Some(Object { node: mesh, material, span });
         }

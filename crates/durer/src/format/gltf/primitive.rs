@@ -157,7 +157,9 @@ impl Model<'_> {
         material: Option<u32>,
         at: &At,
     ) -> Option<Primitive> {
-        self.once("points-and-lines", "points and lines have no surface: small balls and thin sticks are shown");
+        let name = at.name();
+        let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
+        self.once_at("points-and-lines", &at.pointer(), &message);
         // Each becomes a dozen vertices.
         self.charge(order.len(), 12 * 64, at)?;
         let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
@@ -205,7 +207,8 @@ impl Model<'_> {
                 let set = key.rsplit_once('_').filter(|(_, set)| set.parse::<u32>().is_ok());
                 match set.map(|(word, _)| word) {
                     Some("TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS") => {
-                        self.once("further-attributes", "further sets of an attribute are left out");
+                        let message = format!("further sets of an attribute, here of mesh{}, are left out", at.name());
+                        self.once_at("further-attributes", &at.pointer(), &message);
                     }
                     _ => at.error("MESH_PRIMITIVE_INVALID_ATTRIBUTE", format!("invalid attribute name `{key}`")),
                 }

@@ -14,6 +14,8 @@ use crate::source::Source;
 use crate::texture::Channel;
 use std::path::{Path, PathBuf};
 
+mod places;
+
 /// Reads bytes as a file of a folder; findings as severity, code and message.
 fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {
     staged(bytes, folder, name, &Staging { at, ..Staging::default() })

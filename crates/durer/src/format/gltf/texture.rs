@@ -4,6 +4,7 @@ use super::Model;
 use super::buffers::{Target, target};
 use super::json::At;
 use crate::describe::FileName;
+use crate::diag::Span;
 use crate::math::fp;
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
@@ -71,26 +72,27 @@ impl Model<'_> {
     pub(super) fn texture_as(&self, at: &At, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
         at.object()?;
         let number = at.need("index")?.index(self.textures.len())?;
-        let (image, mut mapping) = self.textures[number].clone()?;
+        let (image, mut mapping, span) = self.textures[number].clone()?;
         let mut set = at.get("texCoord").map_or(Some(0), |set| set.whole(..))?;
         if let Some(transform) = at.get("extensions").as_ref().and_then(|e| e.get("KHR_texture_transform")) {
             set = transform.get("texCoord").and_then(|set| set.whole(..)).unwrap_or(set);
             mapping.transform = transformed(&transform);
         }
         if set > 1 {
-            at.warning(
-                "MESH_PRIMITIVE_TOO_FEW_TEXCOORDS",
-                format!("texture coordinates {set} are not read: 0 are taken"),
+            let name = at.name();
+            let message = format!(
+                "this texture of material{name} asks for TEXCOORD_{set}, and only two sets are read: TEXCOORD_0 is taken"
             );
+            at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
         }
         mapping.second = set == 1;
         change(&mut mapping);
         let path = format!("{}#{}{role}", self.input.name, at.pointer());
         self.pictures.borrow_mut().insert(path.clone(), Picture { bytes: image, mapping });
-        Some(FileName { path, span: at.span() })
+        Some(FileName { path, span })
     }
 
-    pub(super) fn textures(&self, root: &At) -> Vec<Option<(PictureBytes, Mapping)>> {
+    pub(super) fn textures(&self, root: &At) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
         let samplers = match root.get("samplers") {
             Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),
             None => Vec::new(),
@@ -119,7 +121,10 @@ impl Model<'_> {
                 }
                 return None;
             };
-            Some((self.images[source.index(self.images.len())?].clone()?, mapping))
+            let image = source.index(self.images.len())?;
+            // What is wrong with a picture is told where it is named.
+            let span = self.findings.span(&format!("/images/{image}/uri"));
+            Some((self.images[image].clone()?, mapping, span))
         };
         textures.items().map(one).collect()
     }

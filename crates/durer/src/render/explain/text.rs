@@ -11,7 +11,7 @@ use crate::math::{Color, Vec3, reflect};
 use crate::scene::Scene;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightId;
-use crate::world::{Material, World};
+use crate::world::{Geometry, Material, World};
 
 /// What things are called, and where they are written.
 #[derive(Clone, Copy, Debug)]
@@ -103,11 +103,37 @@ impl Names<'_> {
         }
     }
 
+    /// What is written at a place.
+    fn word(&self, span: Span) -> String {
+        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
+    }
+
+    /// What an object is called of which no keyword tells, as in JSON: by its kind, and its name if
+    /// it has one.
+    pub fn unworded(&self, object: u32) -> Option<String> {
+        let object = &self.world.objects()[object as usize];
+        let kind = match &object.geometry {
+            Geometry::Primitive(shape) => shape.keywords()[0].0,
+            Geometry::Mesh(_) => "mesh",
+            Geometry::Solid(_) => "solid",
+        };
+        let word = self.word(object.span);
+        match word.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
+            Some(name) => Some(format!("{kind} `{name}`")),
+            None => ["", "{"].contains(&word.as_str()).then(|| kind.into()),
+        }
+    }
+
+    fn keyword(&self, object: u32) -> (String, Span) {
+        let span = self.world.objects()[object as usize].span;
+        (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
+    }
+
     /// An object's keyword and line.
     pub fn short_object(&self, number: u32) -> String {
-        let span = self.world.objects()[number as usize].span;
-        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
-        format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.line(span))
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.line(span))
     }
 
     /// A material's number and line.
@@ -137,9 +163,8 @@ impl Names<'_> {
 
     /// An object's keyword and place.
     pub fn object(&self, number: u32) -> String {
-        let span = self.world.objects()[number as usize].span;
-        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
-        format!("{} {}", String::from_utf8_lossy(bytes.unwrap_or(b"object")), self.place(span))
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.place(span))
     }
 
     /// A material's number and place.
