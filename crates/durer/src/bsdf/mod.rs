@@ -85,6 +85,12 @@ impl<'a> Bsdf<'a> {
         self.lobes.iter().any(|part| part.lobe.passes_light())
     }
 
+    /// The share of light that goes on as if nothing were there.
+    pub fn straight(&self) -> Spectrum {
+        let through = self.lobes.iter().filter(|part| matches!(part.lobe, Lobe::Through(_)));
+        through.map(|part| part.weight).sum()
+    }
+
     /// The value times |cos| of `wi`, and the density per solid angle with which [`Bsdf::sample`]
     /// chooses it; without lobes of single directions.
     pub fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {

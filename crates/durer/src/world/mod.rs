@@ -40,6 +40,8 @@ pub struct World {
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
+    /// Whether light goes straight through some sheet.
+    has_sheets: bool,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// All things, where they are a few planes and spheres: for rays that are asked together.
@@ -99,6 +101,7 @@ impl World {
             has_cutouts: false,
             hides_backs: false,
             has_interfaces: false,
+            has_sheets: false,
             packs: PrimitivePacks::default(),
             few: PrimitivePacks::default(),
             loose: Vec::new(),
@@ -107,6 +110,7 @@ impl World {
         world.has_cutouts = world.finds_cutouts();
         world.hides_backs = world.finds_hidden_backs();
         world.has_interfaces = world.finds_interfaces();
+        world.has_sheets = world.finds_sheets();
         world.emitters = Emitters::new(&world);
         world
     }
@@ -129,6 +133,11 @@ impl World {
     /// Whether some body has no skin, so that light goes straight into it.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
+    }
+
+    /// Whether light may go straight through some sheet, such as a pane.
+    pub fn has_sheets(&self) -> bool {
+        self.has_sheets
     }
 
     /// Whether some picture has smaller versions of itself, so that it matters how wide what a

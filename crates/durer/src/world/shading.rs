@@ -6,6 +6,7 @@ use crate::bsdf::lobe::blinn::Blinn;
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use crate::bsdf::{Bsdf, Frame, fresnel};
+use crate::material::PrincipledMaterial;
 use crate::material::principled::{Backs, Walls};
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Medium;
@@ -264,6 +265,13 @@ impl World {
     /// Whether some body has no skin.
     pub(crate) fn finds_interfaces(&self) -> bool {
         (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
+    }
+
+    /// Whether some material is a sheet through which light may go straight.
+    pub(crate) fn finds_sheets(&self) -> bool {
+        let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
+        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| is_sheet(&own.written));
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
     }
 
     /// Whether light may go into a thing at a hit: quickly known, for most materials.

@@ -101,7 +101,8 @@ impl Path<'_> {
         };
         // Light that directions find as well must agree with them, and they meet both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
-        if !self.world.has_cutouts() && !self.world.has_interfaces() {
+        let sheets = self.world.has_sheets() && light.pdf == 0.0;
+        if !self.world.has_cutouts() && !self.world.has_interfaces() && !sheets {
             match self.world.occluded(&ray, tally) {
                 true if hides_backs => {}
                 true => return Spectrum::ZERO,
@@ -119,6 +120,7 @@ impl Path<'_> {
             match self.passage(&blocker, &media, &sample.lanes) {
                 Some(passage) if self.is_nothing(&blocker, &passage) => media = passage.behind,
                 _ if hides_backs && self.world.is_hidden(-ray.dir(), &blocker) => {}
+                None if sheets => share *= self.straight(&blocker, sample),
                 _ => share *= 1.0 - self.world.opacity(&blocker),
             }
             if share == Spectrum::ZERO {
@@ -127,6 +129,17 @@ impl Path<'_> {
             ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
         }
         Spectrum::ZERO
+    }
+
+    /// The share of light that goes straight through a surface that is no body's: such as a pane.
+    /// Only photons and this bring light of a lamp without extent through; where they come, they do.
+    fn straight(&self, at: &Interaction, sample: &Sample) -> Spectrum {
+        let opacity = self.world.opacity(at);
+        let around = Spectrum::splat(1.0 - opacity);
+        if self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object)) {
+            return around;
+        }
+        around + opacity * self.world.shading(at, 1.0, &sample.lanes).bsdf.straight()
     }
 
     /// What a witness is told of a shadow ray.

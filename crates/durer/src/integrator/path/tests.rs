@@ -9,6 +9,7 @@ use crate::spectrum::ColorMode;
 
 mod caustics;
 mod media;
+mod sheets;
 mod sides;
 
 /// The mean of many samples along a ray, and its standard error.

@@ -3,7 +3,7 @@
 use super::*;
 
 /// The mean over samples of a ray's light by photons, and its standard error.
-fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
+pub(super) fn by_photons(world: &World, ray: Ray, (count, radius): (u32, f32), samples: u32) -> (f64, f64) {
     let settings = Settings { bounces: 12, ..Job::default().settings };
     let photons = Some(Arc::new(Photons::new(world, 3, count, Some(radius))));
     let path = Path { photons, ..Path::new(world, settings, Transport::default()) };

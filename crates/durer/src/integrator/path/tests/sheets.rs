@@ -1,0 +1,65 @@
+//! Light of lamps without extent through sheets.
+
+use super::caustics::by_photons;
+use super::*;
+
+const LAMPS: [(&str, f64); 3] = [
+    // A light of colour c makes an irradiance of pi c at distance 1; of a far one as it is.
+    ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
+    ("DirectionalLight { direction 0 -1 0 color 1 1 1 }", 1.0),
+    ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 attenuation 0 0 1 }", 0.25),
+];
+
+/// A pane of a material over a floor.
+fn under(pane: &str, lamp: &str) -> World {
+    scene(
+        &format!("{MATTE} PrincipledMaterial {{ {pane} }}"),
+        lamp,
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Rectangle { corner -1 1 -1 edge0 2 0 0 edge1 0 0 2 }",
+    )
+}
+
+/// A ray that meets the floor at the origin, from below the pane.
+fn below() -> Ray {
+    Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize())
+}
+
+#[test]
+fn a_pane_lets_light_through_by_fresnel_and_its_colour() {
+    // All reflections inside counted, T = (1 - F) / (1 + F) with F = 0.04.
+    let clear = 0.96 / 1.04;
+    for (lamp, distance) in LAMPS {
+        for (pane, share) in [
+            ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
+            ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
+            ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * clear),
+            ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * clear),
+            // What is scattered, or bent, comes by other ways.
+            ("transmissionWeight 1 specularRoughness 0.5 walls thin", 0.0),
+            ("transmissionWeight 1 specularRoughness 0", 0.0),
+        ] {
+            let (mean, error) = light(&under(pane, lamp), below(), 0, 256);
+            let expected = 0.5 * distance * share;
+            assert!((mean - expected).abs() < 3.0 * error + 1e-3 * expected, "{pane} {lamp}: {mean}, not {expected}");
+        }
+    }
+}
+
+#[test]
+fn two_panes_let_through_what_one_lets_through_of_the_other() {
+    let glass =
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.8 0.8 0.8 walls thin }";
+    let panes = "MaterialIndex 1 Rectangle { corner -1 1 -1 edge0 2 0 0 edge1 0 0 2 } Rectangle { corner -1 1.5 -1 edge0 0 0 2 edge1 2 0 0 }";
+    let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }";
+    let world = scene(&format!("{MATTE} {glass}"), LAMPS[1].0, &format!("{floor} {panes}"));
+    let share = 0.8 * 0.96 / 1.04;
+    assert_light("two panes", &world, below(), 0, 0.5 * share * share);
+}
+
+#[test]
+fn photons_bring_no_light_through_a_pane_twice() {
+    let world = under("transmissionWeight 1 specularRoughness 0 walls thin", LAMPS[1].0);
+    let (a, _) = light(&world, below(), 12, 256);
+    let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);
+    assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
+}
