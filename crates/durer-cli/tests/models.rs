@@ -81,7 +81,7 @@ fn things_of_models_are_told_once_by_their_names() {
     assert!(place.run("check named.gltf").out.contains("the camera is inside the mesh `Room` at "));
     place.put("a.obj", "ply\nformat ascii 1.0\n");
     place.refused(2, "render a.obj -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "`a.ply`"]);
-    place.put("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } } PerspectiveCamera { direction 0 0 -1 }");
+    place.put("a.txt", "Lights { } Group { TriangleMesh { obj_file a.obj } }\nPerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }");
     place.refused(2, "render a.txt -o a.png", &["a.obj:1:1", "`a.obj` is PLY", "asked for here"]);
 }
 
