@@ -25,6 +25,26 @@ impl Made {
     }
 }
 
+/// Patterns over a material.
+#[derive(Clone)]
+pub(super) struct Below {
+    pub tint: Color,
+    pub sky: Option<Sky>,
+}
+
+impl Default for Below {
+    fn default() -> Self {
+        Below { tint: Vec3::ONE, sky: None }
+    }
+}
+
+impl Below {
+    /// Whether they change nothing.
+    pub fn is_none(&self) -> bool {
+        self.tint == Vec3::ONE && self.sky.is_none()
+    }
+}
+
 /// What matters of a material to surfaces.
 pub(super) enum Kind {
     Plain,

@@ -5,8 +5,8 @@
 //! our roughness.
 
 use super::args::Thing;
-use super::made::{Kind, Made};
-use super::state::{MIXTURES, PATTERNS, Reader};
+use super::made::{Below, Kind, Made};
+use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
@@ -101,20 +101,38 @@ impl Reader<'_> {
         if let Some(made) = &self.modifiers[number].made {
             return made.clone();
         }
-        let (thing, parent) = (self.modifiers[number].thing.clone(), self.modifiers[number].parent);
-        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
-        let kind = thing.kind.text.as_str();
-        let made = if PATTERNS.contains(&kind) {
-            let (tint, sky) = self.pattern(&thing);
-            Made { tint: above.tint * tint, sky: sky.or(above.sky.clone()), ..Made::nothing() }
-        } else if MIXTURES.contains(&kind) {
-            self.mixture(number, &thing)
-        } else {
-            self.material(number, &thing, &above)
-        };
-        let made = Rc::new(made);
+        let made = self.make(number, &Below::default());
         self.modifiers[number].made = Some(made.clone());
         made
+    }
+
+    /// What a modifier becomes below patterns that a surface names before it.
+    pub fn below(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
+        if patterns.is_none() { self.made(number) } else { self.make(number, patterns) }
+    }
+
+    fn make(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
+        let Modifier { thing, parent, map, .. } = &self.modifiers[number];
+        let (thing, parent, map) = (thing.clone(), *parent, *map);
+        let kind = thing.kind.text.as_str();
+        if PATTERNS.contains(&kind) {
+            let (tint, sky) = self.pattern(&thing, &map);
+            let all = Below { tint: patterns.tint * tint, sky: patterns.sky.clone().or(sky) };
+            return match parent {
+                Some(parent) => self.below(parent, &all),
+                None => Made { tint: all.tint, sky: all.sky, ..Made::nothing() }.into(),
+            };
+        }
+        if MIXTURES.contains(&kind) {
+            return self.mixture(number, &thing, patterns).into();
+        }
+        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
+        let above = Made {
+            tint: above.tint * patterns.tint,
+            sky: patterns.sky.clone().or(above.sky.clone()),
+            ..Made::nothing()
+        };
+        self.material(number, &thing, &above).into()
     }
 
     pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {

@@ -1,7 +1,7 @@
 //! Mixtures of two materials.
 
 use super::args::Thing;
-use super::made::{Kind, Made};
+use super::made::{Below, Kind, Made};
 use super::state::Reader;
 use crate::format::number::parse_f32;
 use crate::material::Solid;
@@ -10,7 +10,7 @@ use crate::scene::{Material, Spanned};
 
 impl Reader<'_> {
     /// Two materials in the same proportion everywhere.
-    pub fn mixture(&mut self, number: usize, thing: &Thing) -> Made {
+    pub fn mixture(&mut self, number: usize, thing: &Thing, patterns: &Below) -> Made {
         let (at, kind) = (thing.at(), thing.kind.text.as_str());
         if thing.texts.len() < 4 {
             self.said.bad(at, format!("a `{kind}` needs two modifiers, and what mixes them"));
@@ -32,7 +32,7 @@ impl Reader<'_> {
                 0.5
             }
         };
-        let [first, second] = self.modifiers[number].others.map(|other| other.map(|other| self.made(other)));
+        let [first, second] = self.modifiers[number].others.map(|other| other.map(|other| self.below(other, patterns)));
         let numbers = [&first, &second].map(|made| made.as_ref().and_then(|made| made.number));
         let glass = [&first, &second].iter().any(|made| made.as_ref().is_some_and(|made| made.is_glass()));
         let number = match numbers {

@@ -58,7 +58,7 @@ impl Reader<'_> {
                         let range = value.at.start as usize + 1..value.at.end as usize;
                         self.command(Words::new(&bytes, file, range), &place);
                     }
-                    false => self.file(value, &place),
+                    false => self.file(value, &place, false),
                 }
             }
         }
@@ -122,7 +122,7 @@ impl Reader<'_> {
             .filter(|(i, word)| word.text != "-vf" && (*i == 0 || words[i - 1].text != "-vf"))
             .map(|(_, word)| word.clone())
             .collect();
-        view.options(&own, self.said);
+        view.options(&own, false, self.said);
         view.place(&mut self.scene, larger, self.said);
     }
 

@@ -31,6 +31,25 @@ pub(super) struct Place {
     /// Whether all surfaces are turned inside out.
     pub inverted: bool,
     pub depth: u32,
+    /// The folder in which commands are run, with its last `/`, from that of the scene.
+    pub folder: Rc<str>,
+}
+
+impl Place {
+    /// The name of a file that a command has, from the folder of the scene.
+    pub fn seen(&self, name: &Word) -> Word {
+        match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
+            true => name.clone(),
+            false => Word { text: format!("{}{}", self.folder, name.text), at: name.at },
+        }
+    }
+
+    /// The same in the folder of a file that a command has.
+    fn beside(&self, name: &Word) -> Place {
+        let text = self.seen(name).text;
+        let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);
+        Place { folder: folder.into(), ..self.clone() }
+    }
 }
 
 /// What surfaces are made of, as it is written, or a pattern.
@@ -146,8 +165,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a file that another names.
-    pub fn file(&mut self, name: &Word, place: &Place) {
+    /// Reads a file that a command has, with the commands in it beside that file or, as of what is
+    /// only printed, where this command is run.
+    pub fn file(&mut self, name: &Word, place: &Place, beside: bool) {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
@@ -156,8 +176,9 @@ impl<'a> Reader<'a> {
             };
             return self.said.bad(name.at, message);
         }
-        let Some((bytes, file)) = self.open(name) else { return };
-        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place.clone() });
+        let Some((bytes, file)) = self.open(&place.seen(name)) else { return };
+        let place = if beside { place.beside(name) } else { place.clone() };
+        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place });
     }
 
     /// The bytes and the number of a file that another names.
