@@ -59,14 +59,25 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
+    // What goes straight through is reflected at both sides of a sheet, 2 F / (1 + F), all else
+    // once, F. This F, and this share of the sheet, leave what is written for each at right angles.
+    let specular = specular.min(0.9);
+    let once = specular / (1.0 + (1.0 - specular) * through);
+    let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
+    let mut m = plastic(color, once, roughness);
+    if specular == 0.0 && through > 0.0 {
+        // Without a boundary there is a roughness for what goes through.
+        m.specular_ior = 1.0;
+        rough(&mut m, roughness);
+    }
     PrincipledMaterial {
-        transmission_weight: through,
+        transmission_weight: sheet,
         transmission_color: color,
         subsurface_weight: 1.0,
         subsurface_color: color,
         subsurface_scatter_anisotropy: ((forth - back) / (forth + back).max(1e-6)).clamp(-0.999, 0.999),
         walls: Walls::Thin,
-        ..plastic(color, specular, roughness)
+        ..m
     }
 }
 
@@ -114,6 +125,7 @@ impl Reader<'_> {
     fn make(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
         let Modifier { thing, parent, map, .. } = &self.modifiers[number];
         let (thing, parent, map) = (thing.clone(), *parent, *map);
+        self.missing(&thing);
         let kind = thing.kind.text.as_str();
         if PATTERNS.contains(&kind) {
             let (tint, sky) = self.pattern(&thing, &map);
@@ -199,7 +211,7 @@ impl Reader<'_> {
                 instead("a clear sheet that does not turn light is taken");
                 sheet(Vec3::ONE, 1.0)
             }
-            "mirror" => metal(color, 1.0, [0.0; 2]),
+            "mirror" if thing.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
             "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
             "dielectric" => {
                 if thing.number(4) != Some(0.0) {
@@ -219,8 +231,11 @@ impl Reader<'_> {
                 instead("it cuts nothing away, and is not shown");
                 return Made::nothing();
             }
-            "illum" if thing.texts.first().is_some_and(|name| name.text != "void") => {
-                instead("what it stands for is taken: light comes through that by itself");
+            "illum" | "mirror" if thing.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") => {
+                instead(match kind {
+                    "illum" => "what it stands for is taken: light comes through that by itself",
+                    _ => "what is shown instead of it is taken, which mirrors no lamps",
+                });
                 let other = self.modifiers[number].others[0];
                 return match other {
                     Some(other) => {

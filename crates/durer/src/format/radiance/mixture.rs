@@ -7,6 +7,7 @@ use crate::format::number::parse_f32;
 use crate::material::Solid;
 use crate::material::mix::Mix;
 use crate::scene::{Material, Spanned};
+use std::collections::BTreeMap;
 
 impl Reader<'_> {
     /// Two materials in the same proportion everywhere.
@@ -47,9 +48,37 @@ impl Reader<'_> {
                 self.scene.materials.push(Spanned { value: Material::Solid(solid, Vec::new()), span: at });
                 Some((self.scene.materials.len() - 1) as u32)
             }
-            [first, second] => first.or(second),
+            [first, second] if glass => {
+                self.said.once(at, "bodies of glass are not there in part: they are whole");
+                first.or(second)
+            }
+            // Where nothing is mixed in, it is seen through.
+            [first, second] => {
+                let share = if first.is_some() { share } else { 1.0 - share };
+                first.or(second).map(|number| self.there_in_part(number, share, &mut BTreeMap::new()))
+            }
         };
         let kind = if glass { Kind::Glass { outside: None } } else { Kind::Plain };
         Made { number, kind, ..Made::nothing() }
+    }
+
+    /// A material of which only a share is there.
+    fn there_in_part(&mut self, number: u32, share: f32, made: &mut BTreeMap<u32, u32>) -> u32 {
+        if let Some(made) = made.get(&number) {
+            return *made;
+        }
+        let Spanned { mut value, span } = self.scene.materials[number as usize].clone();
+        match &mut value {
+            Material::Principled(layers) => layers.opacity *= share,
+            Material::Solid(Solid::Mix(mix), _) => {
+                mix.material1 = self.there_in_part(mix.material1, share, made);
+                mix.material2 = self.there_in_part(mix.material2, share, made);
+            }
+            _ => {}
+        }
+        self.scene.materials.push(Spanned { value, span });
+        let faded = (self.scene.materials.len() - 1) as u32;
+        made.insert(number, faded);
+        faded
     }
 }

@@ -210,7 +210,7 @@ impl<'a> Reader<'a> {
             let Some(parent) = self.find(&thing.modifier) else { return };
             let mut others = [None; 2];
             let named = match kind {
-                "illum" => 1,
+                "illum" | "mirror" => 1,
                 _ if MIXTURES.contains(&kind) => 2,
                 _ => 0,
             };
@@ -309,6 +309,7 @@ impl<'a> Reader<'a> {
             self.add(node, material, span);
         }
         self.surround();
+        super::used::keep_used(&mut self.scene);
         self.scene
     }
 }

@@ -18,12 +18,12 @@ const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinter
 /// A view.
 #[derive(Clone, Debug)]
 pub(super) struct View {
-    kind: char,
-    point: DVec3,
-    direction: DVec3,
-    up: DVec3,
+    pub kind: char,
+    pub point: DVec3,
+    pub direction: DVec3,
+    pub up: DVec3,
     /// Across and upwards: degrees, or lengths without perspective.
-    size: [f64; 2],
+    pub size: [f64; 2],
     /// By how many of its own widths and heights the picture is moved.
     shift: [f64; 2],
     at: Span,
