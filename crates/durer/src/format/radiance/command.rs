@@ -2,7 +2,8 @@
 //! is run: what they would print is made here.
 
 use super::body::Facets;
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::state::Reader;
 use super::words::{Word, Words};
 use super::xform::Transform;
 use crate::diag::Diagnostic;

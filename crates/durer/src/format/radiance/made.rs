@@ -38,13 +38,6 @@ impl Default for Below {
     }
 }
 
-impl Below {
-    /// Whether they change nothing.
-    pub fn is_none(&self) -> bool {
-        self.tint == Vec3::ONE && self.sky.is_none()
-    }
-}
-
 /// What matters of a material to surfaces.
 pub(super) enum Kind {
     Plain,

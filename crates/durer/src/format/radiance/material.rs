@@ -5,15 +5,14 @@
 //! our roughness.
 
 use super::args::Thing;
-use super::made::{Below, Kind, Made};
-use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
+use super::made::{Kind, Made};
+use super::state::Reader;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
-use std::rc::Rc;
 
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -107,52 +106,13 @@ fn shining(radiance: Color) -> PrincipledMaterial {
 }
 
 impl Reader<'_> {
-    /// What a modifier becomes.
-    pub fn made(&mut self, number: usize) -> Rc<Made> {
-        if let Some(made) = &self.modifiers[number].made {
-            return made.clone();
-        }
-        let made = self.make(number, &Below::default());
-        self.modifiers[number].made = Some(made.clone());
-        made
-    }
-
-    /// What a modifier becomes below patterns that a surface names before it.
-    pub fn below(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
-        if patterns.is_none() { self.made(number) } else { self.make(number, patterns) }
-    }
-
-    fn make(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
-        let Modifier { thing, parent, map, .. } = &self.modifiers[number];
-        let (thing, parent, map) = (thing.clone(), *parent, *map);
-        self.missing(&thing);
-        let kind = thing.kind.text.as_str();
-        if PATTERNS.contains(&kind) {
-            let (tint, sky) = self.pattern(&thing, &map);
-            let all = Below { tint: patterns.tint * tint, sky: patterns.sky.clone().or(sky) };
-            return match parent {
-                Some(parent) => self.below(parent, &all),
-                None => Made { tint: all.tint, sky: all.sky, ..Made::nothing() }.into(),
-            };
-        }
-        if MIXTURES.contains(&kind) {
-            return self.mixture(number, &thing, patterns).into();
-        }
-        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
-        let above = Made {
-            tint: above.tint * patterns.tint,
-            sky: patterns.sky.clone().or(above.sky.clone()),
-            ..Made::nothing()
-        };
-        self.material(number, &thing, &above).into()
-    }
-
     pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {
         self.scene.materials.push(Spanned { value: Material::Principled(Box::new(m)), span: at });
         (self.scene.materials.len() - 1) as u32
     }
 
-    fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
+    /// What a material becomes below the patterns that are above it.
+    pub fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
         let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
         let counts: &[usize] = match kind {
             "plastic" | "metal" | "dielectric" => &[5],

@@ -1,7 +1,8 @@
 //! Files for Radiance's `rad`: which files make a scene, and whence it is seen.
 
+use super::place::Place;
 use super::standard::{Zone, standard};
-use super::state::{Place, Reader};
+use super::state::Reader;
 use super::view::{USUAL_SIZE, View, of_file};
 use super::words::{Word, Words};
 use crate::diag::Diagnostic;

@@ -3,6 +3,7 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Distant, Made};
+use super::place::Place;
 use super::words::{Start, Word, Words};
 use crate::camera::Projection;
 use crate::diag::{Diagnostic, Span};
@@ -22,36 +23,6 @@ const MAX_FILES: usize = 4096;
 /// Corners and shapes of a scene.
 const MAX_THINGS: usize = 1 << 26;
 
-/// Where the things of a text go.
-#[derive(Clone, Default)]
-pub(super) struct Place {
-    pub map: DAffine3,
-    /// What modifies all surfaces instead of what is written.
-    pub modifier: Option<Word>,
-    /// Whether all surfaces are turned inside out.
-    pub inverted: bool,
-    pub depth: u32,
-    /// The folder in which commands are run, with its last `/`, from that of the scene.
-    pub folder: Rc<str>,
-}
-
-impl Place {
-    /// The name of a file that a command has, from the folder of the scene.
-    pub fn seen(&self, name: &Word) -> Word {
-        match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
-            true => name.clone(),
-            false => Word { text: format!("{}{}", self.folder, name.text), at: name.at },
-        }
-    }
-
-    /// The same in the folder of a file that a command has.
-    fn beside(&self, name: &Word) -> Place {
-        let text = self.seen(name).text;
-        let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);
-        Place { folder: folder.into(), ..self.clone() }
-    }
-}
-
 /// What surfaces are made of, as it is written, or a pattern.
 pub(super) struct Modifier {
     pub thing: Rc<Thing>,
@@ -62,8 +33,6 @@ pub(super) struct Modifier {
     pub map: DAffine3,
     /// How many modifiers of modifiers there are.
     pub depth: u32,
-    /// What it became, if a surface asked.
-    pub made: Option<Rc<Made>>,
 }
 
 /// What is not a surface.
@@ -120,6 +89,9 @@ pub(super) struct Reader<'a> {
     pub said: &'a Said,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
+    /// What modifiers became, if surfaces asked, by their numbers and the bits of the colour that
+    /// patterns before them multiply.
+    pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
     /// By the number of the material: surfaces that are one mesh.
     pub bodies: BTreeMap<u32, Body>,
     /// By the number of the material: what is in the air there.
@@ -138,6 +110,7 @@ impl<'a> Reader<'a> {
             said,
             modifiers: Vec::new(),
             names: BTreeMap::new(),
+            made: BTreeMap::new(),
             bodies: BTreeMap::new(),
             mists: BTreeMap::new(),
             distant: Vec::new(),
@@ -218,7 +191,7 @@ impl<'a> Reader<'a> {
                 let Some(found) = self.find(name) else { return };
                 *other = found;
             }
-            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0, made: None };
+            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0 };
             self.define(modifier.thing.name.clone(), modifier);
         } else {
             let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
@@ -248,7 +221,7 @@ impl<'a> Reader<'a> {
             },
         };
         let Modifier { thing, others, map, .. } = &self.modifiers[real];
-        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0, made: None };
+        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0 };
         self.define(alias.name, modifier);
     }
 

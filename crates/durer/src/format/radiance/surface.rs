@@ -3,7 +3,8 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Kind, Made};
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::state::Reader;
 use super::words::Word;
 use crate::diag::Span;
 use crate::math::Vec3;
