@@ -42,9 +42,14 @@ impl Said {
 
     /// The same, once for all that is told by the same words.
     pub fn once(&self, at: Span, message: impl Into<String>) {
+        self.warn_once(NO_COUNTERPART, at, message);
+    }
+
+    /// A warning of a code, once for all that is told by the same words.
+    pub fn warn_once(&self, code: &'static str, at: Span, message: impl Into<String>) {
         let message = message.into();
         if self.once.borrow_mut().insert(message.clone()) {
-            self.other(at, message);
+            self.push(Diagnostic::warning(message).code(code).at(at));
         }
     }
 

@@ -2,7 +2,8 @@
 //! is run: what they would print is made here.
 
 use super::body::Facets;
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::state::Reader;
 use super::words::{Word, Words};
 use super::xform::Transform;
 use crate::diag::Diagnostic;
@@ -34,7 +35,7 @@ impl Reader<'_> {
             if stage[0].text != "xform" {
                 return refuse(self, &stage[0]);
             }
-            let Some((next, files)) = xform(self, &stage[1..], &places) else { return };
+            let Some((next, files, _)) = xform(self, &stage[1..], &places) else { return };
             if let Some(file) = files.first() {
                 return self.said.bad(file.at, "behind a `|` `xform` reads what comes through it, and no files");
             }
@@ -43,19 +44,19 @@ impl Reader<'_> {
         let (name, args) = (&stages[0][0], &stages[0][1..]);
         match name.text.as_str() {
             "xform" => {
-                let Some((places, files)) = xform(self, args, &places) else { return };
+                let Some((places, files, beside)) = xform(self, args, &places) else { return };
                 if files.is_empty() {
                     self.said.bad(name.at, "`xform` needs a file here");
                 }
-                places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place)));
+                places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place, beside)));
             }
-            "cat" => places.iter().for_each(|place| args.iter().for_each(|file| self.file(file, place))),
+            "cat" => places.iter().for_each(|place| args.iter().for_each(|file| self.file(file, place, false))),
             "genbox" => {
                 let facets = genbox(self, name, args);
                 build(self, facets, args, &places);
             }
             "genprism" => {
-                let facets = genprism(self, name, args);
+                let facets = genprism(self, name, args, place);
                 build(self, facets, args, &places);
             }
             _ => refuse(self, name),
@@ -74,9 +75,11 @@ fn refuse(reader: &Reader, name: &Word) {
     reader.said.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
-/// The places of an `xform` in some places, and the files that it names.
-fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Places, &'w [Word])> {
+/// The places of an `xform` in some places, the files that it names, and whether commands in those
+/// are run beside them.
+fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Places, &'w [Word], bool)> {
     let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
+    let mut beside = true;
     let mut rest = words;
     while let Some(option) = rest.first().filter(|word| word.text.starts_with('-')) {
         if transform.option(&mut rest, reader.said) {
@@ -84,7 +87,11 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
         }
         let takes = match option.text.as_str() {
             "-m" | "-n" => 1,
-            "-c" | "-e" => 0,
+            "-c" | "-e" => {
+                // Commands go on as they are, or are carried out.
+                beside = option.text == "-e";
+                0
+            }
             "-I" => {
                 inverted = !inverted;
                 0
@@ -112,9 +119,9 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
         map: outer.map * *map,
         modifier: outer.modifier.clone().or_else(|| modifier.clone()),
         inverted: outer.inverted != inverted,
-        depth: outer.depth,
+        ..outer.clone()
     };
-    Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest))
+    Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest, beside))
 }
 
 /// Polygons of the material that is a generator's first argument.
@@ -179,7 +186,7 @@ fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     corners
 }
 
-fn genprism(reader: &mut Reader, name: &Word, args: &[Word]) -> Option<Facets> {
+fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> Option<Facets> {
     if args.len() < 3 {
         reader.said.bad(name.at, "`genprism` needs a material, a name and the corners of its base");
         return None;
@@ -193,7 +200,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word]) -> Option<Facets> {
             return None;
         }
         Err(_) => {
-            let (bytes, file) = reader.open(&args[2])?;
+            let (bytes, file) = reader.open(&place.seen(&args[2]))?;
             let mut words = Words::new(&bytes, file, 0..bytes.len());
             let mut list = Vec::new();
             while let Some(word) = words.next() {

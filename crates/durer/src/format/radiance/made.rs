@@ -25,6 +25,19 @@ impl Made {
     }
 }
 
+/// Patterns over a material.
+#[derive(Clone)]
+pub(super) struct Below {
+    pub tint: Color,
+    pub sky: Option<Sky>,
+}
+
+impl Default for Below {
+    fn default() -> Self {
+        Below { tint: Vec3::ONE, sky: None }
+    }
+}
+
 /// What matters of a material to surfaces.
 pub(super) enum Kind {
     Plain,

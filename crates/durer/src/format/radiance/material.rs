@@ -6,14 +6,13 @@
 
 use super::args::Thing;
 use super::made::{Kind, Made};
-use super::state::{MIXTURES, PATTERNS, Reader};
+use super::state::Reader;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
-use std::rc::Rc;
 
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -59,14 +58,25 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
+    // What goes straight through is reflected at both sides of a sheet, 2 F / (1 + F), all else
+    // once, F. This F, and this share of the sheet, leave what is written for each at right angles.
+    let specular = specular.min(0.9);
+    let once = specular / (1.0 + (1.0 - specular) * through);
+    let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
+    let mut m = plastic(color, once, roughness);
+    if specular == 0.0 && through > 0.0 {
+        // Without a boundary there is a roughness for what goes through.
+        m.specular_ior = 1.0;
+        rough(&mut m, roughness);
+    }
     PrincipledMaterial {
-        transmission_weight: through,
+        transmission_weight: sheet,
         transmission_color: color,
         subsurface_weight: 1.0,
         subsurface_color: color,
         subsurface_scatter_anisotropy: ((forth - back) / (forth + back).max(1e-6)).clamp(-0.999, 0.999),
         walls: Walls::Thin,
-        ..plastic(color, specular, roughness)
+        ..m
     }
 }
 
@@ -96,33 +106,13 @@ fn shining(radiance: Color) -> PrincipledMaterial {
 }
 
 impl Reader<'_> {
-    /// What a modifier becomes.
-    pub fn made(&mut self, number: usize) -> Rc<Made> {
-        if let Some(made) = &self.modifiers[number].made {
-            return made.clone();
-        }
-        let (thing, parent) = (self.modifiers[number].thing.clone(), self.modifiers[number].parent);
-        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
-        let kind = thing.kind.text.as_str();
-        let made = if PATTERNS.contains(&kind) {
-            let (tint, sky) = self.pattern(&thing);
-            Made { tint: above.tint * tint, sky: sky.or(above.sky.clone()), ..Made::nothing() }
-        } else if MIXTURES.contains(&kind) {
-            self.mixture(number, &thing)
-        } else {
-            self.material(number, &thing, &above)
-        };
-        let made = Rc::new(made);
-        self.modifiers[number].made = Some(made.clone());
-        made
-    }
-
     pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {
         self.scene.materials.push(Spanned { value: Material::Principled(Box::new(m)), span: at });
         (self.scene.materials.len() - 1) as u32
     }
 
-    fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
+    /// What a material becomes below the patterns that are above it.
+    pub fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
         let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
         let counts: &[usize] = match kind {
             "plastic" | "metal" | "dielectric" => &[5],
@@ -181,7 +171,7 @@ impl Reader<'_> {
                 instead("a clear sheet that does not turn light is taken");
                 sheet(Vec3::ONE, 1.0)
             }
-            "mirror" => metal(color, 1.0, [0.0; 2]),
+            "mirror" if thing.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
             "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
             "dielectric" => {
                 if thing.number(4) != Some(0.0) {
@@ -201,8 +191,11 @@ impl Reader<'_> {
                 instead("it cuts nothing away, and is not shown");
                 return Made::nothing();
             }
-            "illum" if thing.texts.first().is_some_and(|name| name.text != "void") => {
-                instead("what it stands for is taken: light comes through that by itself");
+            "illum" | "mirror" if thing.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") => {
+                instead(match kind {
+                    "illum" => "what it stands for is taken: light comes through that by itself",
+                    _ => "what is shown instead of it is taken, which mirrors no lamps",
+                });
                 let other = self.modifiers[number].others[0];
                 return match other {
                     Some(other) => {

@@ -7,17 +7,21 @@
 
 mod args;
 mod body;
+mod chain;
 mod command;
 mod data;
 mod made;
 mod material;
 mod mixture;
 mod pattern;
+mod place;
 mod rif;
 mod sky;
 mod source;
+mod standard;
 mod state;
 mod surface;
+mod used;
 mod view;
 mod words;
 mod xform;
@@ -30,7 +34,8 @@ use super::said::Said;
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::scene::{Axis, Scene};
-use state::{Place, Reader};
+use place::Place;
+use state::Reader;
 
 /// The format of scenes.
 pub(super) const FORMAT: SceneFormat = SceneFormat {

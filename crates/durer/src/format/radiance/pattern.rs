@@ -5,14 +5,17 @@ use super::data::Table;
 use super::sky::Sky;
 use super::state::Reader;
 use super::words::Word;
+use super::xform::Transform;
 use crate::format::number::parse_f32;
 use crate::format::pictures::unusable;
 use crate::image::{self, Encoded};
 use crate::math::{Color, Vec3};
+use glam::{DAffine3, DMat3};
 
 impl Reader<'_> {
-    /// The colour that a pattern multiplies everywhere, and the sky that it is.
-    pub fn pattern(&self, thing: &Thing) -> (Color, Option<Sky>) {
+    /// The colour that a pattern multiplies everywhere, and the sky that it is. `map` is where its
+    /// text was put.
+    pub fn pattern(&self, thing: &Thing, map: &DAffine3) -> (Color, Option<Sky>) {
         let (at, kind, said) = (thing.at(), thing.kind.text.as_str(), self.said);
         let text = |i: usize| thing.texts.get(i).map_or("", |word| word.text.as_str());
         let literal = |i: usize| parse_f32(text(i).as_bytes()).ok().map(|x| x.max(0.0));
@@ -22,7 +25,7 @@ impl Reader<'_> {
                 Vec3::ONE
             }
             "brightfunc" if text(0) == "skybr" => {
-                let sky = Sky::of(thing, said);
+                let sky = Sky::of(thing, map.matrix3 * self.own_turn(thing), said);
                 return (Vec3::ONE, sky);
             }
             "brightfunc" if literal(0).is_some() => Vec3::splat(literal(0).unwrap_or(1.0)),
@@ -51,6 +54,13 @@ impl Reader<'_> {
             _ => Vec3::ONE,
         };
         (tint, None)
+    }
+
+    /// The turn that `xform` has written behind the names of a function and its file.
+    fn own_turn(&self, thing: &Thing) -> DMat3 {
+        let (mut rest, mut transform) = (thing.texts.get(2..).unwrap_or_default(), Transform::default());
+        while transform.option(&mut rest, self.said) {}
+        transform.places().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
     /// The mean of a table, or of the light that it spreads over directions.

@@ -1,6 +1,8 @@
 //! Files for Radiance's `rad`: which files make a scene, and whence it is seen.
 
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::standard::{Zone, standard};
+use super::state::Reader;
 use super::view::{USUAL_SIZE, View, of_file};
 use super::words::{Word, Words};
 use crate::diag::Diagnostic;
@@ -58,7 +60,7 @@ impl Reader<'_> {
                         let range = value.at.start as usize + 1..value.at.end as usize;
                         self.command(Words::new(&bytes, file, range), &place);
                     }
-                    false => self.file(value, &place),
+                    false => self.file(value, &place, false),
                 }
             }
         }
@@ -77,18 +79,23 @@ impl Reader<'_> {
         let larger = last("RESOLUTION").and_then(|word| word.text.parse().ok()).filter(|r| (1..=1 << 16).contains(r));
         let exposure = last("EXPOSURE").cloned();
         let views: Vec<&Setting> = settings.iter().filter(|setting| setting.name == "view").collect();
-        self.view(&views, larger.unwrap_or(USUAL_SIZE));
+        let of = |name: &str| settings.iter().rfind(|setting| setting.name == name).map(|s| s.values.as_slice());
+        let zone = Zone::of(of("ZONE"), of("UP"), self);
+        self.view(&views, &zone, larger.unwrap_or(USUAL_SIZE));
         self.exposure(exposure);
     }
 
     /// The view that is wanted by name or number, or the first.
-    fn view(&mut self, views: &[&Setting], larger: u32) {
+    fn view(&mut self, views: &[&Setting], zone: &Zone, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
         let wanted = match &self.input.staging.camera {
             None => (!views.is_empty()).then_some(0),
             Some(wanted) => {
                 let named = (0..views.len()).find(|&i| name(i).is_some_and(|word| word.text == *wanted));
                 let found = named.or_else(|| wanted.parse().ok().filter(|i| *i < views.len()));
+                if let (None, Some(seen)) = (found, standard(wanted)) {
+                    return zone.view(seen, Default::default()).place(&mut self.scene, larger, self.said);
+                }
                 if found.is_none() {
                     let known: Vec<&str> =
                         (0..views.len()).filter_map(|i| name(i).map(|word| word.text.as_str())).collect();
@@ -107,7 +114,9 @@ impl Reader<'_> {
         let skip = usize::from(name(number).is_some());
         let values = &views[number].values;
         let words = &values[skip..];
-        let mut view = View::new(values.first().map_or(Default::default(), |word| word.at));
+        let at = values.first().map_or(Default::default(), |word| word.at);
+        let seen = name(number).and_then(|word| standard(&word.text));
+        let mut view = seen.map_or_else(|| View::new(at), |seen| zone.view(seen, at));
         if let Some(i) = words.iter().position(|word| word.text == "-vf") {
             let Some(path) = words.get(i + 1) else {
                 return self.said.bad(words[i].at, "`-vf` needs a file");
@@ -122,7 +131,7 @@ impl Reader<'_> {
             .filter(|(i, word)| word.text != "-vf" && (*i == 0 || words[i - 1].text != "-vf"))
             .map(|(_, word)| word.clone())
             .collect();
-        view.options(&own, self.said);
+        view.options(&own, false, self.said);
         view.place(&mut self.scene, larger, self.said);
     }
 

@@ -2,12 +2,13 @@
 //!
 //! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
 //! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; the manual page
-//! of gensky for the order of the numbers.
+//! of gensky for the order of the numbers; Radiance's `skybright.cal`, which they are for.
 
 use super::args::Thing;
 use crate::format::said::Said;
 use crate::math::fp;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use std::f32::consts::FRAC_PI_2;
 
 /// A sky over a ground.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,8 @@ pub(super) struct Sky {
     ground: f32,
     factor: f32,
     sun: DVec3,
+    /// From the world into the sky's own axes.
+    turn: DMat3,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +31,9 @@ enum Cover {
 }
 
 impl Sky {
-    /// By its numbers: kind, zenith, ground, factor, way to the sun.
-    pub fn of(thing: &Thing, said: &Said) -> Option<Sky> {
+    /// By its numbers: kind, zenith, ground, factor, way to the sun; turned by a map, which keeps
+    /// shapes.
+    pub fn of(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
         let number = |i: usize| thing.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
             1 => Cover::Clear,
@@ -53,18 +57,21 @@ impl Sky {
             return None;
         }
         let factor = if number(3) > 0.0 { number(3) } else { 1.0 };
-        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun })
+        let turn = map.inverse() * map.x_axis.length();
+        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
     }
 
-    /// How bright it is in a unit direction, z upwards.
+    /// How bright it is in a unit direction of the world.
     pub fn at(&self, dir: DVec3) -> f32 {
+        let dir = self.turn * dir;
         let height = (dir.z as f32).clamp(-1.0, 1.0);
-        // From the sky to the ground within half a degree of the horizon.
+        // From the sky to the ground within some ten degrees of the horizon.
         let above = fp::pow(height + 1.01, 10.0);
         let below = 1.0 / above;
-        let sky = if height > -0.05 { self.bare(dir, height.max(0.0)) } else { 0.0 };
-        ((sky * above + self.ground * below) / (above + below)).max(0.0)
+        ((self.bare(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
     }
+
+    /// The sky without the ground, whose formulas go on below the horizon.
 
     fn bare(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
@@ -77,7 +84,8 @@ impl Sky {
                 self.zenith / self.factor * (0.91 + 10.0 * fp::exp(-3.0 * angle) + 0.45 * cosine * cosine) * haze
             }
             Cover::Intermediate => {
-                let eta = fp::asin(height);
+                // From the zenith.
+                let eta = FRAC_PI_2 - fp::asin(height);
                 let sun = (self.sun.z as f32).clamp(-1.0, 1.0);
                 let zenith_angle = fp::atan2((1.0 - sun * sun).sqrt(), sun);
                 let shape =

@@ -2,7 +2,8 @@
 
 use super::args::Thing;
 use super::made::{Distant, Kind, Made};
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::state::Reader;
 use crate::diag::Span;
 use crate::format::panorama;
 use crate::format::pictures::unusable;

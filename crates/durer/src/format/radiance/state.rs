@@ -3,6 +3,7 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Distant, Made};
+use super::place::Place;
 use super::words::{Start, Word, Words};
 use crate::camera::Projection;
 use crate::diag::{Diagnostic, Span};
@@ -22,17 +23,6 @@ const MAX_FILES: usize = 4096;
 /// Corners and shapes of a scene.
 const MAX_THINGS: usize = 1 << 26;
 
-/// Where the things of a text go.
-#[derive(Clone, Default)]
-pub(super) struct Place {
-    pub map: DAffine3,
-    /// What modifies all surfaces instead of what is written.
-    pub modifier: Option<Word>,
-    /// Whether all surfaces are turned inside out.
-    pub inverted: bool,
-    pub depth: u32,
-}
-
 /// What surfaces are made of, as it is written, or a pattern.
 pub(super) struct Modifier {
     pub thing: Rc<Thing>,
@@ -43,8 +33,6 @@ pub(super) struct Modifier {
     pub map: DAffine3,
     /// How many modifiers of modifiers there are.
     pub depth: u32,
-    /// What it became, if a surface asked.
-    pub made: Option<Rc<Made>>,
 }
 
 /// What is not a surface.
@@ -101,6 +89,9 @@ pub(super) struct Reader<'a> {
     pub said: &'a Said,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
+    /// What modifiers became, if surfaces asked, by their numbers and the bits of the colour that
+    /// patterns before them multiply.
+    pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
     /// By the number of the material: surfaces that are one mesh.
     pub bodies: BTreeMap<u32, Body>,
     /// By the number of the material: what is in the air there.
@@ -119,6 +110,7 @@ impl<'a> Reader<'a> {
             said,
             modifiers: Vec::new(),
             names: BTreeMap::new(),
+            made: BTreeMap::new(),
             bodies: BTreeMap::new(),
             mists: BTreeMap::new(),
             distant: Vec::new(),
@@ -146,8 +138,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a file that another names.
-    pub fn file(&mut self, name: &Word, place: &Place) {
+    /// Reads a file that a command has, with the commands in it beside that file or, as of what is
+    /// only printed, where this command is run.
+    pub fn file(&mut self, name: &Word, place: &Place, beside: bool) {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
             let message = match place.depth >= DEEPEST {
@@ -156,8 +149,9 @@ impl<'a> Reader<'a> {
             };
             return self.said.bad(name.at, message);
         }
-        let Some((bytes, file)) = self.open(name) else { return };
-        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place.clone() });
+        let Some((bytes, file)) = self.open(&place.seen(name)) else { return };
+        let place = if beside { place.beside(name) } else { place.clone() };
+        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place });
     }
 
     /// The bytes and the number of a file that another names.
@@ -189,7 +183,7 @@ impl<'a> Reader<'a> {
             let Some(parent) = self.find(&thing.modifier) else { return };
             let mut others = [None; 2];
             let named = match kind {
-                "illum" => 1,
+                "illum" | "mirror" => 1,
                 _ if MIXTURES.contains(&kind) => 2,
                 _ => 0,
             };
@@ -197,7 +191,7 @@ impl<'a> Reader<'a> {
                 let Some(found) = self.find(name) else { return };
                 *other = found;
             }
-            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0, made: None };
+            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0 };
             self.define(modifier.thing.name.clone(), modifier);
         } else {
             let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
@@ -227,7 +221,7 @@ impl<'a> Reader<'a> {
             },
         };
         let Modifier { thing, others, map, .. } = &self.modifiers[real];
-        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0, made: None };
+        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0 };
         self.define(alias.name, modifier);
     }
 
@@ -288,6 +282,7 @@ impl<'a> Reader<'a> {
             self.add(node, material, span);
         }
         self.surround();
+        super::used::keep_used(&mut self.scene);
         self.scene
     }
 }

@@ -3,7 +3,8 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Kind, Made};
-use super::state::{Place, Reader};
+use super::place::Place;
+use super::state::Reader;
 use super::words::Word;
 use crate::diag::Span;
 use crate::math::Vec3;
@@ -32,6 +33,7 @@ impl Reader<'_> {
                         "octrees are not read: write `!xform OPTIONS FILE.rad` with the file that the octree was made of"
                     }
                 };
+                self.missing(thing);
                 let message = format!("{name} is left out: {help}");
                 self.said.once(at, message);
             }
@@ -44,7 +46,7 @@ impl Reader<'_> {
                 let inward = ((thing.kind.text == "bubble") != (radius < 0.0)) != place.inverted;
                 let (center, radius) = (map.transform_point3(thing.point(0)), scale * radius.abs());
                 if radius == 0.0 {
-                    return self.said.bad(at, "a sphere needs a radius");
+                    return self.said.warn_once("bad-value", at, "a sphere of radius 0 is left out");
                 }
                 let Some((made, number)) = self.shown(modifier, (4.0 * PI * radius * radius, center, None), at) else {
                     return;
@@ -80,7 +82,7 @@ impl Reader<'_> {
                 let side = if place.inverted { -1.0 } else { 1.0 };
                 let Some(normal) = map.transform_vector3(side * thing.point(3)).try_normalize().filter(|_| outer > 0.0)
                 else {
-                    return self.said.bad(at, "a ring needs a direction and a radius");
+                    return self.said.warn_once("bad-value", at, "a ring without a direction or a radius is left out");
                 };
                 let center = map.transform_point3(thing.point(0));
                 let area = PI * (outer * outer - inner * inner);
@@ -103,7 +105,8 @@ impl Reader<'_> {
                 let ends = [thing.point(0), thing.point(3)];
                 let length = ends[0].distance(ends[1]);
                 if radii[0] * radii[1] < 0.0 || radii == [0.0; 2] || (length == 0.0 && radii[0] == radii[1]) {
-                    return self.said.bad(at, format!("a {kind} needs a length, and radii that are not all 0"));
+                    let what = "without a length, or with radii that are all 0 or of two signs, is left out";
+                    return self.said.warn_once("bad-value", at, format!("a {kind} {what}"));
                 }
                 let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
                 let radii = radii.map(f64::abs);

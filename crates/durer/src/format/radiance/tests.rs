@@ -2,6 +2,7 @@
 //! places.
 
 mod conventions;
+mod measured;
 
 use crate::format::testing::{folder, read_in};
 use crate::material::PrincipledMaterial;
@@ -143,7 +144,7 @@ fn what_has_no_counterpart_is_told_once_with_its_place() {
             "void brightfunc f 2 noise(Px) . 0 0\nf plastic m 0 0 5 .8 .8 .8 0 0",
             "1:6 warning patterns by functions (`brightfunc`) have no counterpart: the pattern is left out",
         ),
-        ("void BSDF m 6 0 a.xml 0 0 1 . 0 0", "1:6 warning `BSDF` has no counterpart: matte grey is taken"),
+        ("void BSDF m 6 0 minimal 0 0 1 . 0 0", "1:6 warning `BSDF` has no counterpart: matte grey is taken"),
     ] {
         let (scene, found) = read(&format!("{text}\nm sphere a 0 0 4 0 0 0 1\nm sphere b 0 0 4 3 0 0 1"));
         assert!(scene.is_some());

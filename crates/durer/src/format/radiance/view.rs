@@ -18,12 +18,12 @@ const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinter
 /// A view.
 #[derive(Clone, Debug)]
 pub(super) struct View {
-    kind: char,
-    point: DVec3,
-    direction: DVec3,
-    up: DVec3,
+    pub kind: char,
+    pub point: DVec3,
+    pub direction: DVec3,
+    pub up: DVec3,
     /// Across and upwards: degrees, or lengths without perspective.
-    size: [f64; 2],
+    pub size: [f64; 2],
     /// By how many of its own widths and heights the picture is moved.
     shift: [f64; 2],
     at: Span,
@@ -43,10 +43,15 @@ impl Default for View {
     }
 }
 
-/// The last view of a file: each is written in a line behind `VIEW=` or the name of a program.
+/// The last view of a file: each is written in a line behind `VIEW=` or the name of a program. Of
+/// pictures that is their header, where other options of programs stand beside.
 pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
     let (mut view, mut start) = (None, 0);
+    let picture = bytes.starts_with(b"#?");
     for line in bytes.split_inclusive(|byte| *byte == b'\n') {
+        if picture && line.trim_ascii().is_empty() {
+            break;
+        }
         let mut words = Words::new(bytes, file, start..start + line.len());
         start += line.len();
         let Some(mut first) = words.next() else { continue };
@@ -55,9 +60,10 @@ pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
             own.insert(0, Word { text: rest.into(), at: first.at });
             first.text.truncate(5);
         }
-        if PROGRAMS.contains(&first.text.as_str()) {
+        let program = first.text.rsplit('/').next().unwrap_or_default();
+        if PROGRAMS.contains(&program) {
             let mut found = View { at: first.at, ..view.unwrap_or_default() };
-            found.options(&own, said);
+            found.options(&own, true, said);
             view = Some(found);
         }
     }
@@ -73,8 +79,9 @@ impl View {
         View { at, ..View::default() }
     }
 
-    /// Takes options; those that are not of views are passed over, with their numbers.
-    pub fn options(&mut self, words: &[Word], said: &Said) {
+    /// Takes options; those that are not of views are passed over, with their numbers, and so are
+    /// those that no view has, where other programs' options are `others`.
+    pub fn options(&mut self, words: &[Word], others: bool, said: &Said) {
         let mut rest = words;
         while let Some((option, more)) = rest.split_first() {
             rest = more;
@@ -114,6 +121,7 @@ impl View {
                     }
                 }
                 "tv" | "tl" | "ta" | "th" | "ts" | "tc" => self.kind = name.chars().last().unwrap_or('v'),
+                _ if others => {}
                 _ => said.bad(option.at, format!("there is no option {} of views", option.shown())),
             }
         }

@@ -1,0 +1,46 @@
+//! Chains of modifiers: a surface names a pattern, that a material, that a pattern, and so on.
+
+use super::made::{Below, Made};
+use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
+use std::rc::Rc;
+
+impl Reader<'_> {
+    /// What a modifier becomes.
+    pub fn made(&mut self, number: usize) -> Rc<Made> {
+        self.below(number, &Below::default())
+    }
+
+    /// What a modifier becomes below patterns that a surface names before it.
+    pub fn below(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
+        // Skies are few: what is below one is made anew.
+        let key = patterns.sky.is_none().then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
+        if let Some(made) = key.as_ref().and_then(|key| self.made.get(key)) {
+            return made.clone();
+        }
+        let made = self.make(number, patterns);
+        self.made.extend(key.map(|key| (key, made.clone())));
+        made
+    }
+
+    fn make(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
+        let Modifier { thing, parent, map, .. } = &self.modifiers[number];
+        let (thing, parent, map) = (thing.clone(), *parent, *map);
+        self.missing(&thing);
+        let kind = thing.kind.text.as_str();
+        if PATTERNS.contains(&kind) {
+            let (tint, sky) = self.pattern(&thing, &map);
+            let all = Below { tint: patterns.tint * tint, sky: patterns.sky.clone().or(sky) };
+            return match parent {
+                Some(parent) => self.below(parent, &all),
+                None => Made { tint: all.tint, sky: all.sky, ..Made::nothing() }.into(),
+            };
+        }
+        if MIXTURES.contains(&kind) {
+            let patterns = Below { sky: None, ..*patterns };
+            return self.mixture(number, &thing, &patterns).into();
+        }
+        let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
+        let (tint, sky) = (above.tint * patterns.tint, patterns.sky.clone().or(above.sky.clone()));
+        self.material(number, &thing, &Made { tint, sky, ..Made::nothing() }).into()
+    }
+}
