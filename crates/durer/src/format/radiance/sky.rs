@@ -72,7 +72,6 @@ impl Sky {
     }
 
     /// The sky without the ground, whose formulas go on below the horizon.
-
     fn bare(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
         let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);

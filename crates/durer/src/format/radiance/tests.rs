@@ -115,7 +115,7 @@ fn materials_become_layers() {
     let (m, _) = sphere("void dielectric m 0 0 5 .5 .25 1 1.33 0");
     assert_eq!((m.walls, m.specular_ior, m.transmission_depth), (Walls::Solid, 1.33, 1.0));
     assert_eq!(m.transmission_color, Vec3::new(0.5, 0.25, 1.0));
-    let (m, _) = sphere("void trans m 0 0 7 .9 .9 .5 .05 0 .5 .7");
+    let (m, _) = sphere("void trans m 0 0 7 .9 .9 .5 0 0 .5 .7");
     assert!((m.transmission_weight - 0.35).abs() < 1e-6);
     // Half is scattered back, 0.15 forth.
     assert!((m.subsurface_scatter_anisotropy + 0.35 / 0.65).abs() < 1e-6);

@@ -16,6 +16,9 @@ use crate::sampler::SampleId;
 use crate::{LoadOptions, load_text};
 use glam::{DMat3, DVec3};
 
+/// What needs no studio, behind some text.
+const SUN: &str = "\nvoid light sun 0 0 3 1 1 1 sun source s 0 0 4 0 0 1 .5";
+
 /// The material of the first object.
 fn first(scene: &Scene) -> &PrincipledMaterial {
     let root = scene.root.as_ref().unwrap();
@@ -32,7 +35,7 @@ fn a_surface_of_a_pattern_has_the_material_below_it() {
         ("void brightfunc s 2 .5 . 0 0 s plastic n 0 0 5 .6 .4 .2 0 0 n brightfunc t 2 .5 . 0 0", 0.25),
         ("void mixfunc x 4 m m .5 . 0 0 x brightfunc t 2 .5 . 0 0 m alias u m t alias t t", f32::NAN),
     ] {
-        let scene = clean(&format!("{base}{patterns} t sphere p 0 0 4 0 0 0 1"));
+        let scene = clean(&format!("{base}{patterns} t sphere p 0 0 4 0 0 0 1{SUN}"));
         if share.is_finite() {
             assert!((first(&scene).base_color - share * Vec3::new(0.6, 0.4, 0.2)).length() < 1e-6, "{patterns}");
         } else {
@@ -40,10 +43,12 @@ fn a_surface_of_a_pattern_has_the_material_below_it() {
         }
     }
     // A texture that does nothing makes no second material.
-    let text = format!("{base}m texfunc t 4 0 0 0 . 0 0 t sphere p 0 0 4 0 0 0 1 m sphere q 0 0 4 3 0 0 1");
+    let text = format!("{base}m texfunc t 4 0 0 0 . 0 0 t sphere p 0 0 4 0 0 0 1 m sphere q 0 0 4 3 0 0 1{SUN}");
     assert_eq!(read(&text).0.unwrap().materials.len(), 1);
     // Patterns over nothing are nothing.
-    assert!(clean("void brightfunc t 2 1 . 0 0 t sphere p 0 0 4 0 0 0 1").root.unwrap().objects.is_empty());
+    assert!(
+        clean(&format!("void brightfunc t 2 1 . 0 0 t sphere p 0 0 4 0 0 0 1{SUN}")).root.unwrap().objects.is_empty()
+    );
 }
 
 /// How bright a sky of some numbers is in four directions.
@@ -131,7 +136,7 @@ fn commands_of_a_file_for_xform_are_run_beside_it() {
         ("!xform -c fur/desk.rad", Err("leg.rad")),
         ("!xform -e -c -e fur/desk.rad", Ok(2)),
     ] {
-        let (scene, told) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}"));
+        let (scene, told) = read_in(files.path(), "scene.rad", format!("{MATTE}{command}{SUN}"));
         match objects {
             Ok(count) => {
                 let scene = scene.unwrap_or_else(|| panic!("{command}: {told:?}"));
@@ -209,16 +214,16 @@ fn mirrors_show_what_stands_for_them_and_void_lets_see_through() {
     let what = "scene.rad:2:6 warning `mirror` has no counterpart: what is shown instead of it is taken, which mirrors no lamps";
     let (scene, told) = read(&format!("{other}void mirror m 1 blue 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
     assert_eq!((first(&scene.unwrap()).base_color, told.as_slice()), (0.7 * Vec3::Z, [what.to_string()].as_slice()));
-    let (scene, told) = read(&format!("{other}void mirror m 1 void 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1"));
+    let (scene, told) = read(&format!("{other}void mirror m 1 void 0 3 .8 .8 .8 m sphere s 0 0 4 0 0 0 1{SUN}"));
     assert_eq!((scene.unwrap().root.unwrap().objects.len(), told.as_slice()), (0, [what.to_string()].as_slice()));
     for (mixed, opacity) in [("blue void .25", 0.25), ("void blue .25", 0.75), ("void half .5", 0.25)] {
         let text = format!("{other}void mixfunc half 4 blue void .5 . 0 0 void mixfunc m 4 {mixed} . 0 0");
-        let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1"));
+        let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
         assert_eq!((first(&scene).opacity, scene.materials.len()), (opacity, 1), "{mixed}");
     }
     // A mixture of which half is there.
     let text = format!("{other}{MATTE}void mixfunc two 4 blue white .5 . 0 0 void mixfunc m 4 two void .5 . 0 0");
-    let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1"));
+    let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
     assert_eq!(scene.materials.len(), 3);
     assert!((0..2).all(|i| layers(&scene, i).opacity == 0.5));
 }
@@ -237,7 +242,7 @@ fn what_is_no_surface_is_left_out() {
             "a cone without a length, or with radii that are all 0 or of two signs, is left out",
         ),
     ] {
-        let (scene, found) = read(&format!("{MATTE}white {thing}\nwhite {thing}\nwhite sphere b 0 0 4 0 0 0 1"));
+        let (scene, found) = read(&format!("{MATTE}white {thing}\nwhite {thing}\nwhite sphere b 0 0 4 0 0 0 1{SUN}"));
         assert_eq!(scene.unwrap().root.unwrap().objects.len(), 1);
         assert_eq!(found, [format!("scene.rad:2:7 warning {told}")]);
     }
@@ -257,7 +262,7 @@ fn only_materials_that_are_used_are_there() {
 fn files_that_nothing_reads_and_that_are_not_there_are_told_of() {
     let files = folder(&[("here.cal", b"")]);
     for (kind, missing) in [
-        ("brightfunc f 2 f(Px) gone.cal 0 0 f plastic", Some("1:24 warning there is no file `gone.cal`")),
+        ("brightfunc f 2 f(Px) gone.cal 0 0 f plastic", Some("1:27 warning there is no file `gone.cal`")),
         ("brightfunc f 2 f(Px) here.cal 0 0 f plastic", None),
         ("brightfunc f 2 f(Px) noise.cal 0 0 f plastic", None),
     ] {
