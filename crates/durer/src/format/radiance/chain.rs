@@ -25,6 +25,9 @@ impl Reader<'_> {
     fn make(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
         let Modifier { thing, parent, map, .. } = &self.modifiers[number];
         let (thing, parent, map) = (thing.clone(), *parent, *map);
+        if self.is_full(thing.at()) {
+            return Rc::new(Made::nothing());
+        }
         self.missing(&thing);
         let kind = thing.kind.text.as_str();
         if PATTERNS.contains(&kind) {

@@ -67,6 +67,9 @@ impl Reader<'_> {
         if let Some(made) = made.get(&number) {
             return *made;
         }
+        if self.is_full(self.scene.materials[number as usize].span) {
+            return number;
+        }
         let Spanned { mut value, span } = self.scene.materials[number as usize].clone();
         match &mut value {
             Material::Principled(layers) => layers.opacity *= share,

@@ -20,6 +20,8 @@ use std::sync::Arc;
 /// Files in files, and files in all.
 const DEEPEST: u32 = 32;
 const MAX_FILES: usize = 4096;
+/// So many materials may come of others.
+const MOST_COPIES: usize = 1 << 16;
 /// Corners and shapes of a scene.
 const MAX_THINGS: usize = 1 << 26;
 
@@ -92,6 +94,8 @@ pub(super) struct Reader<'a> {
     /// What modifiers became, if surfaces asked, by their numbers and the bits of the colour that
     /// patterns before them multiply.
     pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
+    /// Whether more materials were asked for than there may be.
+    full: bool,
     /// By the number of the material: surfaces that are one mesh.
     pub bodies: BTreeMap<u32, Body>,
     /// By the number of the material: what is in the air there.
@@ -111,6 +115,7 @@ impl<'a> Reader<'a> {
             modifiers: Vec::new(),
             names: BTreeMap::new(),
             made: BTreeMap::new(),
+            full: false,
             bodies: BTreeMap::new(),
             mists: BTreeMap::new(),
             distant: Vec::new(),
@@ -136,6 +141,16 @@ impl<'a> Reader<'a> {
                 }
             }
         }
+    }
+
+    /// Whether no more materials are made: those below many patterns and mixtures with `void` would
+    /// be as many as their product.
+    pub fn is_full(&mut self, at: Span) -> bool {
+        if !self.full && self.scene.materials.len() > self.modifiers.len() + MOST_COPIES {
+            self.full = true;
+            self.said.bad(at, format!("more than {MOST_COPIES} materials come of patterns and `void` over others"));
+        }
+        self.full
     }
 
     /// Reads a file that a command has, with the commands in it beside that file or, as of what is

@@ -199,6 +199,26 @@ fn errors_have_places() {
     assert!(read(&many).1.len() <= 21);
 }
 
+/// A tree of mixtures, seen through, or below a pattern, again and again.
+#[test]
+fn a_short_text_asks_for_no_end_of_materials() {
+    let depth = 9;
+    let mut tree: String =
+        (0..1 << depth).map(|i| format!("void plastic p{depth}_{i} 0 0 5 .5 .{i} .5 0 0\n")).collect();
+    for (d, i) in (0..depth).rev().flat_map(|d| (0..1 << d).map(move |i| (d, i))) {
+        let [a, b] = [2 * i, 2 * i + 1].map(|k| format!("p{}_{k}", d + 1));
+        tree += &format!("void mixfunc p{d}_{i} 4 {a} {b} .5 . 0 0\n");
+    }
+    let all = |copy: &dyn Fn(u32) -> String| tree.clone() + &(0..100).map(copy).collect::<String>();
+    let seen_through = |i| format!("void mixfunc v{i} 4 p0_0 void .5 . 0 0 v{i} sphere s 0 0 4 {i} 0 0 .4\n");
+    let tinted = |i| format!("p0_0 brightfunc v{i} 2 .{i} . 0 0 v{i} sphere s 0 0 4 {i} 0 0 .4\n");
+    for text in [all(&seen_through), all(&tinted)] {
+        let (scene, told) = read(&text);
+        let errors: Vec<&String> = told.iter().filter(|line| line.contains("error")).collect();
+        assert!(scene.is_none() && errors.len() == 1 && errors[0].contains("more than 65536 materials"), "{errors:?}");
+    }
+}
+
 #[test]
 fn a_rif_names_files_and_views() {
     let files = folder(&[
