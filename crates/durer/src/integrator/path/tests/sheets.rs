@@ -7,7 +7,7 @@ const LAMPS: [(&str, f64); 3] = [
     // A light of colour c makes an irradiance of pi c at distance 1; of a far one as it is.
     ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
     ("DirectionalLight { direction 0 -1 0 color 1 1 1 }", 1.0),
-    ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 attenuation 0 0 1 }", 0.25),
+    ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 }", 0.25),
 ];
 
 /// A pane of a material over a floor.
