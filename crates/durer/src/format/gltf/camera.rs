@@ -148,9 +148,6 @@ impl Model<'_> {
             }
             (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
         };
-        scene
-            .lights
-            .get_or_insert_default()
-            .push(Spanned { value, span: self.findings.span(&format!("/nodes/{number}/name")) });
+        scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.node(number) });
     }
 }

@@ -54,6 +54,11 @@ impl<'a> Findings<'a> {
         self.report.borrow().span(self.range(pointer))
     }
 
+    /// The place of a node by its number: of its name, where it has one.
+    pub fn node(&self, number: usize) -> Span {
+        self.span(&format!("/nodes/{number}/name"))
+    }
+
     /// An error, warning or note at a JSON pointer, which the message begins with.
     pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
         // A file of a million errors or warnings is not walked over a million times.

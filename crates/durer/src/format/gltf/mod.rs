@@ -215,7 +215,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     let (order, maps) = model.placed(&root, &nodes);
     let camera = model.camera(&order, &nodes, &maps);
     let camera_span = match camera {
-        Some((_, node)) => root.findings.span(&format!("/nodes/{node}/name")),
+        Some((_, node)) => root.findings.node(node),
         None => root.span(),
     };
     let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, ..Scene::default() };

@@ -215,7 +215,7 @@ impl Model<'_> {
         let node = &nodes[number];
         let Some(mesh) = node.mesh else { return };
         let bones = node.skin.and_then(|skin| self.skins[skin].as_ref()).map(|skin: &Skin| skin.bones(maps));
-        let span = self.findings.span(&format!("/nodes/{number}/name"));
+        let span = self.findings.node(number);
         let pointer = || format!("/nodes/{number}");
         for (i, primitive) in self.meshes[mesh].iter().enumerate() {
             let Some(primitive) = primitive else { continue };

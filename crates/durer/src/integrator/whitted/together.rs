@@ -44,19 +44,14 @@ struct Lit {
 #[derive(Default)]
 struct Branches {
     rays: Vec<Ray64>,
+    /// The number of the camera ray from which each comes.
+    cameras: Vec<usize>,
     /// What each runs in.
     media: Vec<Media>,
-    weights: Vec<Weight>,
-}
-
-/// What a ray that goes on brings.
-#[derive(Clone, Copy)]
-struct Weight {
-    /// How much it counts for in the pixel.
-    weight: f32,
-    /// The colour that weighs its light, and that light.
-    color: Color,
-    light: Color,
+    /// How much each counts for in the pixel.
+    weights: Vec<f32>,
+    /// The colour that weighs the light of each, and once that is known, what it brings.
+    lights: Vec<Color>,
 }
 
 /// What is used anew for each few rays of one depth.
@@ -94,21 +89,20 @@ impl Whitted<'_> {
         let air = Media::default();
         for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
             let along: SmallVec<[Ray64; TOGETHER]> = rays.iter().map(|(ray, _)| Ray64::from(ray)).collect();
-            let path = |i: usize| {
-                begin(TOGETHER * part + i);
-                self.camera_path(&air)
-            };
-            self.light_level(&along, path, &mut levels, tally, |i, color| colors[i] = color);
+            let path = |i: usize| (TOGETHER * part + i, self.camera_path(&air));
+            self.light_level(&along, path, &begin, &mut levels, tally, |i, color| colors[i] = color);
         }
         LEVELS.set(levels);
     }
 
-    /// The light along not more than [`TOGETHER`] rays of one depth. `path` says what each carries,
-    /// `take` gets the light of each; `levels` are of this depth and those below.
+    /// The light along not more than [`TOGETHER`] rays of one depth. `path` says from which camera
+    /// ray each comes, and what it carries; `take` gets the light of each; `levels` are of this
+    /// depth and those below.
     fn light_level<'a, T: TraceListener>(
         &self,
         rays: &[Ray64],
-        path: impl Fn(usize) -> Path<'a>,
+        path: impl Fn(usize) -> (usize, Path<'a>),
+        begin: &impl Fn(usize),
         levels: &mut [Level],
         tally: &mut T,
         mut take: impl FnMut(usize, Color),
@@ -121,7 +115,8 @@ impl Whitted<'_> {
         self.world.closest_together(rays, &mut hits[..rays.len()]);
         let mut at = Interaction::NOWHERE;
         for (i, ray) in rays.iter().enumerate() {
-            let path = path(i);
+            let (camera, path) = path(i);
+            begin(camera);
             tally.ray();
             let Some((hit, phong)) = hits[i].and_then(|hit| Some((hit, self.plain(&hit)?))) else {
                 colors[i] = self.trace(ray, hits[i], path, tally);
@@ -138,13 +133,14 @@ impl Whitted<'_> {
             let parts = self.goes_on(path) && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO);
             let branches = parts.then(|| {
                 self.branch(&at, blend, passage.unwrap_or_default(), path, branches);
-                branches.weights.len()
+                branches.cameras.resize(branches.rays.len(), camera);
+                branches.rays.len()
             });
             waiting.push(Waiting { ray: i, lit: lit.len(), branches });
         }
         self.ask_lamps(lit, shadows, tally);
         if !branches.rays.is_empty() {
-            self.follow(branches, deeper, path(0).bounces - 1, tally);
+            self.follow(branches, begin, deeper, path(0).1.bounces - 1, tally);
         }
         let (mut first_lit, mut first_branch) = (0, 0);
         for waiting in waiting.iter() {
@@ -152,8 +148,7 @@ impl Whitted<'_> {
             lit[first_lit..waiting.lit].iter().for_each(|lit| *color += lit.light);
             first_lit = waiting.lit;
             if let Some(end) = waiting.branches {
-                let weights = &branches.weights[first_branch..end];
-                *color += weights.iter().fold(Color::ZERO, |sum, it| sum + it.color * it.light);
+                *color += branches.lights[first_branch..end].iter().fold(Color::ZERO, |sum, light| sum + *light);
                 first_branch = end;
             }
         }
@@ -205,7 +200,8 @@ impl Whitted<'_> {
                 let ray = spawn_ray(&at.surface, dir, f32::INFINITY, self.world.rules().epsilon);
                 branches.rays.push(ray);
                 branches.media.push(media);
-                branches.weights.push(Weight { weight, color, light: Color::ZERO });
+                branches.weights.push(weight);
+                branches.lights.push(color);
             }
         };
         if let Some(mirrored) = self.mirrored(&parted) {
@@ -242,20 +238,29 @@ impl Whitted<'_> {
     }
 
     /// Finds the light along rays that go on.
-    fn follow<T: TraceListener>(&self, branches: &mut Branches, levels: &mut [Level], bounces: u32, tally: &mut T) {
-        let Branches { rays, media, weights } = branches;
-        let parts = rays.chunks_mut(TOGETHER).zip(media.chunks(TOGETHER)).zip(weights.chunks_mut(TOGETHER));
-        for ((rays, media), weights) in parts {
-            let counts = weights.iter().map(|it| it.weight).collect::<SmallVec<[f32; TOGETHER]>>();
-            let path = |i: usize| Path { bounces, media: &media[i], weight: counts[i] };
-            let mut take = |i: usize, light| weights[i].light = light;
+    fn follow<T: TraceListener>(
+        &self,
+        branches: &mut Branches,
+        begin: &impl Fn(usize),
+        levels: &mut [Level],
+        bounces: u32,
+        tally: &mut T,
+    ) {
+        let Branches { rays, cameras, media, weights, lights } = branches;
+        for (part, (rays, lights)) in rays.chunks_mut(TOGETHER).zip(lights.chunks_mut(TOGETHER)).enumerate() {
+            let path = |i: usize| {
+                let i = TOGETHER * part + i;
+                (cameras[i], Path { bounces, media: &media[i], weight: weights[i] })
+            };
             if rays.len() >= FEWEST {
-                self.light_level(rays, path, levels, tally, take);
+                self.light_level(rays, path, begin, levels, tally, |i, light| lights[i] *= light);
                 continue;
             }
-            for (i, ray) in rays.iter_mut().enumerate() {
+            for (i, (ray, light)) in rays.iter_mut().zip(lights).enumerate() {
+                let (camera, path) = path(i);
+                begin(camera);
                 let found = self.world.closest_along(ray, tally);
-                take(i, self.trace(ray, found, path(i), tally));
+                *light *= self.trace(ray, found, path, tally);
             }
         }
     }
@@ -264,7 +269,9 @@ impl Whitted<'_> {
 impl Branches {
     fn clear(&mut self) {
         self.rays.clear();
+        self.cameras.clear();
         self.media.clear();
         self.weights.clear();
+        self.lights.clear();
     }
 }
