@@ -270,6 +270,13 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
         ("", "emissionSpectrum warm", "", "known are A, D50"),
         ("", "", "cieSky 12", "write `sun x y z`"),
         ("", "", "cieSky 17", "from 1 to 16"),
+        ("", "", "sunAltitude 30", "beside `sunAltitude` there is no `sunAzimuth`"),
+        ("", "", "sunAltitude 95 sunAzimuth 0", "must be from -90 to 90"),
+        ("", "", "sun 0 1 0 date 2026 6 21", "said twice, by `sun` and by `date`"),
+        ("", "", "timeZone 2", "there is no `latitude`"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 30 time 12 0 0", "no such `date`"),
+        ("", "", "latitude 60 longitude 25 date 2026 2 3 time 12 70 0", "no such `time`"),
+        ("", "", "latitude 60 longitude 25 date 2026 2.5 3 time 12 0 0", "must be whole numbers"),
     ] {
         write(base, lamp, sky);
         place.refused(2, render, &[words]);
@@ -279,4 +286,39 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 {thin
     place.refused(2, render, &["paints.csv:3:1", "ascend"]);
     write("", "", "cieSky 16 zenithLuminance 1");
     place.gives(0, render);
+}
+
+#[test]
+fn the_sun_stands_where_angles_or_place_and_time_say() {
+    let place = Place::new();
+    let lux = |sky: &str| -> Vec<f64> {
+        let scene = format!(
+            "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }} Background {{ {sky} }}
+Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
+Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
+        );
+        place.put("s.txt", scene);
+        let at = |normal: &str| -> f64 {
+            let measure = format!("measure s.txt --at 0,0,0 --normal {normal} --samples 1024");
+            let row = place.gives(0, &measure).out.lines().nth(1).unwrap().to_string();
+            row.split(',').nth(6).unwrap().parse().unwrap()
+        };
+        ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
+    };
+    // Reda and Andreas, 2003: in Colorado the sun stands 39.872 degrees high and at 194.340.
+    let written = lux("sun -0.190061 0.641085 0.743564");
+    assert!(written[3] > written[2] && written[2] > written[1] && written[1] > 0.0, "{written:?}");
+    for sky in [
+        "sunAltitude 39.872 sunAzimuth 194.340",
+        "latitude 39.742476 longitude -105.1786 date 2003 10 17 time 12 30 30 timeZone -7",
+        "latitude 39.742476 longitude -105.1786 date 2003 10 17 time 19 30 30",
+    ] {
+        let found = lux(sky);
+        let near = found.iter().zip(&written).all(|(a, b)| (a / b - 1.0).abs() < 2e-3);
+        assert!(near, "{sky}: {found:?}, not {written:?}");
+    }
+    // At midnight it is told of.
+    lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
+    let told = place.gives(1, "check s.txt --exposure -13").out;
+    assert!(told.contains("degrees below the horizon") && told.contains("s.txt:1:"), "{told}");
 }

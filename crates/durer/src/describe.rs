@@ -67,6 +67,8 @@ pub enum Rule {
     NonZero,
     /// Between these, both excluded.
     Between(f32, f32),
+    /// Between these, both included.
+    From(f32, f32),
     /// More than zero and at most this.
     UpTo(f32),
     /// From 0 to 1.
@@ -93,6 +95,9 @@ impl Rule {
             }
             (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
                 Some(format!("must be more than {low} and less than {high}"))
+            }
+            (Rule::From(low, high), Value::Float(x)) if *x < low || *x > high => {
+                Some(format!("must be from {low} to {high}"))
             }
             (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
                 Some(format!("must be more than 0 and at most {high}"))

@@ -25,6 +25,20 @@ class Background(Thing):
 
     sun: three numbers, not 0 0 0. The way to the sun, of any length, with y upwards: a clear sky and the sun light the scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
 
+    sun_altitude: number, from -90 to 90. The same by angles: how high the sun stands, in degrees above the horizon.
+
+    sun_azimuth: number. And where, in degrees from north (-z) over east (x): 180 is south.
+
+    latitude: number, from -90 to 90. The same by place, date and time: degrees north of the equator.
+
+    longitude: number, from -360 to 360. Degrees east of Greenwich.
+
+    date: three numbers, whole, 1 to 9999. Year, month and day.
+
+    time: three numbers. Hours, minutes and seconds of a clock there.
+
+    time_zone: number, from -14 to 14. Hours that this clock is before that of Greenwich, summer time included; 0 where nothing is written.
+
     turbidity: number, more than 0. How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to 10.
 
     cie_sky: whole number, from 1 to 16. Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose place `sun` says for all but 1, 3, 5 and 16.
@@ -46,6 +60,13 @@ class Background(Thing):
         cube_map: Optional[str] = None,
         environment: Optional[str] = None,
         sun: Optional[npt.ArrayLike] = None,
+        sun_altitude: Optional[float] = None,
+        sun_azimuth: Optional[float] = None,
+        latitude: Optional[float] = None,
+        longitude: Optional[float] = None,
+        date: Optional[npt.ArrayLike] = None,
+        time: Optional[npt.ArrayLike] = None,
+        time_zone: Optional[float] = None,
         turbidity: Optional[float] = None,
         cie_sky: Optional[Union[int, Material]] = None,
         zenith_luminance: Optional[float] = None,
@@ -59,6 +80,13 @@ class Background(Thing):
             ("cubeMap", cube_map),
             ("environment", environment),
             ("sun", sun),
+            ("sunAltitude", sun_altitude),
+            ("sunAzimuth", sun_azimuth),
+            ("latitude", latitude),
+            ("longitude", longitude),
+            ("date", date),
+            ("time", time),
+            ("timeZone", time_zone),
             ("turbidity", turbidity),
             ("cieSky", cie_sky),
             ("zenithLuminance", zenith_luminance),
@@ -835,6 +863,8 @@ class PhotometricLight(Light):
 
     front: three numbers, not 0 0 0; 1 0 0 where it is not given. Where its horizontal angle 0 points; made perpendicular to `direction`.
 
+    focal_length: number, 0 or more; 0 where it is not given. How far behind it its light seems to come from, as that of a lamp with a reflector: at a distance d it has faded as at d and this together.
+
     color: three numbers; 1 1 1 where it is not given. What multiplies what was measured, by colour.
 
     spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
@@ -847,6 +877,7 @@ class PhotometricLight(Light):
         file: str,
         direction: Optional[npt.ArrayLike] = None,
         front: Optional[npt.ArrayLike] = None,
+        focal_length: Optional[float] = None,
         color: Optional[npt.ArrayLike] = None,
         spectrum: Optional[str] = None,
     ) -> None:
@@ -855,6 +886,7 @@ class PhotometricLight(Light):
             ("file", file),
             ("direction", direction),
             ("front", front),
+            ("focalLength", focal_length),
             ("color", color),
             ("spectrum", spectrum),
         ])
@@ -961,11 +993,11 @@ class PrincipledMaterial(Material):
 
     transmission_weight_texture: path. A picture that multiplies `transmissionWeight`.
 
-    transmission_color: three numbers; 1 1 1 where it is not given. Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface.
+    transmission_color: three numbers; 1 1 1 where it is not given. Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes the surface. Thin walls are that deep: at an angle more is lost.
 
     transmission_color_texture: path. A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values are read as sRGB.
 
-    transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it.
+    transmission_depth: number, 0 or more; 0 where it is not given. How deep light goes until it has `transmissionColor`, in units of the world; 0: the surface tints it. Of thin walls any depth makes the inside absorb, what is reflected there too.
 
     transmission_scatter: three numbers; 0 0 0 where it is not given. Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is clear.
 

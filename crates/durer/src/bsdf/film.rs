@@ -174,12 +174,6 @@ fn root(a: Vec2) -> Vec2 {
     Vec2::new(if a.y < 0.0 { -real } else { real }, imaginary)
 }
 
-/// What a sheet reflects of which one face has a film: with all ways to and fro between its faces.
-pub fn sheet(film: Spectrum, other: f32) -> Spectrum {
-    let through = Spectrum::ONE - film;
-    film + through * through * other / (Spectrum::ONE - film * other).max(Spectrum::splat(1e-6))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -254,7 +248,6 @@ mod tests {
         }
         let total = Film::on_dielectric(&waves(0.5), 0.4, 1.3 / 1.5, 1.0 / 1.5, 1.0).reflected(0.2);
         assert_eq!(total, Spectrum::ONE);
-        assert!((sheet(Spectrum::splat(0.04), 0.04) - 0.08 / 1.04).abs().max_element() < 1e-6);
         assert!((metal_index(0.848).x - 0.41).abs() < 0.1 && metal_index(0.848).y > 2.0, "{}", metal_index(0.848));
     }
 }

@@ -9,20 +9,70 @@ use crate::spectrum::Spectrum;
 ///
 /// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.5.
 pub fn dielectric(cosine: f32, eta: f32) -> f32 {
+    let [parallel, perpendicular] = polarised(cosine, eta);
+    0.5 * (parallel + perpendicular)
+}
+
+/// The same of light that is polarised along the plane of incidence, and across it.
+fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     let sine2 = (1.0 - cosine * cosine).max(0.0) / (eta * eta);
     if sine2 >= 1.0 {
-        return 1.0;
+        return [1.0; 2];
     }
     let behind = (1.0 - sine2).sqrt();
     let parallel = (eta * cosine - behind) / (eta * cosine + behind);
     let perpendicular = (cosine - eta * behind) / (cosine + eta * behind);
-    0.5 * (parallel * parallel + perpendicular * perpendicular)
+    [parallel * parallel, perpendicular * perpendicular]
 }
 
-/// The same of a thin sheet, with all reflections inside it: 2 F / (1 + F).
-pub fn slab(cosine: f32, eta: f32) -> f32 {
-    let once = dielectric(cosine, eta);
-    2.0 * once / (1.0 + once)
+/// A thin sheet of a dielectric: light is reflected to and fro in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// The index inside over that around it.
+    pub eta: f32,
+    /// What is left of light that crosses its inside at right angles, if the sheet has a depth.
+    pub inside: Option<Spectrum>,
+}
+
+impl Sheet {
+    /// What it reflects and what goes through at a cosine, with all ways to and fro inside.
+    ///
+    /// Without a depth that is 2 F / (1 + F) and the rest, of unpolarised light at each face, as
+    /// others have it. With a depth light stays as it was polarised, and loses more at an angle.
+    pub fn at(&self, cosine: f32) -> (Spectrum, Spectrum) {
+        let Sheet { eta, inside } = *self;
+        let Some(inside) = inside else {
+            let once = dielectric(cosine, eta);
+            let reflected = Spectrum::splat(2.0 * once / (1.0 + once));
+            return (reflected, Spectrum::ONE - reflected);
+        };
+        let left = left_of(inside, cosine, eta);
+        let [parallel, perpendicular] = polarised(cosine, eta).map(|face| {
+            let face = Spectrum::splat(face);
+            to_and_fro(face, face, left)
+        });
+        (0.5 * (parallel.0 + perpendicular.0), 0.5 * (parallel.1 + perpendicular.1))
+    }
+
+    /// The same where one face reflects otherwise, and light as a whole.
+    pub fn faced(&self, face: Spectrum, cosine: f32) -> (Spectrum, Spectrum) {
+        let left = self.inside.map_or(Spectrum::ONE, |inside| left_of(inside, cosine, self.eta));
+        to_and_fro(face, Spectrum::splat(dielectric(cosine, self.eta)), left)
+    }
+}
+
+/// What is left of light that crosses a sheet at an angle: its way inside is longer.
+fn left_of(inside: Spectrum, cosine: f32, eta: f32) -> Spectrum {
+    let behind = (1.0 - (1.0 - cosine * cosine).max(0.0) / (eta * eta)).max(0.0).sqrt();
+    inside.max(Spectrum::ZERO).map(|left| if left < 1.0 { fp::pow(left, 1.0 / behind.max(1e-3)) } else { 1.0 })
+}
+
+/// What two faces reflect and let through, by the sum over all ways between them, each of which
+/// leaves a share.
+fn to_and_fro(front: Spectrum, back: Spectrum, left: Spectrum) -> (Spectrum, Spectrum) {
+    let entered = Spectrum::ONE - front;
+    let again = (Spectrum::ONE - front * back * left * left).max(Spectrum::splat(1e-6));
+    (front + entered * entered * back * left * left / again, entered * (Spectrum::ONE - back) * left / again)
 }
 
 /// The mean of [`dielectric`] over all directions by their cosine.

@@ -5,15 +5,16 @@
 //! energy, but the whole is not reciprocal. A matte base is weighed by the direction of the light
 //! too ([`Boundary`]): plastic is reciprocal.
 
+use super::Bsdf;
 use super::albedo::{self, Dielectric};
-use super::film::{self, Film};
+use super::film::Film;
+use super::fresnel::{self, Sheet};
 use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
 use super::lobe::glass::{Mirror, Refraction, Through};
 use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
-use super::{Bsdf, fresnel};
 use crate::describe::FileName;
 use crate::material::principled::Walls;
 use crate::material::{Parameters, PrincipledMaterial};
@@ -345,28 +346,30 @@ impl<'t> Stack<'_, 't> {
     /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
     /// it came.
     fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
-        let (m, wo) = (self.here, self.view.wo);
+        let (m, mu) = (self.here, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
-        let plain = fresnel::slab(wo.z, eta);
+        let color = self.view.lanes.reflectance(m.transmission_color);
+        // With a depth the inside has the colour, else all that passes.
+        let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
+        let sheet = Sheet { eta, inside };
         // A film is on one of its faces.
         let film = self.film(eta);
-        let covered = film.map(|film| film::sheet(film.reflected(wo.z), fresnel::dielectric(wo.z, eta)));
-        let reflected = covered.unwrap_or(Spectrum::splat(plain));
-        let (mut up, mut down) = (weight * self.specular, weight * self.view.lanes.reflectance(m.transmission_color));
-        let shares = ((weight * reflected).max_element(), (weight * (Spectrum::ONE - reflected)).max_element());
+        let faced = |film: Film, cosine: f32| sheet.faced(film.reflected(cosine), cosine);
+        let (reflected, through) = film.map_or_else(|| sheet.at(mu), |film| faced(film, mu));
+        let (mut up, mut down) = (weight * self.specular, weight * tint);
+        let shares = ((weight * reflected).max_element(), (weight * through).max_element());
         if ggx.is_smooth() || film.is_some() && eta == 1.0 {
             bsdf.push(Mirror, up * reflected, shares.0);
-            return bsdf.push(Through, down * (Spectrum::ONE - reflected), shares.1);
+            return bsdf.push(Through, down * through, shares.1);
         }
         if let Some(film) = film {
-            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
-            let with = mean(&|cosine| film::sheet(film.reflected(cosine), fresnel::dielectric(cosine, eta)));
-            let without = mean(&|cosine| Spectrum::splat(fresnel::slab(cosine, eta)));
-            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(mu, roughness, value);
+            up *= parts(mean(&|cosine| faced(film, cosine).0), mean(&|cosine| sheet.at(cosine).0));
+            down *= parts(mean(&|cosine| faced(film, cosine).1), mean(&|cosine| sheet.at(cosine).1));
         }
-        let gain = 1.0 / albedo::ggx(wo.z, roughness);
+        let gain = 1.0 / albedo::ggx(mu, roughness);
         let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };
-        bsdf.push(rough(Facet::Slab(eta), false), up * gain, shares.0);
-        bsdf.push(rough(Facet::BehindSlab(eta), true), down * gain, shares.1);
+        bsdf.push(rough(Facet::Sheet(sheet), false), up * gain, shares.0);
+        bsdf.push(rough(Facet::BehindSheet(sheet), true), down * gain, shares.1);
     }
 }

@@ -128,8 +128,11 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
         ("rough metal", rough(0.5, 0.0, Facet::Metal(fresnel::F82::WHITE), false)),
         ("brushed metal", rough(0.7, 0.6, Facet::Metal(fresnel::F82::WHITE), false)),
         ("very rough plastic", rough(1.0, 0.0, Facet::Dielectric(1.5), false)),
-        ("rough pane, front", rough(0.6, 0.0, Facet::Slab(1.5), false)),
-        ("rough pane, back", rough(0.6, 0.0, Facet::BehindSlab(1.5), true)),
+        ("rough pane, front", rough(0.6, 0.0, Facet::Sheet(fresnel::Sheet { eta: 1.5, inside: None }), false)),
+        (
+            "rough pane, back",
+            rough(0.6, 0.0, Facet::BehindSheet(fresnel::Sheet { eta: 1.5, inside: Some(Spectrum::splat(0.5)) }), true),
+        ),
         ("rough glass", glass(0.5, 1.5)),
         ("rough glass from inside", glass(0.6, 1.0 / 1.5)),
     ]

@@ -4,6 +4,7 @@ use super::lobe::blinn::Blinn;
 use super::proof::{Cells, Furnace, broad, filmed, given, lossless, seen};
 use super::*;
 use crate::material::{Parameters, PrincipledMaterial};
+use crate::math::fp;
 use crate::math::random::Random;
 
 #[test]
@@ -117,6 +118,37 @@ fn nothing_gives_back_more_than_it_gets() {
 }
 
 static TABLES: std::sync::OnceLock<Tables> = std::sync::OnceLock::new();
+
+#[test]
+fn a_sheet_is_the_sum_over_all_ways_between_its_faces() {
+    for (eta, left, cosine) in [(1.5, 1.0, 1.0), (1.52, 0.5, 0.7), (1.3, 0.9, 0.1), (2.0, 0.0, 0.5), (0.8, 0.3, 0.9)] {
+        let (sine2, c) = ((1.0 - cosine * cosine) / (eta * eta), cosine);
+        let inside = f64::sqrt(1.0 - sine2);
+        let once = f64::from(fp::pow(left as f32, (1.0 / inside) as f32));
+        let faces = [(eta * c - inside) / (eta * c + inside), (c - eta * inside) / (c + eta * inside)];
+        let (mut reflected, mut through) = (0.0, 0.0);
+        for face in faces.map(|amplitude| amplitude * amplitude) {
+            reflected += 0.5 * face;
+            let mut light = 0.5 * (1.0 - face) * once;
+            for way in 0..200 {
+                *(if way % 2 == 0 { &mut through } else { &mut reflected }) += light * (1.0 - face);
+                light *= face * once;
+            }
+        }
+        let sheet = fresnel::Sheet { eta: eta as f32, inside: Some(Spectrum::splat(left as f32)) };
+        let (up, down) = sheet.at(cosine as f32);
+        let near = |a: Spectrum, b: f64| (f64::from(a[0]) - b).abs() < 1e-5;
+        assert!(
+            near(up, reflected) && near(down, through),
+            "{eta} {left} {cosine}: {up} {down}, {reflected} {through}"
+        );
+    }
+    // Without a depth the faces are of unpolarised light; a face may reflect otherwise.
+    let plain = fresnel::Sheet { eta: 1.5, inside: None };
+    for (up, down) in [plain.at(1.0), plain.faced(Spectrum::splat(0.04), 1.0)] {
+        assert!((up[0] - 0.08 / 1.04).abs() < 1e-6 && (down[0] - 0.96 / 1.04).abs() < 1e-6, "{up} {down}");
+    }
+}
 
 #[test]
 fn fresnel_and_its_mean_agree() {

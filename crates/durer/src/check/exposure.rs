@@ -45,7 +45,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     ))
     .effect(format!("{} of the picture is white", percent(white, shown.len())));
     let background = &scout.subject.scene.background;
-    let sky = background.sun.is_some() || background.cie_sky.is_some();
+    let sky = background.sun().is_some() || background.cie_sky.is_some();
     let lamp = super::lamps::brightest(scout).filter(|_| !sky);
     let exposure = number(stops + stops_of(scout.subject.exposure));
     let help = match sky {

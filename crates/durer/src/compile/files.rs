@@ -237,7 +237,11 @@ impl<'r> Loader<'r> {
 
     /// How strong a light shines in each direction, if a file says that.
     pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
-        self.parsed(light.profile()?, "photometric file", diagnostics, format::ies::read).map(Arc::new)
+        let name = light.profile()?;
+        match self.assets.profiles.get(&name.path) {
+            Some(profile) => Some(Arc::clone(profile)),
+            None => self.parsed(name, "photometric file", diagnostics, format::ies::read).map(Arc::new),
+        }
     }
 
     /// The densities of a file, and the box that they fill.
@@ -291,18 +295,23 @@ impl<'r> Loader<'r> {
     }
 
     /// The picture around a scene.
-    pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
+    pub(super) fn environment(
+        &mut self,
+        written: &Background,
+        span: Span,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
-            if written.cie_sky.is_some_and(CieSky::wants_sun) && written.sun.is_none() {
+            if written.cie_sky.is_some_and(CieSky::wants_sun) && written.sun().is_none() {
                 let message = "this `cieSky` is brightest about the sun, and no `sun` says where that is";
                 let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
-                diagnostics.push(Diagnostic::error(message).help(help));
+                diagnostics.push(Diagnostic::error(message).at(span).help(help));
                 return None;
             }
             let picture = match written.cie_sky() {
                 Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
                 None => {
-                    let clear = Sky::new(written.sun?, written.turbidity());
+                    let clear = Sky::new(written.sun()?, written.turbidity());
                     sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
                 }
             };

@@ -117,7 +117,8 @@ pub fn compile(
         compiled.push(crate::world::Material::Phong(Phong::default()));
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
-    let environment = loader.environment(&scene.background, &mut own);
+    check_sun(scene, &mut own);
+    let environment = loader.environment(&scene.background, scene.background_span, &mut own);
     let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
     lights.extend(sun(&scene.background));
@@ -235,6 +236,23 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts })
 }
 
+/// Says where the place of the sun is no place, or none from which it shines.
+fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
+    let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
+    let diagnostic = match scene.background.way_to_sun() {
+        Err(message) => Diagnostic::error(message),
+        Ok(Some(way)) if low(way) > 0.0 => {
+            let message = format!("the sun is {:.1} degrees below the horizon", low(way));
+            let warning = Diagnostic::warning(message).code("sun-below");
+            warning
+                .effect("it is shown as if it stood on the horizon")
+                .help("by night leave the sun out, and write what lights the scene")
+        }
+        Ok(_) => return,
+    };
+    diagnostics.push(diagnostic.at(scene.background_span));
+}
+
 fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diagnostics) {
     let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
     if parallel < 1e-6 {
@@ -248,7 +266,7 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 fn sun(background: &scene::Background) -> Option<Light> {
     // Of the standard skies it is written where the sun is, but what they give is the sky's light
     // alone.
-    let way = background.sun.filter(|_| background.cie_sky.is_none())?;
+    let way = background.sun().filter(|_| background.cie_sky.is_none())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));

@@ -1,9 +1,11 @@
-//! What a scene has in memory, as files beside its text: meshes as PLY, pictures as they are.
+//! What a scene has in memory, as files beside its text: meshes as PLY, measured lamps as IES files,
+//! pictures as they are.
 
-use super::extension;
 use super::ply::write_whole;
+use super::{extension, ies};
 use crate::describe::{Describe, FileName, Value};
 use crate::image;
+use crate::light::Light;
 use crate::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
 use crate::source::Source;
 use crate::texture::Mapping;
@@ -32,7 +34,10 @@ pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<B
         }
     }
     put.fields(&mut made.background);
-    made.assets = Assets { meshes: BTreeMap::new(), pictures: put.textures.into_values().collect() };
+    for light in made.lights.iter_mut().flatten() {
+        put.light(&mut light.value);
+    }
+    made.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
     (made, put.files)
 }
 
@@ -94,6 +99,16 @@ impl Put<'_> {
         })
     }
 
+    /// What a measured lamp and a measured spectrum name.
+    fn light(&mut self, light: &mut Light) {
+        match light {
+            Light::Directional(light) => self.fields(light),
+            Light::Point(light) => self.fields(light),
+            Light::Spot(light) => self.fields(light),
+            Light::Photometric(light) => self.fields(light),
+        }
+    }
+
     /// The new name of a thing, which is put beside the scene when it is first named.
     fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
@@ -122,12 +137,16 @@ impl Put<'_> {
         }
     }
 
-    /// The new name of a picture: that of its file, or of a texture that says how it lies.
+    /// The new name of a measured lamp, or of a picture: that of its file, or of a texture that says
+    /// how it lies.
     fn named(&mut self, name: &str) -> String {
         if let Some((known, _)) = self.textures.get(name) {
             return known.clone();
         }
         let scene = self.scene;
+        if let Some(profile) = scene.assets.profiles.get(name) {
+            return self.once("lamp", name, |put| put.file(name, "ies", ies::write(profile)));
+        }
         let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // `lamp.csv:red` and `picture.png:g` are a column and a channel of a file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));

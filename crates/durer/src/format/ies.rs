@@ -156,6 +156,26 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
     Ok(Profile { kind, vertical, horizontal, candela })
 }
 
+/// The same as a file: what is read of it is equal to the bit.
+pub fn write(profile: &Profile) -> Vec<u8> {
+    let Profile { kind, vertical, horizontal, candela } = profile;
+    let kind = match kind {
+        ProfileKind::C => 1,
+        ProfileKind::B => 2,
+        ProfileKind::A => 3,
+    };
+    let mut text = String::from("IESNA:LM-63-2002\nTILT=NONE\n");
+    text += &format!("1 -1 1 {} {} {kind} 2 0 0 0\n1 1 0\n", vertical.len(), horizontal.len());
+    for values in [vertical, horizontal, candela] {
+        // Lines of more than 256 characters are not allowed.
+        for line in values.chunks(10) {
+            let words: Vec<String> = line.iter().map(f32::to_string).collect();
+            text += &(words.join(" ") + "\n");
+        }
+    }
+    text.into_bytes()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -192,6 +212,20 @@ mod tests {
 
     fn fp_cos(degrees: f64) -> f64 {
         crate::math::fp::sin_cos_degrees(degrees).1
+    }
+
+    #[test]
+    fn what_is_written_is_read_to_the_bit() {
+        let mut random = crate::math::random::Random(7);
+        for kind in [ProfileKind::A, ProfileKind::B, ProfileKind::C] {
+            let rising = |count: usize| (0..count).map(|i| i as f32 * 90.0 / count as f32).collect::<Vec<_>>();
+            let (vertical, horizontal) = (rising(23), rising(11));
+            let candela = (0..23 * 11).map(|i| random.unit() * [1e-6, 0.1, 1.0, 2e3, 1e9][i % 5]).collect();
+            let profile = Profile { kind, vertical, horizontal, candela };
+            let text = String::from_utf8(write(&profile)).unwrap();
+            assert!(text.lines().all(|line| line.len() < 256));
+            assert_eq!(parsed(&text).unwrap(), profile);
+        }
     }
 
     #[test]

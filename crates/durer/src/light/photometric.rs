@@ -4,6 +4,7 @@ use super::{Emitter, Illumination};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
+use crate::source::Digest;
 use glam::DVec3;
 use std::f32::consts::PI;
 
@@ -18,6 +19,9 @@ described! {
         direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];
         /// Where its horizontal angle 0 points; made perpendicular to `direction`.
         front: Vec3 = Vec3::X, optional, Rule::NonZero, ["front" in set::DURER];
+        /// How far behind it its light seems to come from, as that of a lamp with a reflector: at a
+        /// distance d it has faded as at d and this together.
+        focal_length: f32 = 0.0, optional, Rule::NonNegative, ["focalLength" in set::DURER];
         /// What multiplies what was measured, by colour.
         color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
@@ -33,7 +37,8 @@ impl Emitter for PhotometricLight {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         // A light's colour is what a white matte surface shows: illuminance over pi.
-        let color = self.color / (PI * distance * distance);
+        let faded = distance + self.focal_length;
+        let color = self.color / (PI * faded * faded);
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
     }
 
@@ -86,6 +91,17 @@ pub enum ProfileKind {
 }
 
 impl Profile {
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let mut hasher = Digest::hasher();
+        hasher.count(self.kind as u64);
+        for values in [&self.vertical, &self.horizontal, &self.candela] {
+            hasher.count(values.len() as u64);
+            values.iter().for_each(|value| hasher.word(value.to_bits()));
+        }
+        hasher.finish()
+    }
+
     /// The most that it shines anywhere.
     pub fn most(&self) -> f32 {
         self.candela.iter().copied().fold(0.0, f32::max)

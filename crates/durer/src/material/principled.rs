@@ -83,14 +83,15 @@ described! {
         transmission_weight_texture: Option<FileName> = None, optional, Rule::Any,
             ["transmissionWeightTexture" in set::DURER];
         /// Colour of light that went `transmissionDepth` deep; where that is 0, of all that passes
-        /// the surface.
+        /// the surface. Thin walls are that deep: at an angle more is lost.
         transmission_color: Vec3 = Vec3::ONE, optional, Rule::Any, ["transmissionColor" in set::DURER];
         /// A picture that multiplies `transmissionColor` where `transmissionDepth` is 0; its values
         /// are read as sRGB.
         transmission_color_texture: Option<FileName> = None, optional, Rule::Any,
             ["transmissionColorTexture" in set::DURER];
         /// How deep light goes until it has `transmissionColor`, in units of the world; 0: the
-        /// surface tints it.
+        /// surface tints it. Of thin walls any depth makes the inside absorb, what is reflected
+        /// there too.
         transmission_depth: f32 = 0.0, optional, Rule::NonNegative, ["transmissionDepth" in set::DURER];
         /// Colour of the light that a body scatters inside, per `transmissionDepth`; 0 0 0: it is
         /// clear.

@@ -1,7 +1,9 @@
-//! What a scene brings along instead of naming files: meshes and pictures in memory.
+//! What a scene brings along instead of naming files: meshes, pictures and measured lamps in
+//! memory.
 
 use crate::describe::{FileName, Rule};
 use crate::dialect::set;
+use crate::light::Profile;
 use crate::shape::MeshData;
 use crate::source::Digest;
 use crate::texture::{Channel, Mapping, Wrap};
@@ -11,7 +13,7 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes and pictures by name. A [`FileName`] of the scene means the
+/// Meshes, pictures and measured lamps by name. A [`FileName`] of the scene means the
 /// asset of that name, if there is one, and else a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
@@ -19,6 +21,8 @@ pub struct Assets {
     pub meshes: BTreeMap<String, Arc<MeshData>>,
     /// Pictures and how they lie on surfaces.
     pub pictures: BTreeMap<String, Picture>,
+    /// Measured lamps.
+    pub profiles: BTreeMap<String, Arc<Profile>>,
 }
 
 /// A picture that a material names.
@@ -139,13 +143,13 @@ impl PictureBytes {
 impl Assets {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.meshes.is_empty() && self.pictures.is_empty()
+        self.meshes.is_empty() && self.pictures.is_empty() && self.profiles.is_empty()
     }
 
     /// Whether some are in no files, so that a text cannot name them.
     pub fn has_loose(&self) -> bool {
         let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
-        !self.meshes.is_empty() || self.pictures.values().any(loose)
+        !self.meshes.is_empty() || !self.profiles.is_empty() || self.pictures.values().any(loose)
     }
 
     /// The pictures that are in files, which a scene's text can name.
@@ -157,7 +161,8 @@ impl Assets {
 /// Assets are told by their hashes: a description with megabytes of numbers would be of no use.
 impl Serialize for Assets {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.meshes.len() + self.pictures.len()))?;
+        let count = self.meshes.len() + self.pictures.len() + self.profiles.len();
+        let mut map = serializer.serialize_map(Some(count))?;
         for (name, mesh) in &self.meshes {
             map.serialize_entry(name, &mesh.digest())?;
         }
@@ -167,6 +172,9 @@ impl Serialize for Assets {
                 PictureBytes::Here(_, bytes) => Digest::of(bytes).to_string(),
             };
             map.serialize_entry(name, &(file, &picture.mapping))?;
+        }
+        for (name, profile) in &self.profiles {
+            map.serialize_entry(name, &profile.digest())?;
         }
         map.end()
     }

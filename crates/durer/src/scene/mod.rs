@@ -17,6 +17,7 @@ use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use crate::texture::CieSky;
+use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
 pub use matrix::MatrixOp;
@@ -41,6 +42,21 @@ described! {
         /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the
         /// scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
         sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
+        /// The same by angles: how high the sun stands, in degrees above the horizon.
+        sun_altitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
+        /// And where, in degrees from north (-z) over east (x): 180 is south.
+        sun_azimuth: Option<f32> = None, optional, Rule::Any, ["sunAzimuth" in set::DURER];
+        /// The same by place, date and time: degrees north of the equator.
+        latitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["latitude" in set::DURER];
+        /// Degrees east of Greenwich.
+        longitude: Option<f32> = None, optional, Rule::From(-360.0, 360.0), ["longitude" in set::DURER];
+        /// Year, month and day.
+        date: Option<Vec3> = None, optional, Rule::Counts(9999), ["date" in set::DURER];
+        /// Hours, minutes and seconds of a clock there.
+        time: Option<Vec3> = None, optional, Rule::Any, ["time" in set::DURER];
+        /// Hours that this clock is before that of Greenwich, summer time included; 0 where nothing
+        /// is written.
+        time_zone: Option<f32> = None, optional, Rule::From(-14.0, 14.0), ["timeZone" in set::DURER];
         /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to
         /// 10.
         turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
@@ -66,10 +82,70 @@ impl Background {
         self.turbidity.unwrap_or(3.0)
     }
 
+    /// The way to the sun, of any length, if one is asked for.
+    ///
+    /// # Errors
+    ///
+    /// In words, where its place is said in more than one way, in part, or by a time that is none.
+    pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
+        let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
+        let clock = [
+            ("latitude", self.latitude.is_some()),
+            ("longitude", self.longitude.is_some()),
+            ("date", self.date.is_some()),
+            ("time", self.time.is_some()),
+            ("timeZone", self.time_zone.is_some()),
+        ];
+        let direct = [("sun", self.sun.is_some())];
+        let given = |words: &[(&'static str, bool)]| words.iter().find(|(_, given)| *given).map(|(word, _)| *word);
+        if let [first, second, ..] =
+            [given(&direct), given(&angles), given(&clock)].into_iter().flatten().collect::<Vec<_>>()[..]
+        {
+            return Err(format!("the sun's place is said twice, by `{first}` and by `{second}`"));
+        }
+        // A clock without a zone is that of Greenwich.
+        let missing = |words: &[(&'static str, bool)]| match given(words) {
+            Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
+                Some((lacking, _)) => {
+                    Err(format!("the sun's place is said in part: beside `{word}` there is no `{lacking}`"))
+                }
+                None => Ok(()),
+            },
+            None => Ok(()),
+        };
+        missing(&angles)?;
+        missing(&clock)?;
+        if let (Some(altitude), Some(azimuth)) = (self.sun_altitude, self.sun_azimuth) {
+            return Ok(Some(almanac::way([altitude, azimuth].map(f64::from))));
+        }
+        let (Some(latitude), Some(longitude), Some(date), Some(time)) =
+            (self.latitude, self.longitude, self.date, self.time)
+        else {
+            return Ok(self.sun);
+        };
+        let [hour, minute, second] = time.to_array().map(f64::from);
+        let sixty = 0.0..60.0;
+        if !(0.0..=24.0).contains(&hour) || !sixty.contains(&minute) || !sixty.contains(&second) {
+            return Err("there is no such `time`: it is hours, minutes and seconds, as 14 30 0".into());
+        }
+        let date = date.to_array().map(|part| part as i32);
+        let hours = hour + minute / 60.0 + second / 3600.0;
+        let moment = Moment { date, hours, zone: f64::from(self.time_zone.unwrap_or(0.0)) };
+        if !moment.exists() {
+            return Err("there is no such `date`: it is year, month and day, as 2026 6 21".into());
+        }
+        Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
+    }
+
+    /// The same, if that is sound.
+    pub fn sun(&self) -> Option<Vec3> {
+        self.way_to_sun().ok().flatten()
+    }
+
     /// The standard sky, if one is asked for.
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
-        self.cie_sky.map(|number| CieSky::new(number, self.sun.unwrap_or(Vec3::Y), zenith, ground))
+        self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
     }
 
     /// How far the environment is turned about y, in degrees, and what multiplies it.
@@ -120,6 +196,9 @@ pub struct Scene {
     /// Where the camera is written.
     #[serde(skip)]
     pub camera_span: Span,
+    /// Where the background is written.
+    #[serde(skip)]
+    pub background_span: Span,
 }
 
 impl Scene {
@@ -129,7 +208,7 @@ impl Scene {
         let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
         let background = &self.background;
         background.environment.is_some()
-            || background.sun.is_some()
+            || background.sun().is_some()
             || background.cie_sky.is_some()
             || self.fog.is_some()
             || self.materials.iter().any(layered)
@@ -143,7 +222,7 @@ impl Scene {
             Material::Principled(layers) => layers.emission_luminance > 0.0,
             _ => false,
         };
-        self.background.environment.is_some() || self.background.sun.is_some() || self.materials.iter().any(shines)
+        self.background.environment.is_some() || self.background.sun().is_some() || self.materials.iter().any(shines)
     }
 }
 

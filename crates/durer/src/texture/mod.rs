@@ -1,5 +1,6 @@
 //! Pictures on surfaces and around the scene.
 
+pub mod almanac;
 pub mod cie_sky;
 pub mod cube_map;
 pub mod environment;

@@ -2,7 +2,7 @@
 
 use super::{NOTHING, Scatter, Scattered};
 use crate::bsdf::film::Film;
-use crate::bsdf::fresnel::{self, F82};
+use crate::bsdf::fresnel::{self, F82, Sheet};
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
@@ -15,9 +15,9 @@ pub enum Facet {
     /// As a boundary of dielectrics: the index behind over that before.
     Dielectric(f32),
     /// As a thin sheet of a dielectric.
-    Slab(f32),
-    /// All that a thin sheet does not reflect.
-    BehindSlab(f32),
+    Sheet(Sheet),
+    /// What goes through a thin sheet.
+    BehindSheet(Sheet),
     /// As what has a film on it.
     Film(Film),
 }
@@ -28,9 +28,9 @@ impl Facet {
         match *self {
             Facet::Metal(f82) => f82.at(cosine),
             Facet::Dielectric(eta) => Spectrum::splat(fresnel::dielectric(cosine, eta)),
-            Facet::Slab(eta) => Spectrum::splat(fresnel::slab(cosine, eta)),
+            Facet::Sheet(sheet) => sheet.at(cosine).0,
             Facet::Film(film) => film.reflected(cosine),
-            Facet::BehindSlab(eta) => Spectrum::splat(1.0 - fresnel::slab(cosine, eta)),
+            Facet::BehindSheet(sheet) => sheet.at(cosine).1,
         }
     }
 }

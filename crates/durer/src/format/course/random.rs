@@ -92,6 +92,7 @@ impl Random {
                 (Rule::Counts(most), _) => {
                     Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
                 }
+                (Rule::From(low, high), _) => Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0),
                 (Rule::Between(low, high), _) => {
                     Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
                 }
@@ -229,6 +230,7 @@ impl Random {
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
             assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
             camera_span: Default::default(),
+            background_span: Default::default(),
         }
     }
 }

@@ -405,6 +405,7 @@ fn value_of(kind: Kind, rule: Rule) -> String {
         Rule::NonNegative => "0 or more".into(),
         Rule::NonZero => "not 0 0 0".into(),
         Rule::Between(low, high) => format!("more than {low}, less than {high}"),
+        Rule::From(low, high) => format!("from {low} to {high}"),
         Rule::Share => "from 0 to 1".into(),
         Rule::UpTo(high) => format!("more than 0, at most {high}"),
         Rule::AtMost(most) => format!("at most {most}"),

@@ -96,6 +96,7 @@ impl Reader<'_, '_> {
         let mut background = Background::default();
         self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
         self.scene.background = background;
+        self.scene.background_span = keyword;
     }
 
     fn fog(&mut self, keyword: Span) {

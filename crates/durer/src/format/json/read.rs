@@ -74,6 +74,7 @@ impl Reader<'_> {
         }
         if let Some(node) = members.take("background") {
             scene.background = self.thing(scene.background, node, "background");
+            scene.background_span = self.span(&node.head());
         }
         if let Some(node) = members.take("fog") {
             scene.fog = self.spanned(node, |reader| Some(reader.thing(Default::default(), node, "fog")));

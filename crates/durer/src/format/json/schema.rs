@@ -129,6 +129,7 @@ fn field(field: &Field) -> Value {
         Rule::Between(low, high) => {
             (value["exclusiveMinimum"], value["exclusiveMaximum"]) = (number(low), number(high));
         }
+        Rule::From(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
         Rule::UpTo(high) => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(high)),
         Rule::Share => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
         Rule::AtMost(most) => value["maximum"] = json!(most),

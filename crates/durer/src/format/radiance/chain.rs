@@ -12,8 +12,9 @@ impl Reader<'_> {
 
     /// What a modifier becomes below patterns that a surface names before it.
     pub fn below(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
-        // Skies are few: what is below one is made anew.
-        let key = patterns.sky.is_none().then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
+        // Skies and lamps are few: what is below one is made anew.
+        let plain = patterns.sky.is_none() && patterns.spread.is_none();
+        let key = plain.then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
         if let Some(made) = key.as_ref().and_then(|key| self.made.get(key)) {
             return made.clone();
         }
@@ -31,19 +32,17 @@ impl Reader<'_> {
         self.missing(&thing);
         let kind = thing.kind.text.as_str();
         if PATTERNS.contains(&kind) {
-            let (tint, sky) = self.pattern(&thing, &map);
-            let all = Below { tint: patterns.tint * tint, sky: patterns.sky.clone().or(sky) };
+            let all = patterns.with(&self.pattern(number, &thing, &map));
             return match parent {
                 Some(parent) => self.below(parent, &all),
-                None => Made { tint: all.tint, sky: all.sky, ..Made::nothing() }.into(),
+                None => Made { patterns: all, ..Made::nothing() }.into(),
             };
         }
         if MIXTURES.contains(&kind) {
-            let patterns = Below { sky: None, ..*patterns };
+            let patterns = Below { sky: None, spread: None, ..*patterns };
             return self.mixture(number, &thing, &patterns).into();
         }
         let above = parent.map_or(Rc::new(Made::nothing()), |parent| self.made(parent));
-        let (tint, sky) = (above.tint * patterns.tint, patterns.sky.clone().or(above.sky.clone()));
-        self.material(number, &thing, &Made { tint, sky, ..Made::nothing() }).into()
+        self.material(number, &thing, &patterns.with(&above.patterns)).into()
     }
 }

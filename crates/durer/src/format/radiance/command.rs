@@ -1,7 +1,8 @@
-//! Commands: `!xform`, `!cat`, `!genbox` and `!genprism`, also through pipes into `xform`. Nothing
-//! is run: what they would print is made here.
+//! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, also through pipes into
+//! `xform`. Nothing is run: what they would print is made here.
 
 use super::body::Facets;
+use super::gensky;
 use super::place::Place;
 use super::state::Reader;
 use super::words::{Word, Words};
@@ -9,6 +10,7 @@ use super::xform::Transform;
 use crate::diag::Diagnostic;
 use crate::format::report::shown;
 use glam::{DAffine3, DVec3};
+use std::sync::Arc;
 
 /// Places where the output of a command goes.
 type Places = Vec<Place>;
@@ -59,6 +61,12 @@ impl Reader<'_> {
                 let facets = genprism(self, name, args, place);
                 build(self, facets, args, &places);
             }
+            "gensky" => {
+                let Some(text) = gensky::text(self.said, name, args) else { return };
+                let bytes: Arc<[u8]> = text.into_bytes().into();
+                let file = self.input.files.borrow_mut().add("what gensky prints", bytes.clone());
+                places.iter().for_each(|place| self.text(&bytes, file, place));
+            }
             _ => refuse(self, name),
         }
     }
@@ -67,7 +75,7 @@ impl Reader<'_> {
 /// Says that a command is not known, and what to do.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
-        "known are `xform`, `cat`, `genbox` and `genprism`. Run the command with Radiance's own `{}`, keep what it prints in a \
+        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `{}`, keep what it prints in a \
          file beside the scene, and write `!cat FILE` here",
         name.text
     );

@@ -2,10 +2,12 @@
 
 use super::words::{Start, Words};
 use crate::format::said::Said;
-use crate::math::fp;
-use std::f64::consts::PI;
+
+/// Coordinates of a table.
+const MOST_DIMENSIONS: usize = 8;
 
 /// A table, the last coordinate fastest.
+#[derive(Debug, PartialEq)]
 pub(super) struct Table {
     /// The values of each coordinate.
     axes: Vec<Vec<f64>>,
@@ -29,7 +31,7 @@ impl Table {
         };
         let first = next()?;
         let dimensions = first.count(said)?;
-        if !(1..=8).contains(&dimensions) {
+        if !(1..=MOST_DIMENSIONS).contains(&dimensions) {
             said.bad(first.at, "a table has 1 to 8 coordinates");
             return None;
         }
@@ -63,38 +65,37 @@ impl Table {
         (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0) as f32
     }
 
-    /// The even radiance that has the flux of a lamp whose table goes by the angle from its axis,
-    /// in degrees, last. A flat lamp's values are divided by the cosine, which makes an
-    /// intensity of them.
-    pub fn flux(&self, flat: bool) -> f32 {
-        const STEPS: u32 = 720;
-        let angles = &self.axes[self.axes.len() - 1];
-        let columns = angles.len();
-        let rows = self.values.len() / columns;
-        // The mean over all other coordinates, at an angle.
-        let mean = |i: usize| (0..rows).map(|row| self.values[row * columns + i]).sum::<f64>() / rows as f64;
-        let means: Vec<f64> = (0..columns).map(mean).collect();
-        let at = |degrees: f64| -> f64 {
-            let after = angles.iter().position(|angle| *angle >= degrees);
-            match after {
-                Some(0) if degrees < angles[0] - 1e-9 => 0.0,
-                Some(0) => means[0],
-                Some(i) => {
-                    let share = (degrees - angles[i - 1]) / (angles[i] - angles[i - 1]);
-                    means[i - 1] + share * (means[i] - means[i - 1])
-                }
-                None => 0.0,
+    pub fn dimensions(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Between the values around, as many coordinates as it has; 0 beyond the ends.
+    pub fn at(&self, coordinates: &[f64]) -> f64 {
+        const SLACK: f64 = 1e-4;
+        // Of each coordinate the value before, and the way from there to the next.
+        let mut cells = [(0, 0.0); MOST_DIMENSIONS];
+        for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
+            let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));
+            if x < first - SLACK || x > last + SLACK {
+                return 0.0;
             }
-        };
-        let mut sum = 0.0;
-        for step in 0..STEPS {
-            let degrees = (f64::from(step) + 0.5) * 180.0 / f64::from(STEPS);
-            let (sin, _) = fp::sin_cos_degrees(degrees);
-            sum += at(degrees) * sin * (PI / f64::from(STEPS));
+            if axis.len() > 1 {
+                let rises = axis[0] <= axis[axis.len() - 1];
+                let after = axis.partition_point(|&value| (value <= x) == rises);
+                let i = after.clamp(1, axis.len() - 1) - 1;
+                let share = (x - axis[i]) / (axis[i + 1] - axis[i]);
+                *cell = (i, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 });
+            }
         }
-        // Over all directions; an even radiance L sends pi L per area, a sphere 4 pi L per area of
-        // its outline.
-        let flux = 2.0 * PI * sum / if flat { PI } else { 4.0 * PI };
-        flux.max(0.0) as f32
+        let corner = |bits: u32| {
+            let (mut index, mut share) = (0, 1.0);
+            for (dimension, axis) in self.axes.iter().enumerate() {
+                let ((i, way), next) = (cells[dimension], (bits >> dimension & 1) as usize);
+                index = index * axis.len() + (i + next).min(axis.len() - 1);
+                share *= if next == 1 { way } else { 1.0 - way };
+            }
+            share * self.values[index]
+        };
+        (0..1 << self.axes.len()).map(corner).sum()
     }
 }

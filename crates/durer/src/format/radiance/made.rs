@@ -1,23 +1,24 @@
 //! What modifiers and sources become.
 
 use super::sky::Sky;
+use super::spread::Spread;
 use crate::diag::Span;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
+use std::rc::Rc;
 
 /// What a modifier became.
 pub(super) struct Made {
     /// The number of the material in the scene; `None`: nothing is there.
     pub number: Option<u32>,
     pub kind: Kind,
-    /// What a pattern multiplies, everywhere alike.
-    pub tint: Color,
-    pub sky: Option<Sky>,
+    /// The patterns above it.
+    pub patterns: Below,
 }
 
 impl Made {
     pub fn nothing() -> Made {
-        Made { number: None, kind: Kind::Plain, tint: Vec3::ONE, sky: None }
+        Made { number: None, kind: Kind::Plain, patterns: Below::default() }
     }
 
     pub fn is_glass(&self) -> bool {
@@ -28,13 +29,27 @@ impl Made {
 /// Patterns over a material.
 #[derive(Clone)]
 pub(super) struct Below {
+    /// What they multiply, everywhere alike.
     pub tint: Color,
     pub sky: Option<Sky>,
+    /// What they multiply by the direction of light.
+    pub spread: Option<Rc<Spread>>,
 }
 
 impl Default for Below {
     fn default() -> Self {
-        Below { tint: Vec3::ONE, sky: None }
+        Below { tint: Vec3::ONE, sky: None, spread: None }
+    }
+}
+
+impl Below {
+    /// These and others, which come after them: of skies and spreads there is one.
+    pub fn with(&self, others: &Below) -> Below {
+        Below {
+            tint: self.tint * others.tint,
+            sky: self.sky.clone().or_else(|| others.sky.clone()),
+            spread: self.spread.clone().or_else(|| others.spread.clone()),
+        }
     }
 }
 
@@ -49,10 +64,10 @@ pub(super) enum Kind {
     Shining {
         radiance: Color,
     },
-    Spot {
+    /// Shining otherwise in each direction.
+    Aimed {
         radiance: Color,
-        direction: Vec3,
-        degrees: f32,
+        spread: Rc<Spread>,
         at: Span,
     },
 }

@@ -5,7 +5,8 @@
 //! our roughness.
 
 use super::args::Thing;
-use super::made::{Kind, Made};
+use super::made::{Below, Kind, Made};
+use super::spread::Spread;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
@@ -112,7 +113,7 @@ impl Reader<'_> {
     }
 
     /// What a material becomes below the patterns that are above it.
-    pub fn material(&mut self, number: usize, thing: &Thing, above: &Made) -> Made {
+    pub fn material(&mut self, number: usize, thing: &Thing, above: &Below) -> Made {
         let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
         let counts: &[usize] = match kind {
             "plastic" | "metal" | "dielectric" => &[5],
@@ -212,18 +213,22 @@ impl Reader<'_> {
                 if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
                     said.once(at, "the reach of a `glow` has no counterpart: it lights what is around it, however far");
                 }
+                if let Some(spread) = above.spread.clone() {
+                    return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
+                }
                 let number = Some(self.add_material(shining(color), at));
-                let kind = Kind::Shining { radiance: color };
-                return Made { number, kind, tint: Vec3::ONE, sky: above.sky.clone() };
+                let patterns = Below { sky: above.sky.clone(), ..Below::default() };
+                return Made { number, kind: Kind::Shining { radiance: color }, patterns };
             }
             "spotlight" => {
-                let direction = self.modifiers[number].map.transform_vector3(thing.point(4)).normalize_or_zero();
+                let focus = self.modifiers[number].map.transform_vector3(thing.point(4));
+                let direction = focus.normalize_or_zero();
                 if direction == glam::DVec3::ZERO {
                     said.bad(at, "a spotlight needs a direction");
                 }
-                let degrees = 0.5 * value(3).clamp(0.01, 360.0);
-                let kind = Kind::Spot { radiance: color, direction: direction.as_vec3(), degrees, at };
-                return Made { kind, ..Made::nothing() };
+                let degrees = f64::from(0.5 * value(3).clamp(0.01, 360.0));
+                let spread = Spread::Cone { aim: direction, degrees, focus: focus.length() }.into();
+                return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
             }
             _ => matte(color),
         };
@@ -260,12 +265,12 @@ impl Reader<'_> {
     }
 }
 
-/// A pane: what it does not absorb goes straight through, or is reflected.
+/// A pane: what its inside does not absorb goes straight through, or is reflected.
 fn sheet(left: Color, index: f32) -> PrincipledMaterial {
     PrincipledMaterial {
         transmission_color: left.min(Vec3::ONE),
+        transmission_depth: 1.0,
         walls: Walls::Thin,
-        transmission_depth: 0.0,
         ..body(Vec3::ONE, index)
     }
 }

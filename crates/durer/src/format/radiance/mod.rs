@@ -2,7 +2,7 @@
 //! `.vf` (views).
 //!
 //! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
-//! xform, genbox, genprism, rad and rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in
+//! xform, genbox, genprism, gensky, rad and rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in
 //! Radiance's own pictures; times 179 that is luminance in cd/m².
 
 mod args;
@@ -10,14 +10,18 @@ mod body;
 mod chain;
 mod command;
 mod data;
+mod gensky;
+mod lamp;
 mod made;
 mod material;
 mod mixture;
+mod outline;
 mod pattern;
 mod place;
 mod rif;
 mod sky;
 mod source;
+mod spread;
 mod standard;
 mod state;
 mod surface;

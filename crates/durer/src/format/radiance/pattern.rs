@@ -2,7 +2,9 @@
 
 use super::args::Thing;
 use super::data::Table;
+use super::made::Below;
 use super::sky::Sky;
+use super::spread::{self, Lamp, Spread};
 use super::state::Reader;
 use super::words::Word;
 use super::xform::Transform;
@@ -11,11 +13,12 @@ use crate::format::pictures::unusable;
 use crate::image::{self, Encoded};
 use crate::math::{Color, Vec3};
 use glam::{DAffine3, DMat3};
+use std::rc::Rc;
 
 impl Reader<'_> {
-    /// The colour that a pattern multiplies everywhere, and the sky that it is. `map` is where its
-    /// text was put.
-    pub fn pattern(&self, thing: &Thing, map: &DAffine3) -> (Color, Option<Sky>) {
+    /// What a pattern, by its number among the modifiers, multiplies. `map` is where its text was
+    /// put.
+    pub fn pattern(&mut self, number: usize, thing: &Thing, map: &DAffine3) -> Below {
         let (at, kind, said) = (thing.at(), thing.kind.text.as_str(), self.said);
         let text = |i: usize| thing.texts.get(i).map_or("", |word| word.text.as_str());
         let literal = |i: usize| parse_f32(text(i).as_bytes()).ok().map(|x| x.max(0.0));
@@ -25,8 +28,12 @@ impl Reader<'_> {
                 Vec3::ONE
             }
             "brightfunc" if text(0) == "skybr" => {
-                let sky = Sky::of(thing, map.matrix3 * self.own_turn(thing), said);
-                return (Vec3::ONE, sky);
+                let sky = Sky::of(thing, map.matrix3 * self.own_turn(thing, 2), said);
+                return Below { sky, ..Below::default() };
+            }
+            "brightfunc" if text(0) == "skybright" && text(1).ends_with("perezlum.cal") => {
+                let sky = Sky::perez(thing, map.matrix3 * self.own_turn(thing, 2), said);
+                return Below { sky, ..Below::default() };
             }
             "brightfunc" if literal(0).is_some() => Vec3::splat(literal(0).unwrap_or(1.0)),
             "colorfunc" if (0..3).all(|i| literal(i).is_some()) => {
@@ -47,44 +54,53 @@ impl Reader<'_> {
                 }
                 None => Vec3::ONE,
             },
-            "brightdata" => Vec3::splat(self.mean_of_data(thing, text(0), thing.texts.get(1))),
-            "colordata" => {
-                Vec3::from_array([0, 1, 2].map(|i| self.mean_of_data(thing, text(i), thing.texts.get(3 + i))))
+            "brightdata" if spread::coordinates(thing) > 0 => {
+                if let Some(spread) = self.spread(number, thing, map) {
+                    return Below { spread: Some(spread), ..Below::default() };
+                }
+                Vec3::splat(self.mean_of_data(thing, thing.texts.get(1)))
             }
+            "brightdata" => Vec3::splat(self.mean_of_data(thing, thing.texts.get(1))),
+            "colordata" => Vec3::from_array([0, 1, 2].map(|i| self.mean_of_data(thing, thing.texts.get(3 + i)))),
             _ => Vec3::ONE,
         };
-        (tint, None)
+        Below { tint, ..Below::default() }
     }
 
-    /// The turn that `xform` has written behind the names of a function and its file.
-    fn own_turn(&self, thing: &Thing) -> DMat3 {
-        let (mut rest, mut transform) = (thing.texts.get(2..).unwrap_or_default(), Transform::default());
+    /// The turn that `xform` has written behind so many names of a function.
+    fn own_turn(&self, thing: &Thing, names: usize) -> DMat3 {
+        let (mut rest, mut transform) = (thing.texts.get(names..).unwrap_or_default(), Transform::default());
         while transform.option(&mut rest, self.said) {}
         transform.places().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
-    /// The mean of a table, or of the light that it spreads over directions.
-    fn mean_of_data(&self, thing: &Thing, function: &str, name: Option<&Word>) -> f32 {
+    /// What a table over the directions of a lamp says, which is read once.
+    fn spread(&mut self, number: usize, thing: &Thing, map: &DAffine3) -> Option<Rc<Spread>> {
+        if let Some(known) = self.spreads.get(&number) {
+            return Some(known.clone());
+        }
+        let table = self.table(thing, thing.texts.get(1))?;
+        let turn = map.matrix3 * self.own_turn(thing, 3 + spread::coordinates(thing));
+        let turn = (turn * (1.0 / turn.x_axis.length())).transpose();
+        let spread = Rc::new(Spread::Table(Lamp::new(thing, table, turn)?));
+        self.spreads.insert(number, spread.clone());
+        Some(spread)
+    }
+
+    fn table(&self, thing: &Thing, name: Option<&Word>) -> Option<Table> {
         let Some(name) = name else {
             self.said.bad(thing.at(), "a pattern of data needs a function, a file and coordinates");
-            return 1.0;
+            return None;
         };
-        let Some((bytes, file)) = self.open(name) else { return 1.0 };
-        let Some(table) = Table::read(&bytes, file, self.said) else { return 1.0 };
-        let angles: Vec<&str> = thing.texts.iter().skip(3).map(|word| word.text.as_str()).collect();
-        let lamp = angles.iter().any(|name| name.starts_with("src_"));
-        let scale = thing.number(0).filter(|_| lamp).unwrap_or(1.0).max(0.0);
-        match lamp {
-            true => {
-                let what = "the directions of a lamp have no counterpart: it shines evenly, with the same flux";
-                self.said.once(thing.at(), what);
-                scale * table.flux(function.starts_with("flat"))
-            }
-            false => {
-                self.said.once(thing.at(), "patterns of data have no counterpart: the mean is taken");
-                table.mean()
-            }
-        }
+        let (bytes, file) = self.open(name)?;
+        Table::read(&bytes, file, self.said)
+    }
+
+    /// The mean of a table.
+    fn mean_of_data(&self, thing: &Thing, name: Option<&Word>) -> f32 {
+        let Some(table) = self.table(thing, name) else { return 1.0 };
+        self.said.once(thing.at(), "patterns of data have no counterpart: the mean is taken");
+        table.mean()
     }
 
     /// The mean colour of a picture.

@@ -1,8 +1,10 @@
-//! Skies that `gensky` writes.
+//! Skies that `gensky` and `gendaylit` write.
 //!
 //! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
-//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; the manual page
-//! of gensky for the order of the numbers; Radiance's `skybright.cal`, which they are for.
+//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez,
+//! Seals and Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993;
+//! the manual pages of gensky and gendaylit for the order of the numbers; Radiance's
+//! `skybright.cal` and `perezlum.cal`, which they are for.
 
 use super::args::Thing;
 use crate::format::said::Said;
@@ -28,6 +30,8 @@ enum Cover {
     Overcast,
     Uniform,
     Intermediate,
+    /// By its five coefficients.
+    Perez([f32; 5]),
 }
 
 impl Sky {
@@ -61,6 +65,19 @@ impl Sky {
         Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
     }
 
+    /// The sky of any weather by its numbers: brightness, ground, five coefficients, way to the
+    /// sun; turned by a map, which keeps shapes.
+    pub fn perez(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
+        if !thing.has(&[10], said) {
+            return None;
+        }
+        let number = |i: usize| thing.number(i).unwrap_or(0.0);
+        let kind = Cover::Perez(std::array::from_fn(|i| number(2 + i)));
+        let turn = map.inverse() * map.x_axis.length();
+        let (zenith, ground) = (number(0).max(0.0), number(1).max(0.0));
+        Some(Sky { kind, zenith, ground, factor: 1.0, sun: thing.point(7).normalize_or_zero(), turn })
+    }
+
     /// How bright it is in a unit direction of the world.
     pub fn at(&self, dir: DVec3) -> f32 {
         let dir = self.turn * dir;
@@ -81,6 +98,10 @@ impl Sky {
             Cover::Clear => {
                 let haze = if height > 0.01 { 1.0 - fp::exp(-0.32 / height) } else { 1.0 };
                 self.zenith / self.factor * (0.91 + 10.0 * fp::exp(-3.0 * angle) + 0.45 * cosine * cosine) * haze
+            }
+            Cover::Perez([a, b, c, d, e]) => {
+                let by_height = 1.0 + a * fp::exp(b / height.max(0.01));
+                self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
             }
             Cover::Intermediate => {
                 // From the zenith.

@@ -1,25 +1,21 @@
-//! Light from infinitely far away, and spots.
+//! Light from infinitely far away.
 
 use super::args::Thing;
-use super::made::{Distant, Kind, Made};
+use super::made::{Distant, Kind};
 use super::place::Place;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::format::panorama;
 use crate::format::pictures::unusable;
-use crate::light::{DirectionalLight, Fade, Light, SpotLight};
+use crate::light::{DirectionalLight, Light};
 use crate::math::{Vec3, fp};
 use crate::scene::Spanned;
 use glam::DVec3;
-use std::f32::consts::PI;
 
 /// Degrees across which what is far away counts as a direction, as the sun does.
 const SMALL: f32 = 5.0;
 /// Rows of the picture around the scene.
 const ROWS: u32 = 256;
-
-/// Spots that stand for a surface.
-const SPOTS: u32 = 24;
 
 impl Reader<'_> {
     pub fn source(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
@@ -34,11 +30,9 @@ impl Reader<'_> {
         }
         let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
         let (radiance, sky) = match &made.kind {
-            Kind::Shining { radiance } => (*radiance, made.sky.clone()),
-            Kind::Spot { radiance, .. } => {
-                self.said.once(at, "a source that is a spot shines everywhere");
-                (*radiance, None)
-            }
+            Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
+            // All its light goes one way.
+            Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
             _ => return self.said.once(at, "a source that does not shine is not shown"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
@@ -53,33 +47,8 @@ impl Reader<'_> {
         self.distant.push(Distant { direction, cosine, radiance, sky, at });
     }
 
-    fn light(&mut self, value: Light, span: Span) {
+    pub fn light(&mut self, value: Light, span: Span) {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
-    }
-
-    /// Spots all over a disc with the area of a surface: light that goes one way only has no
-    /// counterpart that is a surface.
-    pub fn spot(&mut self, made: &Made, (area, center, normal): (f64, DVec3, Option<DVec3>), span: Span) {
-        let Kind::Spot { radiance, direction, degrees, at } = made.kind else { return };
-        self.said.once(at, format!("a spotlight is {SPOTS} spots, and its surface is not shown"));
-        let axis = direction.as_dvec3();
-        let cosine = normal.map_or(1.0, |normal| normal.dot(axis).max(0.0));
-        let (x, y) = normal.unwrap_or(axis).any_orthonormal_pair();
-        for i in 0..SPOTS {
-            // Vogel's spiral: as many spots in equal areas.
-            let radius = (area / f64::from(PI) * (f64::from(i) + 0.5) / f64::from(SPOTS)).sqrt();
-            let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
-            let light = SpotLight {
-                position: (center + radius * (cos * x + sin * y)).as_vec3(),
-                direction,
-                color: radiance * (area * cosine) as f32 / (PI * SPOTS as f32),
-                angle: degrees.min(180.0),
-                inner_angle: degrees.min(180.0),
-                fade: Fade::Squared,
-                spectrum: None,
-            };
-            self.light(light.into(), span);
-        }
     }
 
     /// Puts what is infinitely far away around the scene.

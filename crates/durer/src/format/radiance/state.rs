@@ -3,7 +3,9 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Distant, Made};
+use super::outline::Facing;
 use super::place::Place;
+use super::spread::Spread;
 use super::words::{Start, Word, Words};
 use crate::camera::Projection;
 use crate::diag::{Diagnostic, Span};
@@ -101,6 +103,10 @@ pub(super) struct Reader<'a> {
     /// By the number of the material: what is in the air there.
     pub mists: BTreeMap<u32, Fog>,
     pub distant: Vec<Distant>,
+    /// What patterns make of the directions of light, by the modifier's number; and the lamps that
+    /// shine so, by what they have of a direction.
+    pub spreads: BTreeMap<usize, Rc<Spread>>,
+    pub profiles: Vec<(Rc<Spread>, Facing)>,
     pub cutter: Cutter,
     pub scene: Scene,
     pub count: usize,
@@ -119,6 +125,8 @@ impl<'a> Reader<'a> {
             bodies: BTreeMap::new(),
             mists: BTreeMap::new(),
             distant: Vec::new(),
+            spreads: BTreeMap::new(),
+            profiles: Vec::new(),
             cutter: Cutter::new(input.bytes.len()),
             scene: Scene { root: Some(Group::default()), ..Scene::default() },
             count: 0,

@@ -3,6 +3,7 @@
 use super::args::Thing;
 use super::body::Body;
 use super::made::{Kind, Made};
+use super::outline::Outline;
 use super::place::Place;
 use super::state::Reader;
 use super::words::Word;
@@ -11,7 +12,6 @@ use crate::math::Vec3;
 use crate::scene::Node;
 use crate::shape::{Disc, Sphere};
 use glam::DVec3;
-use std::f64::consts::PI;
 
 impl Reader<'_> {
     pub fn surface(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
@@ -48,9 +48,7 @@ impl Reader<'_> {
                 if radius == 0.0 {
                     return self.said.warn_once("bad-value", at, "a sphere of radius 0 is left out");
                 }
-                let Some((made, number)) = self.shown(modifier, (4.0 * PI * radius * radius, center, None), at) else {
-                    return;
-                };
+                let Some((made, number)) = self.shown(modifier, &Outline::Ball { center, radius }, at) else { return };
                 let number = match &made.kind {
                     Kind::Glass { outside: Some(outside), .. } if inward => *outside,
                     Kind::Shining { .. } if inward => {
@@ -85,8 +83,8 @@ impl Reader<'_> {
                     return self.said.warn_once("bad-value", at, "a ring without a direction or a radius is left out");
                 };
                 let center = map.transform_point3(thing.point(0));
-                let area = PI * (outer * outer - inner * inner);
-                let Some((made, number)) = self.shown(modifier, (area, center, Some(normal)), at) else { return };
+                let outline = Outline::Ring { center, normal, radii: [inner, outer] };
+                let Some((made, number)) = self.shown(modifier, &outline, at) else { return };
                 if made.is_glass() {
                     return self.body(number, at).ring(center, normal, [inner, outer]);
                 }
@@ -110,10 +108,11 @@ impl Reader<'_> {
                 }
                 let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
                 let radii = radii.map(f64::abs);
-                let slant = (length * length + (radii[0] - radii[1]) * (radii[0] - radii[1])).sqrt();
-                let area = PI * (radii[0] + radii[1]) * slant * scale * scale;
-                let middle = map.transform_point3(0.5 * (ends[0] + ends[1]));
-                let Some((_, number)) = self.shown(modifier, (area, middle, None), at) else { return };
+                let outline = Outline::Side {
+                    ends: ends.map(|end| map.transform_point3(end)),
+                    radii: radii.map(|radius| scale * radius),
+                };
+                let Some((_, number)) = self.shown(modifier, &outline, at) else { return };
                 self.body(number, at).round(ends, radii, map, inward);
             }
             _ => {}
@@ -139,11 +138,7 @@ impl Reader<'_> {
         if place.inverted != (place.map.matrix3.determinant() < 0.0) {
             corners.reverse();
         }
-        let twice = (1..corners.len() - 1).map(|i| (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]));
-        let normal: DVec3 = twice.sum();
-        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
-        let shape = (0.5 * normal.length(), middle, normal.try_normalize());
-        let Some((_, number)) = self.shown(modifier, shape, at) else { return };
+        let Some((_, number)) = self.shown(modifier, &Outline::Polygon(&corners), at) else { return };
         let corners: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
         let mut triangles = Vec::with_capacity(corners.len() - 2);
         if self.cutter.cut(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
@@ -158,18 +153,12 @@ impl Reader<'_> {
     }
 
     /// What a surface is made of, with its number in the scene; `None` where nothing is shown.
-    /// `shape` is its area, middle and direction, if it has one.
-    fn shown(
-        &mut self,
-        modifier: Option<usize>,
-        shape: (f64, DVec3, Option<DVec3>),
-        at: Span,
-    ) -> Option<(std::rc::Rc<Made>, u32)> {
+    fn shown(&mut self, modifier: Option<usize>, outline: &Outline, at: Span) -> Option<(std::rc::Rc<Made>, u32)> {
         // What is made of nothing is there for programs that ask for it.
         let made = self.made(modifier?);
         match made.kind {
-            Kind::Spot { .. } => {
-                self.spot(&made, shape, at);
+            Kind::Aimed { .. } => {
+                self.lamp(&made, outline, at);
                 None
             }
             _ => made.number.map(|number| (made, number)),

@@ -2,6 +2,8 @@
 //! places.
 
 mod conventions;
+mod gensky;
+mod lamps;
 mod measured;
 
 use crate::format::testing::{folder, read_in};
@@ -112,6 +114,8 @@ fn materials_become_layers() {
     assert!(m.base_metalness == 0.95 && (m.specular_roughness - 0.2).abs() < 1e-6);
     let (m, _) = sphere("void glass m 0 0 3 .9 .8 .7");
     assert_eq!((m.walls, m.specular_ior, m.transmission_color), (Walls::Thin, 1.52, Vec3::new(0.9, 0.8, 0.7)));
+    // Its inside absorbs, of what is reflected there too.
+    assert_eq!(m.transmission_depth, 1.0);
     let (m, _) = sphere("void dielectric m 0 0 5 .5 .25 1 1.33 0");
     assert_eq!((m.walls, m.specular_ior, m.transmission_depth), (Walls::Solid, 1.33, 1.0));
     assert_eq!(m.transmission_color, Vec3::new(0.5, 0.25, 1.0));
@@ -180,7 +184,7 @@ fn errors_have_places() {
         ("!genbox m b 1 1", "1:2 error `genbox` needs a material, a name and three sizes"),
         (
             "!cat far.rad | grep x",
-            "1:16 error no command `grep` is run (known are `xform`, `cat`, `genbox` and `genprism`. Run the command with Radiance's own `grep`, keep what it prints in a file beside the scene, and write `!cat FILE` here)",
+            "1:16 error no command `grep` is run (known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `grep`, keep what it prints in a file beside the scene, and write `!cat FILE` here)",
         ),
         ("!| xform", "1:4 error there is no command beside `|`"),
         ("!", "1:2 error there is no command after `!`"),

@@ -25,6 +25,7 @@ fn sample(kind: Kind, rule: Rule) -> (String, Value) {
         // A solid of two materials before it.
         Kind::Int if rule == Rule::Any => ("1", Value::Int(1)),
         Kind::Int => ("7", Value::Int(7)),
+        Kind::Vec3 if matches!(rule, Rule::Counts(_)) => ("3 1. 2", Value::Vec3(Vec3::new(3.0, 1.0, 2.0))),
         Kind::Vec3 => (".25 -1.5e1 3.", Value::Vec3(Vec3::new(0.25, -15.0, 3.0))),
         Kind::Path => ("a/b.x", Value::Path(crate::describe::FileName { path: "a/b.x".into(), ..Default::default() })),
     };

@@ -244,7 +244,7 @@ impl Writer<'_> {
 
     fn surroundings(&mut self) {
         let background = &self.scene.background;
-        if background.environment.is_some() || background.sun.is_some() || background.cie_sky.is_some() {
+        if background.environment.is_some() || background.sun().is_some() || background.cie_sky.is_some() {
             self.left_out("glTF has no light from all around: it is left out");
         } else if background.color != Vec3::ZERO && background != &crate::scene::Background::default() {
             self.left_out("glTF has no background: its colour and light are left out");

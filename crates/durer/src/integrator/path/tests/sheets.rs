@@ -32,6 +32,11 @@ fn a_pane_lets_light_through_by_fresnel_and_its_colour() {
         for (pane, share) in [
             ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
             ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
+            // Of what is reflected inside, half is lost on each way: T = (1 - F)² / 2 / (1 - F² / 4).
+            (
+                "transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 transmissionDepth 1 walls thin",
+                0.96 * 0.96 * 0.5 / (1.0 - 0.0016 * 0.25),
+            ),
             ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * clear),
             ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * clear),
             // What is scattered, or bent, comes by other ways.
