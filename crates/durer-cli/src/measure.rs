@@ -33,10 +33,10 @@ pub struct MeasureArgs {
     /// The scene file
     pub scene: PathBuf,
     /// A point; may be repeated
-    #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
+    #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub points: Vec<Vec3>,
     /// The side from which light is counted [default: 0,1,0]
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
     /// Points in rows: corner, two edges and their numbers
     #[arg(long, value_name = "CORNER:EDGE:EDGE:NxM", value_parser = grid, allow_hyphen_values = true)]
