@@ -21,6 +21,7 @@ use durer::render::explain::{Explanation, Names, Telling, TextLine, explain, exp
 use durer::render::{Control, Job};
 use durer::sampler::SampleId;
 use std::collections::BTreeSet;
+use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -47,7 +48,7 @@ pub struct ExplainArgs {
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
     /// Any ray instead of a pixel's: origin and direction
-    #[arg(long, value_name = "OX OY OZ DX DY DZ", value_delimiter = ' ', num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
+    #[arg(long, value_name = "OX OY OZ DX DY DZ", num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
     pub ray: Option<Vec<f32>>,
     /// The brightest pixel of the picture
     #[arg(long, conflicts_with = "worst")]
@@ -76,6 +77,20 @@ const VERSION: u32 = 1;
 pub enum Subject {
     Pixel(Explanation),
     Ray(Box<Tree>),
+}
+
+/// The same words, with the numbers of a quoted ray apart: clap takes `-1 0 0` for an option.
+pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
+    let mut all: Vec<OsString> = Vec::with_capacity(words.len());
+    for word in words {
+        match word.to_str() {
+            Some(text) if all.last().is_some_and(|last| last == "--ray") && text.contains(' ') => {
+                all.extend(text.split_whitespace().map(OsString::from));
+            }
+            _ => all.push(word),
+        }
+    }
+    all
 }
 
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {

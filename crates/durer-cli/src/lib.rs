@@ -67,7 +67,7 @@ pub fn run(words: Vec<OsString>) -> u8 {
             .map(|word| word.into_string().map_err(|word| bad(format!("{word:?} is not UTF-8"))))
             .collect::<Result<_, _>>()
             .and_then(|arguments| course::run(arguments, Some(program))),
-        None => match parsed(words).command {
+        None => match parsed(explain::apart(words)).command {
             Command::Render(args) => render::run(*args),
             Command::Farm(args) => farm::run(&args),
             Command::Merge(args) => merge::run(&args),

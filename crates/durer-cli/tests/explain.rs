@@ -75,7 +75,12 @@ fn the_text_names_things_by_their_place_in_the_file() {
     // Any ray, with a sample of its own neither needed nor allowed.
     let ran = place.gives(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
     assert!(ran.err.contains("--ray"), "{}", ran.err);
-    for ray in [&["0 3 0 0 -1 0"][..], &["0", "3", "0", "0", "-1", "0"]] {
+    for ray in [
+        &["0 3 0 0 -1 0"][..],
+        &["0", "3", "0", "0", "-1", "0"],
+        &["-0 3 0  0 -1 0"],
+        &["-0", "3", "0", "0", "-1", "0"],
+    ] {
         let output = place.command("explain scene.txt --quiet --ray").args(ray).output().unwrap();
         let out = String::from_utf8(output.stdout).unwrap();
         assert!(out.contains("camera ray") && out.contains("hits Sphere of line 8 at t = 1.5"), "{out}");
