@@ -5,10 +5,10 @@
 
 mod place;
 
-use crate::diag::{Diagnostic, Span};
+use crate::diag::{Diagnostic, Severity, Span};
 use crate::format::report::{Report, shown};
 use serde_json::{Map, Value};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::ops::{Range, RangeBounds};
 
@@ -19,11 +19,13 @@ pub(super) struct Findings<'a> {
     /// Where the items of the document's lists begin.
     starts: RefCell<HashMap<String, Vec<usize>>>,
     report: RefCell<Report>,
+    /// Whether there was an error.
+    failed: Cell<bool>,
 }
 
 impl<'a> Findings<'a> {
     pub fn new(text: &'a [u8], report: Report) -> Self {
-        Findings { text, starts: RefCell::default(), report: RefCell::new(report) }
+        Findings { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
     }
 
     pub fn finish(self) -> Report {
@@ -31,7 +33,7 @@ impl<'a> Findings<'a> {
     }
 
     pub fn has_errors(&self) -> bool {
-        self.report.borrow().has_errors()
+        self.failed.get() || self.report.borrow().has_errors()
     }
 
     /// Where a value stands in the file, or what is nearest around it.
@@ -61,8 +63,12 @@ impl<'a> Findings<'a> {
 
     /// An error, warning or note at a JSON pointer, which the message begins with.
     pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
+        let is_error = kind(String::new()).severity == Severity::Error;
+        // Whoever reads on must know of an error that nobody is told of any more.
+        self.failed.set(self.failed.get() || is_error);
         // A file of a million errors or warnings is not walked over a million times.
-        if self.report.borrow().is_full() || self.report.borrow().count() > 256 {
+        let (full, count) = (self.report.borrow().is_full(), self.report.borrow().count());
+        if full || !is_error && count > 256 {
             return;
         }
         let shown = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };

@@ -560,3 +560,31 @@ fn a_look_is_chosen_by_name_or_number() {
     assert!(shown(Some("gren")).unwrap_err().contains("did you mean `green`?"));
     assert!(shown(Some("3")).unwrap_err().contains("no variant `3`"));
 }
+
+/// Numbers beyond the end of their lists are errors, though nobody is told of them any more.
+#[test]
+fn errors_count_when_no_more_are_collected() {
+    let lost = r#"{"asset":{"version":"2.0"},"nodes":[{"children":[7]}],"scenes":[{"nodes":[0]}]}"#;
+    // What was read before has left no room.
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    (0..100).for_each(|_| diagnostics.push(crate::diag::Diagnostic::error("before")));
+    let file = files.add("a.gltf", lost.as_bytes().into());
+    let (source, files) = (Source::folder("."), std::cell::RefCell::new(files));
+    let (name, staging) = ("a.gltf", Staging::default());
+    let input = Input {
+        bytes: &lost.as_bytes().into(),
+        file,
+        files: &files,
+        name,
+        source: &source,
+        staging: &staging,
+        memory: 1 << 30,
+    };
+    assert!(read_model(find_scene_format(lost.as_bytes(), name).unwrap(), &input, &mut diagnostics).is_none());
+    // So many warnings come before it.
+    let wide = r#"{"type":"perspective","perspective":{"yfov":4,"znear":0.1}},"#.repeat(400);
+    let text = lost.replace(r#""nodes":[{"#, &format!(r#""cameras":[{}],"nodes":[{{"#, wide.trim_end_matches(',')));
+    let (scene, told) = read(text.as_bytes(), Path::new("."), "a.gltf", None);
+    let last = told.last().unwrap();
+    assert!(scene.is_none() && told.len() > 20 && last.0 == Severity::Error, "{} {last:?}", told.len());
+}
