@@ -211,7 +211,15 @@ impl<'w> Path<'w> {
             End::Lost => Spectrum::ZERO,
             &End::Sky(dir) => {
                 let (sky, pdf) = self.world.emitters().sky(self.world, dir);
-                let sky = sample.lanes.light(sky);
+                let mut sky = sample.lanes.light(sky);
+                // Suns are seen from the camera, also in mirrors and through glass; elsewhere they are
+                // connected with.
+                if state.from_camera.is_some() {
+                    let suns = self.world.emitters().suns(dir);
+                    sky += suns
+                        .map(|(light, color)| sample.lanes.light_of(color, self.world.illuminant(light)))
+                        .sum::<Spectrum>();
+                }
                 let weight = self.weight(&state, self.world.environment().is_some(), |_| pdf);
                 tally.begin(|| TermKind::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));

@@ -13,8 +13,8 @@ described! {
         direction: Vec3 = Vec3::NEG_Y, required, Rule::NonZero, ["direction" in set::ALL];
         /// Its colour and strength.
         color: Vec3 = Vec3::ONE, required, Rule::Any, ["color" in set::ALL];
-        /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer:
-        /// 0.27 for the sun.
+        /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer,
+        /// which sees its disc: 0.27 for the sun.
         spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
         /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried

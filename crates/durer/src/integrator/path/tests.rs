@@ -109,6 +109,41 @@ fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
 }
 
 #[test]
+fn suns_are_seen_straight_and_over_mirrors_and_light_as_much() {
+    // Irradiance pi c on what faces it, from a disc of radiance L: pi c = 2 pi (1 - cos) L.
+    let half: f64 = 2.0;
+    let radiance = 0.5 / (1.0 - crate::math::fp::sin_cos_degrees(half).1);
+    let mirror = "PrincipledMaterial { baseMetalness 1 baseColor 1 1 1 specularRoughness 0 }";
+    let pane = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 walls thin }";
+    let world = scene(
+        &format!("{MATTE} {mirror} {pane}"),
+        "DirectionalLight { direction 0 -1 0 color 1 1 1 spread 2 }",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Rectangle { corner 9 1 -1 edge0 0 0 2 edge1 2 0 0 }
+         MaterialIndex 2 Rectangle { corner 19 1 -1 edge0 2 0 0 edge1 0 0 2 }",
+    );
+    let ray = |x: f32, y: f32, degrees: f64, down: f32| {
+        let (sin, cos) = crate::math::fp::sin_cos_degrees(degrees);
+        Ray::new(Vec3::new(x, y, 0.0), Vec3::new(sin as f32, down * cos as f32, 0.0))
+    };
+    for (name, ray, expected) in [
+        ("middle", ray(0.0, 1.0, 0.0, 1.0), radiance),
+        ("within", ray(0.0, 1.0, half - 0.002, 1.0), radiance),
+        ("beside", ray(0.0, 1.0, half + 0.002, 1.0), 0.0),
+        ("mirror", ray(10.0, 5.0, 1.0, -1.0), radiance),
+        ("mirror, beside", ray(10.0, 5.0, 2.1, -1.0), 0.0),
+        ("pane", ray(20.0, 0.5, 0.0, 1.0), radiance * 0.96 / 1.04),
+        // Half of it is what a matte floor shows, straight and by paths alike: none of it twice.
+        ("floor", ray(0.0, 1.0, 10.0, -1.0), 0.5),
+        ("floor below the pane", ray(20.0, 0.5, 0.0, -1.0), 0.5 * 0.96 / 1.04),
+    ] {
+        // Between floor and pane it goes to and fro.
+        let bounces = if name.contains("below") { 0 } else { 3 };
+        let (mean, error) = light(&world, ray, bounces, 4096);
+        assert!((mean - expected).abs() <= 4.0 * error + 2e-3 * expected, "{name}: {mean} ± {error}, not {expected}");
+    }
+}
+
+#[test]
 fn lights_with_extent_shine_by_their_view_factors() {
     use std::f64::consts::PI;
     // A sphere of radiance L and radius r at distance d over the point: E = pi L (r/d)^2.

@@ -56,7 +56,20 @@ pub struct Emitters {
     first: Vec<u32>,
     /// Lights of the scene that are chosen evenly.
     even: Vec<u32>,
+    /// Those of them that are seen under some angle.
+    suns: Vec<Sun>,
     tree: LightTree,
+}
+
+/// A light at infinity that is seen as a disc.
+#[derive(Clone, Debug)]
+struct Sun {
+    light: u32,
+    way: Vec3,
+    /// The square of the chord of half the angle in which it is seen: of small angles the cosine
+    /// says too little.
+    chord2: f32,
+    radiance: Color,
 }
 
 /// What shines at a point.
@@ -145,7 +158,10 @@ impl Emitters {
                         two_sided: false,
                     });
                 }
-                None => emitters.even.push(number as u32),
+                None => {
+                    emitters.even.push(number as u32);
+                    emitters.suns.extend(Sun::of(world, number as u32));
+                }
             }
         }
         emitters.tree = LightTree::new(&bounds);
@@ -224,6 +240,13 @@ impl Emitters {
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
+    /// The lights at infinity that are seen in a direction, and how bright they are.
+    pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
+        let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
+        let seen = self.suns.iter().filter(move |sun| sun.way.distance_squared(dir) <= sun.chord2);
+        seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
+    }
+
     /// The light from a direction in which nothing is hit, and the same of that.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         let Some(environment) = world.environment() else { return (world.sky(wi), 0.0) };
@@ -269,6 +292,18 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
         radiance: PI * seen.color,
         choice,
         pdf: 0.0,
+    }
+}
+
+impl Sun {
+    /// A light, if it is seen under some angle.
+    fn of(world: &World, light: u32) -> Option<Sun> {
+        let degrees = world.lights()[light as usize].spread();
+        let seen = of_light(world, light, DVec3::ZERO, 1.0);
+        let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
+        // 2 pi (1 - cos) of the angle is pi times that.
+        let chord2 = (4.0 * half * half) as f32;
+        (degrees > 0.0).then(|| Sun { light, way: seen.wi, chord2, radiance: seen.radiance / (PI * chord2) })
     }
 }
 
