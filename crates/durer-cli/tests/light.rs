@@ -322,3 +322,91 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
     let told = place.gives(1, "check s.txt --exposure -13").out;
     assert!(told.contains("degrees below the horizon") && told.contains("s.txt:1:"), "{told}");
 }
+
+#[test]
+fn lights_in_candela_lumen_and_lux_light_as_much() {
+    let place = Place::new();
+    place.put("lamp.ies", "TILT=NONE\n1 -1 2 3 1 1 2 0 0 0\n0.5 1 60\n0 90 180\n0\n100 100 100\n");
+    let pi = std::f64::consts::PI;
+    let lux = |light: &str| -> f64 {
+        let scene = format!(
+            "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }} Lights {{ {light} }}
+Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
+Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
+        );
+        place.put("s.txt", scene);
+        let row = place.gives(0, "measure s.txt --at 0,0,0 --samples 16").out.lines().nth(1).unwrap().to_string();
+        row.split(',').nth(6).unwrap().parse().unwrap()
+    };
+    for (light, expected) in [
+        // I / d²; of a flux, I is that over 4 pi; whatever the hue.
+        ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
+        ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
+        ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
+        // All in the cone of 60 degrees on either side: 2 pi (1 - 1/2).
+        (
+            "SpotLight { position 0 2 0 direction 0 -1 0 color 1 0 0 angle 60 innerAngle 60 lumens 800 }",
+            800.0 / pi / 4.0,
+        ),
+        // From there to the middle it fades with s², whose mean is a third.
+        ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 lumens 800 }", 800.0 / (pi / 3.0) / 4.0),
+        (
+            "SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 fade smooth lumens 800 }",
+            800.0 / (pi / 2.0) / 4.0,
+        ),
+        ("DirectionalLight { direction 0 -3 0 color 1 0.9 0.7 lux 100000 }", 100_000.0),
+        ("DirectionalLight { direction 0 -3 0 color 1 1 1 lux 500 spectrum A }", 500.0),
+        // A file of 100 cd everywhere.
+        ("PhotometricLight { position 0 2 0 file lamp.ies }", 25.0),
+        ("PhotometricLight { position 0 2 0 file lamp.ies color 0.2 0.9 0.4 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
+    ] {
+        let found = lux(light);
+        assert!((found / expected - 1.0).abs() < 2e-3, "{light}: {found}, not {expected}");
+    }
+    for (light, words) in [
+        ("PointLight { position 0 2 0 color 1 1 1 candela 8 lumens 9 }", "both say how strong"),
+        ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 candela 8 lumens 9 }", "both say how strong"),
+        ("PointLight { position 0 2 0 color 1 1 1 candela 8 attenuation 1 0 0 }", "have no place beside"),
+        ("DirectionalLight { direction 0 -1 0 color 1 1 1 lux -1 }", "must not be less than 0"),
+    ] {
+        let scene = std::fs::read_to_string(place.path("s.txt")).unwrap();
+        let (before, rest) = scene.split_once("Lights {").unwrap();
+        let after = rest.split_once("\nMaterials").unwrap().1;
+        place.put("t.txt", format!("{before}Lights {{ {light} }}\nMaterials{after}"));
+        place.refused(2, "render t.txt -o p.png --size 8x8 -q", &[words, "t.txt:1:"]);
+    }
+}
+
+#[test]
+fn a_camera_s_settings_are_an_exposure() {
+    let place = Place::new();
+    let scene =
+        "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 3840 3840 3840 }
+Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex 0 Sphere { center 0 0 9 radius 1 } }";
+    place.put("s.txt", scene);
+    let pixel = |options: &str| -> u8 {
+        place.gives(
+            0,
+            &format!("render s.txt -o p.ppm --size 1x1 --samples 1 --transfer linear --quiet --restart {options}"),
+        );
+        *std::fs::read(place.path("p.ppm")).unwrap().last().unwrap()
+    };
+    // White is 1.2 · 100 / S · N² / t: for ISO 100, 1/125 s and f/8 it is 9600 cd/m².
+    assert_eq!(pixel("--shutter 1/125 --f-number 8"), (0.4f64 * 255.0).round() as u8);
+    assert_eq!(pixel("--shutter 0.008 --f-number 8 --iso 200"), (0.8f64 * 255.0).round() as u8);
+    assert_eq!(pixel("--shutter 1/250 --f-number 8 --iso 100 --exposure 1"), (0.4f64 * 255.0).round() as u8);
+    for (options, words) in [
+        ("--shutter 1/125", "--f-number"),
+        ("--f-number 8", "--shutter"),
+        ("--iso 100", "--shutter"),
+        ("--shutter 0 --f-number 8", "seconds are as"),
+        ("--shutter 1/0 --f-number 8", "seconds are as"),
+        ("--shutter 1/125 --f-number 0", "--f-number"),
+    ] {
+        place.refused(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);
+    }
+    // `check` sees it so, too.
+    place.put("lit.txt", scene.replace("0 0 9", "0 0 0"));
+    assert!(place.gives(1, "check lit.txt").out.contains("too-bright"));
+    place.gives(0, "check lit.txt --shutter 1/125 --f-number 8");
+}

@@ -1,5 +1,6 @@
 //! The command line of `durer check`.
 
+use crate::display::ExposureArgs;
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
@@ -32,10 +33,9 @@ pub struct CheckArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// The stops by which the picture is made brighter, as `render --exposure` has it: they decide
-    /// what is too bright or too dark
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_negative_numbers = true)]
-    pub exposure: f32,
+    /// As of `render`: it decides what is too bright or too dark
+    #[command(flatten)]
+    pub exposure: ExposureArgs,
     /// Write the scene anew, with all changed that is mechanical
     #[arg(long)]
     pub fix: bool,

@@ -1,7 +1,6 @@
 //! A scene, and what was found in it.
 
 use super::args::CheckArgs;
-use crate::display::factor;
 use crate::failure::Failure;
 use crate::job::{accel, aspect, job};
 use crate::open::load_options;
@@ -43,7 +42,7 @@ pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, 
     let findings = match (&loaded, &world) {
         (Some(loaded), Some(world)) => {
             let job = job(&args.job, Some(&args.view), loaded, false)?;
-            let exposure = factor(args.exposure)?;
+            let exposure = args.exposure.factor()?;
             let (scene, dialect, files) = (&loaded.scene, loaded.dialect, &files);
             check(&Subject { scene, world, dialect, files, job: &job, exposure, rejected: None }, &diagnostics)
         }

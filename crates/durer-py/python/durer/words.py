@@ -759,7 +759,9 @@ class DirectionalLight(Light):
 
     color: three numbers; must be given. Its colour and strength.
 
-    spread: number, 0 or more. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer: 0.27 for the sun.
+    spread: number, 0 or more. Half the angle in which it is seen, in degrees, for soft shadows under a path tracer, which sees its disc: 0.27 for the sun.
+
+    lux: number, 0 or more. Illuminance in lux of what faces it: how strong it is, of which `color` is the hue.
 
     spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
@@ -770,12 +772,14 @@ class DirectionalLight(Light):
         direction: npt.ArrayLike,
         color: npt.ArrayLike,
         spread: Optional[float] = None,
+        lux: Optional[float] = None,
         spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("DirectionalLight", [
             ("direction", direction),
             ("color", color),
             ("spread", spread),
+            ("lux", lux),
             ("spectrum", spectrum),
         ])
 
@@ -791,6 +795,10 @@ class PointLight(Light):
 
     falloff: number, 0 or more. How it fades: the divisor's factor of distance squared; what is added to it depends on the dialect.
 
+    candela: number, 0 or more. Luminous intensity in candela: how strong it is, of which `color` is the hue; it fades with the square of the distance.
+
+    lumens: number, 0 or more. The same by its luminous flux in lumen.
+
     spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
@@ -801,6 +809,8 @@ class PointLight(Light):
         color: npt.ArrayLike,
         attenuation: Optional[npt.ArrayLike] = None,
         falloff: Optional[float] = None,
+        candela: Optional[float] = None,
+        lumens: Optional[float] = None,
         spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("PointLight", [
@@ -808,6 +818,8 @@ class PointLight(Light):
             ("color", color),
             ("attenuation", attenuation),
             ("falloff", falloff),
+            ("candela", candela),
+            ("lumens", lumens),
             ("spectrum", spectrum),
         ])
 
@@ -827,6 +839,10 @@ class SpotLight(Light):
 
     fade: `squared`, `smooth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
 
+    candela: number, 0 or more. Luminous intensity in candela in its middle: how strong it is, of which `color` is the hue.
+
+    lumens: number, 0 or more. The same by its luminous flux in lumen.
+
     spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
@@ -839,6 +855,8 @@ class SpotLight(Light):
         angle: Optional[float] = None,
         inner_angle: Optional[float] = None,
         fade: Optional[Literal["squared", "smooth"]] = None,
+        candela: Optional[float] = None,
+        lumens: Optional[float] = None,
         spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("SpotLight", [
@@ -848,6 +866,8 @@ class SpotLight(Light):
             ("angle", angle),
             ("innerAngle", inner_angle),
             ("fade", fade),
+            ("candela", candela),
+            ("lumens", lumens),
             ("spectrum", spectrum),
         ])
 
@@ -867,6 +887,8 @@ class PhotometricLight(Light):
 
     color: three numbers; 1 1 1 where it is not given. What multiplies what was measured, by colour.
 
+    lumens: number, 0 or more. Its luminous flux in lumen, in the place of that of the file; `color` is its hue then.
+
     spectrum: path. Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`) or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried as such, else as its colour.
     """
 
@@ -879,6 +901,7 @@ class PhotometricLight(Light):
         front: Optional[npt.ArrayLike] = None,
         focal_length: Optional[float] = None,
         color: Optional[npt.ArrayLike] = None,
+        lumens: Optional[float] = None,
         spectrum: Optional[str] = None,
     ) -> None:
         super().__init__("PhotometricLight", [
@@ -888,6 +911,7 @@ class PhotometricLight(Light):
             ("front", front),
             ("focalLength", focal_length),
             ("color", color),
+            ("lumens", lumens),
             ("spectrum", spectrum),
         ])
 

@@ -110,8 +110,11 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
             let diagnostic = diagnostic.at(value).label("this light arrives that strong").fix(value, text);
             return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
         }
-        let value = scout.value(span, &["color"]);
-        diagnostic = diagnostic.fix_at(value, vector(light.color() * factor));
+        let unit = scout.value(span, &["candela", "lumens", "lux"]);
+        let value = unit.or_else(|| scout.value(span, &["color"]));
+        let strength = unit.and_then(|unit| scout.text(unit).trim().parse::<f32>().ok());
+        let less = strength.map_or_else(|| vector(light.color() * factor), |strength| number(strength * factor));
+        diagnostic = diagnostic.fix_at(value, less);
         diagnostic.span = diagnostic.span.or(value).or(Some(span));
     }
     if !over(far, MAX_FAR) {

@@ -128,7 +128,12 @@ pub fn compile(
         Some(curve)
     };
     let illuminants = lights.iter_mut().map(&mut measured).collect();
-    let profiles = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
+    let profiles: Vec<_> = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
+    for (light, profile) in lights.iter_mut().zip(&profiles) {
+        if let (Light::Photometric(lamp), Some(profile)) = (light, profile) {
+            *lamp = lamp.with_flux(profile);
+        }
+    }
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
     let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
@@ -274,7 +279,7 @@ fn sun(background: &scene::Background) -> Option<Light> {
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
     // A light's colour is what a white matte surface shows: illuminance over pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
-    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), spectrum: None }.into())
+    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
 /// The lights, and the ambient light that goes with them.
@@ -298,6 +303,9 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         return (Vec::new(), ambient);
     }
     for light in written {
+        if let Some(message) = light.value.contradiction() {
+            diagnostics.push(Diagnostic::error(message).at(light.span));
+        }
         if light.value.color() == Color::ZERO {
             let message = "this light reaches nothing: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));

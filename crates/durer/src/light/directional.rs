@@ -1,10 +1,11 @@
 //! A light at infinity.
 
-use super::{Emitter, Illumination};
+use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3};
 use glam::DVec3;
+use std::f32::consts::PI;
 
 described! {
     /// Light that comes from one direction everywhere.
@@ -16,6 +17,8 @@ described! {
         /// Half the angle in which it is seen, in degrees, for soft shadows under a path tracer,
         /// which sees its disc: 0.27 for the sun.
         spread: Option<f32> = None, optional, Rule::NonNegative, ["spread" in set::DURER];
+        /// Illuminance in lux of what faces it: how strong it is, of which `color` is the hue.
+        lux: Option<f32> = None, optional, Rule::NonNegative, ["lux" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
         /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
         /// as such, else as its colour.
@@ -30,7 +33,12 @@ impl Emitter for DirectionalLight {
     }
 
     fn with_rules(&self, _rules: &Rules) -> Self {
-        self.clone()
+        self.in_units()
+    }
+
+    fn in_units(&self) -> Self {
+        let Some(lux) = self.lux else { return self.clone() };
+        DirectionalLight { color: as_bright(self.color, lux / PI), lux: None, ..self.clone() }
     }
 
     fn color(&self) -> Color {

@@ -27,6 +27,12 @@ macro_rules! delegate {
             fn color(&self) -> Color {
                 match self { $(Light::$variant(l) => l.color,)+ }
             }
+            fn in_units(&self) -> Self {
+                match self { $(Light::$variant(l) => l.in_units().into(),)+ }
+            }
+            fn contradiction(&self) -> Option<&'static str> {
+                match self { $(Light::$variant(l) => l.contradiction(),)+ }
+            }
             fn spread(&self) -> f32 {
                 match self { $(Light::$variant(l) => l.spread(),)+ }
             }
@@ -65,6 +71,14 @@ described_list! {
     }
 }
 
+/// A colour that is as bright as white times a number. What is black stays black.
+fn as_bright(color: Color, white: f32) -> Color {
+    let luminance = color.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
+}
+
+const TWO_UNITS: &str = "`candela` and `lumens` both say how strong this light is: write one of them";
+
 /// A light as seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Illumination {
@@ -86,6 +100,14 @@ pub trait Emitter {
 
     /// Its colour, as written.
     fn color(&self) -> Color;
+
+    /// The same with its strength in its colour, where that is written in candela, lumen or lux.
+    fn in_units(&self) -> Self;
+
+    /// What is written of its strength that cannot go together.
+    fn contradiction(&self) -> Option<&'static str> {
+        None
+    }
 
     /// Where it is, and what arrives at distance 1 in the direction in which it is strongest;
     /// `None` for lights without a place, and for those that fade otherwise than with the

@@ -1,6 +1,6 @@
 //! A light measured in a laboratory: how strong it shines in each direction.
 
-use super::{Emitter, Illumination};
+use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
@@ -24,10 +24,22 @@ described! {
         focal_length: f32 = 0.0, optional, Rule::NonNegative, ["focalLength" in set::DURER];
         /// What multiplies what was measured, by colour.
         color: Vec3 = Vec3::ONE, optional, Rule::Any, ["color" in set::DURER];
+        /// Its luminous flux in lumen, in the place of that of the file; `color` is its hue then.
+        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
         /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
         /// as such, else as its colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+    }
+}
+
+impl PhotometricLight {
+    /// The same with its own flux in its colour, where that is written.
+    pub fn with_flux(&self, profile: &Profile) -> Self {
+        let Some(lumens) = self.lumens else { return self.clone() };
+        let flux = profile.flux() as f32;
+        let color = if flux > 0.0 { as_bright(self.color, lumens / flux) } else { Color::ZERO };
+        PhotometricLight { color, lumens: None, ..self.clone() }
     }
 }
 
@@ -48,6 +60,11 @@ impl Emitter for PhotometricLight {
 
     fn color(&self) -> Color {
         self.color
+    }
+
+    /// Its flux is known with the file.
+    fn in_units(&self) -> Self {
+        self.clone()
     }
 
     fn place(&self) -> Option<(Vec3, Color)> {

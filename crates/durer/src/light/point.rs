@@ -1,10 +1,11 @@
 //! A light at a point. What arrives at distance d is color / (a0 + a1 d + a2 d^2).
 
-use super::{Emitter, Illumination};
+use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{Compat, Falloff, Rules, set};
 use crate::math::{Color, Vec3};
 use glam::DVec3;
+use std::f32::consts::PI;
 
 described! {
     /// Light that comes from one point.
@@ -20,6 +21,11 @@ described! {
         /// the dialect.
         falloff: Option<f32> = None, optional, Rule::NonNegative,
             ["falloff" in set::F12A5 | set::F16 | set::DURER, "attenuation" in set::F23];
+        /// Luminous intensity in candela: how strong it is, of which `color` is the hue; it fades with
+        /// the square of the distance.
+        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
+        /// The same by its luminous flux in lumen.
+        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
         /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
         /// as such, else as its colour.
@@ -41,6 +47,9 @@ impl Emitter for PointLight {
     }
 
     fn with_rules(&self, rules: &Rules) -> Self {
+        if self.candela.or(self.lumens).is_some() {
+            return self.in_units();
+        }
         let attenuation = match (rules.falloff, self.falloff) {
             (Falloff::None, _) => None,
             (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
@@ -55,6 +64,24 @@ impl Emitter for PointLight {
 
     fn color(&self) -> Color {
         self.color
+    }
+
+    fn in_units(&self) -> Self {
+        let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / (4.0 * PI))) else { return self.clone() };
+        // What arrives is what a white matte surface shows: illuminance over pi.
+        let color = as_bright(self.color, candela / PI);
+        PointLight { color, attenuation: Some(Vec3::Z), falloff: None, candela: None, lumens: None, ..self.clone() }
+    }
+
+    fn contradiction(&self) -> Option<&'static str> {
+        let unit = self.candela.or(self.lumens).is_some();
+        match () {
+            () if self.candela.is_some() && self.lumens.is_some() => Some(TWO_UNITS),
+            () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => Some(
+                "what shines in candela or lumen fades with the square of the distance: `attenuation` and `falloff` have no place beside that",
+            ),
+            () => None,
+        }
     }
 
     fn place(&self) -> Option<(Vec3, Color)> {

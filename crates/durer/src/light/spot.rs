@@ -1,10 +1,11 @@
 //! A light at a point that shines into a cone.
 
-use super::{Emitter, Illumination};
+use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described, described_words};
 use crate::dialect::{Rules, set};
 use crate::math::{Color, Vec3, fp};
 use glam::DVec3;
+use std::f32::consts::PI;
 
 described_words! {
     /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2,
@@ -28,10 +29,33 @@ described! {
         /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2,
         /// `smooth` s^2 (3 - 2 s).
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
+        /// Luminous intensity in candela in its middle: how strong it is, of which `color` is the
+        /// hue.
+        candela: Option<f32> = None, optional, Rule::NonNegative, ["candela" in set::DURER];
+        /// The same by its luminous flux in lumen.
+        lumens: Option<f32> = None, optional, Rule::NonNegative, ["lumens" in set::DURER];
         /// Its measured spectrum, which `color` multiplies: a file (`lamp.csv`, `lamps.csv:column`)
         /// or the name of an illuminant (A, D65, F2, 2700K). Under `--color spectral` it is carried
         /// as such, else as its colour.
         spectrum: Option<FileName> = None, optional, Rule::Any, ["spectrum" in set::DURER];
+    }
+}
+
+impl SpotLight {
+    /// The cosines of where the cone ends, and of where it begins to fade.
+    fn cosines(&self) -> [f32; 2] {
+        [self.angle, self.inner_angle.min(self.angle)].map(|degrees| fp::sin_cos_degrees(f64::from(degrees)).1 as f32)
+    }
+
+    /// The solid angle that has as much light when it is as strong all over as in the middle.
+    fn fills(&self) -> f32 {
+        let [outer, inner] = self.cosines();
+        // The means of s² and of s² (3 - 2 s).
+        let fading = match self.fade {
+            Fade::Squared => 1.0 / 3.0,
+            Fade::Smooth => 0.5,
+        };
+        2.0 * PI * (1.0 - inner + fading * (inner - outer)).max(1e-6)
     }
 }
 
@@ -40,8 +64,7 @@ impl Emitter for SpotLight {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         let distance = offset.length();
         let to_light = offset.normalize_or(Vec3::Y);
-        let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-        let (outer, inner) = (cosine(self.angle), cosine(self.inner_angle.min(self.angle)));
+        let [outer, inner] = self.cosines();
         let seen = -to_light.dot(self.direction.normalize_or(Vec3::NEG_Y));
         // A cone without a soft edge ends at once.
         let share = match inner > outer {
@@ -59,11 +82,23 @@ impl Emitter for SpotLight {
     }
 
     fn with_rules(&self, _rules: &Rules) -> Self {
-        self.clone()
+        self.in_units()
     }
 
     fn color(&self) -> Color {
         self.color
+    }
+
+    fn in_units(&self) -> Self {
+        let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.fills())) else {
+            return self.clone();
+        };
+        // What arrives is what a white matte surface shows: illuminance over pi.
+        SpotLight { color: as_bright(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
+    }
+
+    fn contradiction(&self) -> Option<&'static str> {
+        (self.candela.is_some() && self.lumens.is_some()).then_some(TWO_UNITS)
     }
 
     fn place(&self) -> Option<(Vec3, Color)> {

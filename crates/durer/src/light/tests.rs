@@ -6,7 +6,7 @@ use crate::dialect::Dialect;
 /// What arrives of a light of strength 1 at distance 2 in a dialect; exactly representable answers
 /// only.
 fn arriving(dialect: Dialect, attenuation: Option<Vec3>, falloff: Option<f32>) -> f32 {
-    let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff, spectrum: None };
+    let light = PointLight { position: Vec3::Z * 2.0, color: Vec3::ONE, attenuation, falloff, ..PointLight::default() };
     let seen = Light::from(light).with_rules(dialect.rules()).illuminate((Vec3::ZERO).as_dvec3());
     assert_eq!((seen.to_light, seen.distance), (Vec3::Z, 2.0));
     seen.color.x

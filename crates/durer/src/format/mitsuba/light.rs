@@ -59,7 +59,8 @@ impl Reader<'_> {
                 }
                 let (color, direction) = (self.strength(plugin, "intensity") / PI, along(DVec3::Z));
                 let position = place("");
-                SpotLight { position, direction, color, angle, inner_angle, fade: Fade::Smooth, spectrum: None }.into()
+                SpotLight { position, direction, color, angle, inner_angle, fade: Fade::Smooth, ..SpotLight::default() }
+                    .into()
             }
             "projector" => {
                 said.once(plugin.at, "a projector has no counterpart: it is left out");

@@ -74,7 +74,7 @@ impl Reader<'_> {
                     angle: outer.clamp(1e-3, 180.0),
                     inner_angle: inner,
                     fade: Fade::Smooth,
-                    spectrum: None,
+                    ..SpotLight::default()
                 }
                 .into()
             }

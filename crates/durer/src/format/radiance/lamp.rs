@@ -35,7 +35,7 @@ impl Reader<'_> {
                 front: front.as_vec3(),
                 focal_length: spread.focal_length() as f32,
                 color,
-                spectrum: None,
+                ..PhotometricLight::default()
             };
             self.light(light.into(), span);
         }

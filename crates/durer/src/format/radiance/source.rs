@@ -40,7 +40,8 @@ impl Reader<'_> {
             // What a white matte surface shows that faces it.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
-            let light = DirectionalLight { direction: -direction.as_vec3(), color, spread, spectrum: None };
+            let light =
+                DirectionalLight { direction: -direction.as_vec3(), color, spread, ..DirectionalLight::default() };
             self.light(light.into(), at);
             return;
         }

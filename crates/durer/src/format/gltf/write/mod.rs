@@ -16,7 +16,7 @@ use crate::describe::DescribedList;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::Dialect;
 use crate::format::model::Output;
-use crate::light::Light;
+use crate::light::{Emitter as _, Light};
 use crate::math::{Vec3, fp};
 use crate::scene::{MatrixOp, Node, Object, Scene};
 use crate::shape::MeshData;
@@ -207,6 +207,7 @@ impl Writer<'_> {
 
     /// The node of a light, after KHR_lights_punctual.
     fn light(&mut self, light: &Light) -> Option<usize> {
+        let light = &light.in_units();
         let (mut written, center, direction) = match light {
             Light::Point(point) => {
                 if point.attenuation != Some(Vec3::Z) {
@@ -227,7 +228,7 @@ impl Writer<'_> {
             }
         };
         // Intensities are luminous: what a matte white surface shows is a pi-th of them.
-        let color = crate::light::Emitter::color(light);
+        let color = light.color();
         let most = color.max_element();
         if most <= 0.0 {
             return None;
