@@ -9,10 +9,13 @@ use crate::options::SceneArgs;
 use crate::terminal::say;
 use clap::Args;
 use durer::integrator::{Integrate, Integrator, Method, Settings, Setup};
-use durer::math::{Color, Vec3};
+use durer::math::{Color, Ray64, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
+use durer::scene::Axis;
+use durer::scene::staging::Sides;
 use durer::threads;
+use durer::world::World;
 use rayon::prelude::*;
 use std::path::PathBuf;
 
@@ -26,7 +29,7 @@ use std::path::PathBuf;
 
 A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells. Unless --normal says otherwise
 it measures what falls from above; an upright grid has the normal of its second edge times its first.
-The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`); the irradiance is by colour. Nothing
+The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and of Radiance's scenes; the irradiance is by colour. Nothing
 is measured on the other side of the normal. Standard errors are those of independent samples; these are spread more evenly, and
 are nearer than that.")]
 pub struct MeasureArgs {
@@ -35,7 +38,7 @@ pub struct MeasureArgs {
     /// A point; may be repeated
     #[arg(id = "point", long = "at", value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub points: Vec<Vec3>,
-    /// The side from which light is counted [default: 0,1,0]
+    /// The side from which light is counted [default: upwards]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub normal: Option<Vec3>,
     /// Points in rows: corner, two edges and their numbers
@@ -52,7 +55,7 @@ pub struct MeasureArgs {
     #[command(flatten)]
     pub method: MethodArgs,
     /// Samples of each point
-    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(1..=1 << 24))]
+    #[arg(long, default_value_t = 4096, value_parser = clap::value_parser!(u32).range(2..=1 << 24))]
     pub samples: u32,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
@@ -103,8 +106,8 @@ struct Sums {
 }
 
 impl Sums {
-    fn add(&mut self, light: Color) {
-        let brightness = f64::from(light.dot(Color::new(0.2126, 0.7152, 0.0722)));
+    fn add(&mut self, light: Color, lumens: Color) {
+        let brightness = f64::from(light.dot(lumens));
         self.light = std::array::from_fn(|i| self.light[i] + f64::from(light[i]));
         self.bright += brightness;
         self.squares += brightness * brightness;
@@ -119,13 +122,33 @@ impl Sums {
     }
 }
 
+/// Whether there is a surface just below or above a point with a normal.
+fn lies_on_a_surface(world: &World, (point, normal): &(Vec3, Vec3)) -> bool {
+    let bounds = world.bounds();
+    let size = (bounds.max - bounds.min).length();
+    let near = 1e-3 * if size.is_finite() { size } else { 1.0 };
+    let from = point.as_dvec3() + f64::from(near) * normal.as_dvec3();
+    world.closest(&Ray64::new(from, -*normal, 0.0, 2.0 * near), &mut ()).is_some()
+}
+
+fn vector_of(v: Vec3) -> String {
+    format!("{},{},{}", v.x, v.y, v.z)
+}
+
 pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
+    let mut options = load_options(&args.reading);
+    // What is measured is the scene's own light.
+    options.staging.own_light = options.staging.studio.is_none();
+    let opened = open(&args.scene, &options, false, &mut Guard::default())?;
+    let scene = &opened.loaded.scene;
+    let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
+    let lumens = scene.lumens.unwrap_or(Color::new(0.2126, 0.7152, 0.0722));
     let grids = args.grid.iter().flat_map(|grid| {
-        let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(Vec3::Y);
-        let normal = if normal.y < 0.0 { -normal } else { normal };
+        let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
+        let normal = if normal.dot(up) < 0.0 { -normal } else { normal };
         grid.points().map(move |point| (point, normal))
     });
-    let own = args.points.iter().map(|&point| (point, Vec3::Y)).chain(grids);
+    let own = args.points.iter().map(|&point| (point, up)).chain(grids);
     let mut places: Vec<(Vec3, Vec3)> = own.take(MAX_POINTS + 1).collect();
     if places.is_empty() || places.len() > MAX_POINTS {
         return Err(bad(format!("say where: --at X,Y,Z or --grid, at most {MAX_POINTS} points")));
@@ -134,13 +157,21 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         let Some(normal) = normal.try_normalize() else { return Err(bad("--normal must not be 0,0,0")) };
         places.iter_mut().for_each(|place| place.1 = normal);
     }
-    let opened = open(&args.scene, &load_options(&args.reading), false, &mut Guard::default())?;
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
     let method = args.method.method(Method::PATH)?;
     let setup = Setup { world: &opened.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
     };
+    if path.photons.is_some()
+        && let Some((point, _)) = places.iter().find(|place| !lies_on_a_surface(&opened.world, place))
+    {
+        let message = format!(
+            "photons are kept on surfaces, and {} lies on none: light by mirrors and glass would be missing",
+            vector_of(*point)
+        );
+        return Err(bad(format!("{message}; measure there by --integrator path, or put a surface there")));
+    }
     let mut sums = vec![Sums::default(); places.len()];
     // Photons are made for one sample after the other.
     let step = if method.prepares() { 1 } else { args.samples };
@@ -150,7 +181,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             sums.par_iter_mut().zip(&places).enumerate().for_each(|(number, (sums, &(point, normal)))| {
                 for sample in first..first + step {
                     let id = SampleId::new(args.seed, (number as u32, 0), sample);
-                    sums.add(path.irradiance(point.as_dvec3(), normal, id, &mut ()));
+                    sums.add(path.irradiance(point.as_dvec3(), normal, id, &mut ()), lumens);
                 }
             });
         }
@@ -158,8 +189,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
     for ((point, normal), sums) in places.iter().zip(sums) {
         let (light, mean, error) = sums.mean(args.samples);
-        let [p, n, c] =
-            [*point, *normal, Color::from(light.map(|x| x as f32))].map(|v| format!("{},{},{}", v.x, v.y, v.z));
+        let [p, n, c] = [*point, *normal, Color::from(light.map(|x| x as f32))].map(vector_of);
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
     }
     Ok(())

@@ -111,6 +111,7 @@ impl StagingArgs {
             fit: self.fit,
             turned: self.turned,
             bare: false,
+            own_light: false,
             view_file: self.view_file.clone(),
             environment: self.environment.clone(),
             aspect: None,

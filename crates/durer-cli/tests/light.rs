@@ -317,7 +317,9 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let near = found.iter().zip(&written).all(|(a, b)| (a / b - 1.0).abs() < 2e-3);
         assert!(near, "{sky}: {found:?}, not {written:?}");
     }
-    // At midnight it is told of.
+    // At midnight it is told of, and dark.
+    assert_eq!(lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0")[0], 0.0);
+    assert_eq!(lux("cieSky 12 sunAltitude -20 sunAzimuth 0")[0], 0.0);
     lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
     let told = place.gives(1, "check s.txt --exposure -13").out;
     assert!(told.contains("degrees below the horizon") && told.contains("s.txt:1:"), "{told}");
@@ -409,4 +411,34 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
     place.put("lit.txt", scene.replace("0 0 9", "0 0 0"));
     assert!(place.gives(1, "check lit.txt").out.contains("too-bright"));
     place.gives(0, "check lit.txt --shutter 1/125 --f-number 8");
+}
+
+#[test]
+fn radiance_s_scenes_are_measured_in_lux_from_above() {
+    let place = Place::new();
+    let sky = "void glow g 0 0 4 2 1 .5 0\ng source s 0 0 4 0 0 1 180\n";
+    place.put("sky.rad", sky);
+    place.put("dark.rad", "void plastic w 0 0 5 .5 .5 .5 0 0\nw sphere s 0 0 4 0 0 -9 1\n");
+    let rows = |measure: &str| -> Vec<Vec<f64>> {
+        let ran = place.gives(0, measure);
+        ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
+    };
+    // Half of all directions shine: pi L, by rtrace's weights and 179 lm/W.
+    let expected = std::f64::consts::PI * 179.0 * (2.0 * 0.265 + 0.670 + 0.5 * 0.065);
+    for row in
+        rows("measure sky.rad --at 0,0,0 --grid 0,0,0:3,0,0:0,5,0:1x1 --grid 0,0,0:0,5,0:3,0,0:1x1 --samples 1024")
+    {
+        assert_eq!(row[3..6], [0.0, 0.0, 1.0], "{row:?}");
+        assert!((row[6] / expected - 1.0).abs() < 5e-3, "{row:?}, not {expected}");
+    }
+    // No studio lights what is dark.
+    assert_eq!(rows("measure dark.rad --at 0,0,0 --samples 64")[0][6], 0.0);
+    assert!(rows("measure dark.rad --at 0,0,0 --samples 64 --studio soft")[0][6] > 0.1);
+    // Photons are kept on surfaces.
+    let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
+m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
+    place.put("mirror.rad", mirror);
+    place.refused(2, "measure mirror.rad --at 0,0,.8 --integrator photons --samples 2", &["lies on none"]);
+    rows("measure mirror.rad --at 0,0,0 --integrator photons --samples 2");
+    place.refused(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
 }

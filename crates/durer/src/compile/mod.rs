@@ -149,7 +149,8 @@ pub fn compile(
         frame: CameraBasis::of(&camera, rules),
         camera,
         // A picture around the scene takes the place of the colour, a black one too.
-        background: if environment.is_none() && scene.background.environment.is_some() {
+        background: if environment.is_none() && (scene.background.environment.is_some() || scene.background.is_night())
+        {
             Color::ZERO
         } else {
             scene.background.color
@@ -250,8 +251,8 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
             let message = format!("the sun is {:.1} degrees below the horizon", low(way));
             let warning = Diagnostic::warning(message).code("sun-below");
             warning
-                .effect("it is shown as if it stood on the horizon")
-                .help("by night leave the sun out, and write what lights the scene")
+                .effect("neither it nor its sky shines")
+                .help("for dusk write a sun on the horizon, for night what lights the scene then")
         }
         Ok(_) => return,
     };
@@ -271,7 +272,7 @@ fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diag
 fn sun(background: &scene::Background) -> Option<Light> {
     // Of the standard skies it is written where the sun is, but what they give is the sky's light
     // alone.
-    let way = background.sun().filter(|_| background.cie_sky.is_none())?;
+    let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));

@@ -2,7 +2,7 @@
 //!
 //! Text lines, among them `TILT=`, then numbers: how many angles, the angles, and the candela.
 
-use crate::diag::{Diagnostic, Diagnostics, Span};
+use crate::diag::{Diagnostic, Diagnostics, Severity, Span};
 use crate::light::photometric::{Profile, ProfileKind};
 
 /// More angles than any photometer has.
@@ -77,10 +77,12 @@ impl Numbers<'_> {
 pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
     // Names of makers may be in any encoding; all else is ASCII, and places stay the same.
     let text: String = bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect();
-    parse(&text, file).map_err(|error| diagnostics.push(*error)).ok()
+    let (profile, odd) = parse(&text, file).map_err(|error| diagnostics.push(*error)).ok()?;
+    odd.into_iter().for_each(|warning| diagnostics.push(warning));
+    Some(profile)
 }
 
-fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
+fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagnostic>> {
     let mut numbers = Numbers { text, at: 0, file };
     let mut tilt = None;
     let mut place = 0;
@@ -138,7 +140,9 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;
-    let horizontal = numbers.angles(horizontals, "horizontal angle")?;
+    let around = numbers.at + text[numbers.at..].find(|c: char| !c.is_whitespace()).unwrap_or(0);
+    let mut horizontal = numbers.angles(horizontals, "horizontal angle")?;
+    let angles = around..numbers.at;
     let scale = multiplier * ballast * if reserved > 0.0 { reserved } else { 1.0 };
     let mut candela = Vec::with_capacity(verticals * horizontals);
     for i in 0..verticals * horizontals {
@@ -153,7 +157,26 @@ fn parse(text: &str, file: u32) -> Result<Profile, Box<Diagnostic>> {
         }
         candela.push(value);
     }
-    Ok(Profile { kind, vertical, horizontal, candela })
+    let more = numbers.next("end").ok().map(|(_, start)| start..numbers.at);
+    let mut odd = Vec::new();
+    let mut warn = |at: std::ops::Range<usize>, message: &str| {
+        let error = numbers.error(at.start, at.end, message);
+        odd.push(Diagnostic { severity: Severity::Warning, ..*error });
+    };
+    let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
+    if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
+        // Nothing is said of what follows: as all around, it leads back to the first.
+        warn(angles.clone(), "the horizontal angles end before 360: from there to the first candela are linear");
+        horizontal.push(360.0);
+        candela.extend_from_within(..verticals);
+    }
+    if candela.iter().all(|candela| *candela == 0.0) {
+        warn(angles, "this lamp is dark: all its candela are 0");
+    }
+    if let Some(more) = more {
+        warn(more, "more numbers follow the last candela: are there decimal commas, or angles too few?");
+    }
+    Ok((Profile { kind, vertical, horizontal, candela }, odd))
 }
 
 /// The same as a file: what is read of it is equal to the bit.
@@ -225,6 +248,35 @@ mod tests {
             let text = String::from_utf8(write(&profile)).unwrap();
             assert!(text.lines().all(|line| line.len() < 256));
             assert_eq!(parsed(&text).unwrap(), profile);
+        }
+    }
+
+    #[test]
+    fn what_is_odd_is_told_at_its_place() {
+        for (text, told) in [
+            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n7 8\n9", "6:1 more numbers follow"),
+            ("TILT=NONE\n1 1 1 2 1 1 2 0 0 0 1 1 1\n0 90\n0\n0 0", "4:1 this lamp is dark"),
+            (
+                "TILT=NONE\n1 1 1 2 3 1 2 0 0 0 1 1 1\n0 90\n0 90 270\n1 1 2 2 3 3",
+                "4:1 the horizontal angles end before 360",
+            ),
+        ] {
+            let mut files = Files::default();
+            let file = files.add("lamp.ies", text.as_bytes().into());
+            let mut diagnostics = Diagnostics::default();
+            let profile = read(text.as_bytes(), file, &mut diagnostics).unwrap();
+            let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
+            let (line, column) = files.position(warning.span.unwrap()).unwrap();
+            assert!(
+                format!("{line}:{column} {}", warning.message).starts_with(told),
+                "{text}: {line}:{column} {warning:?}"
+            );
+            if told.contains("360") {
+                // Half way from 270 on to 0.
+                let (sin, cos) = crate::math::fp::sin_cos_degrees(315.0);
+                let dir = crate::math::Vec3::new(cos as f32, sin as f32, 0.0);
+                assert!((profile.at(dir) - 2.0).abs() < 1e-3, "{}", profile.at(dir));
+            }
         }
     }
 

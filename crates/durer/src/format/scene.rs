@@ -64,6 +64,7 @@ pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFo
 /// Reads a model as a scene, and adds the camera, light and material that it lacks.
 pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let mut scene = (format.read)(input, diagnostics)?;
+    scene.up = Some(input.staging.up.unwrap_or(format.up));
     if let Some(path) = &input.staging.view_file {
         let (name, bytes) = named(input, path, diagnostics)?;
         let found = radiance::look(&mut scene, input, (&name, &bytes));

@@ -142,6 +142,11 @@ impl Background {
         self.way_to_sun().ok().flatten()
     }
 
+    /// Whether the sun is below the horizon: neither it nor its sky shines.
+    pub fn is_night(&self) -> bool {
+        self.sun().is_some_and(|way| way.y < 0.0)
+    }
+
     /// The standard sky, if one is asked for.
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
@@ -193,6 +198,12 @@ pub struct Scene {
     /// What the file asks of its picture.
     #[serde(default, skip_serializing_if = "Wishes::are_none")]
     pub wishes: Wishes,
+    /// Which way is up, where its format says so.
+    #[serde(skip)]
+    pub up: Option<Axis>,
+    /// What makes lumens of its light, by colour, where that is in watts.
+    #[serde(skip)]
+    pub lumens: Option<Vec3>,
     /// Where the camera is written.
     #[serde(skip)]
     pub camera_span: Span,

@@ -78,6 +78,8 @@ pub struct Staging {
     /// Whether nothing is added, and nothing replaced: the scene is to be written in another
     /// format.
     pub bare: bool,
+    /// Whether only its own light counts: where it has none it is dark.
+    pub own_light: bool,
     /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
     pub aspect: Option<f32>,
 }
@@ -128,14 +130,14 @@ impl Staging {
         }
         give_material(scene);
         let surrounded = self.environment.is_some() && self.studio.is_none();
-        let missing = !lit && !surrounded;
+        let missing = !lit && !surrounded && !self.own_light;
         let studio = self.studio.or(missing.then(Studio::default));
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed);
         }
         // Around what has its own light it is dark, unless the file says otherwise.
         let shines = scene.shines() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
-        if shines && scene.background == Background::default() {
+        if (shines || self.own_light) && scene.background == Background::default() {
             scene.background.color = Vec3::ZERO;
         }
     }

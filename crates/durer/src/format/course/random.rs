@@ -229,6 +229,8 @@ impl Random {
             materials,
             root: (nodes || self.below(8) > 0).then_some(Group { objects }),
             assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
+            up: None,
+            lumens: None,
             camera_span: Default::default(),
             background_span: Default::default(),
         }

@@ -37,6 +37,7 @@ use super::model::{Input, SceneFormat};
 use super::said::Said;
 use super::too_large;
 use crate::diag::{Diagnostic, Diagnostics};
+use crate::math::Vec3;
 use crate::scene::{Axis, Scene};
 use place::Place;
 use state::Reader;
@@ -65,7 +66,9 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         true => reader.rif(),
         false => reader.text(input.bytes, input.file, &Place::default()),
     }
-    let scene = reader.finish();
+    let mut scene = reader.finish();
+    // As rtrace's manual has it: 179 lm/W, and the weights of its colours.
+    scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !said.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(said.finish());
     sound.then_some(scene)

@@ -82,9 +82,10 @@ impl Outline<'_> {
                     // Vogel's spiral: as many points in equal areas.
                     let radius = (inner * inner + (outer * outer - inner * inner) * share(i)).sqrt();
                     let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
-                    center + radius * (cos * x + sin * y)
+                    radius * (cos * x + sin * y)
                 };
-                (0..count).map(place).collect()
+                // Of opposite points the middle is that of the ring.
+                (0..count / 2).map(|i| place(2 * i)).flat_map(|offset| [center + offset, center - offset]).collect()
             }
             Outline::Ball { center, .. } => vec![center],
             Outline::Side { ends, .. } => (0..count).map(|i| ends[0].lerp(ends[1], share(i))).collect(),
@@ -118,5 +119,12 @@ fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
         let [a, b, c] = [corners[0], corners[triangle + 1], corners[triangle + 2]];
         a * (1.0 - root) + root * ((1.0 - v) * b + v * c)
     };
-    (0..count).map(place).collect()
+    let mut places: Vec<DVec3> = (0..count).map(place).collect();
+    // What is far away sees the middle of all points where that of the surface is.
+    let middle =
+        areas.iter().enumerate().map(|(i, area)| *area * (corners[0] + corners[i + 1] + corners[i + 2])).sum::<DVec3>()
+            / (3.0 * whole.max(f64::MIN_POSITIVE));
+    let shift = middle - places.iter().sum::<DVec3>() / f64::from(count);
+    places.iter_mut().for_each(|place| *place += shift);
+    places
 }

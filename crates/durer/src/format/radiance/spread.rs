@@ -30,8 +30,8 @@ pub(super) struct Lamp {
     table: Table,
     correction: Correction,
     factor: f64,
-    /// By the coordinates of the table.
-    angles: Vec<Angle>,
+    /// By the coordinates of the table, with what is added to each.
+    angles: Vec<(Angle, f64)>,
     /// From the world into the lamp's own axes.
     turn: DMat3,
 }
@@ -60,8 +60,12 @@ enum Angle {
 }
 
 impl Angle {
-    fn of(name: &str) -> Option<Angle> {
-        Some(match name {
+    /// An angle and what is added to it.
+    fn of(name: &str) -> Option<(Angle, f64)> {
+        let at = name.find(['+', '-']).unwrap_or(name.len());
+        let (name, more) = name.split_at(at);
+        let more = if more.is_empty() { 0.0 } else { more.parse().ok()? };
+        let angle = match name {
             "src_theta" => Angle::Theta,
             "src_phi" => Angle::Phi(360.0),
             "src_phi2" => Angle::Phi(180.0),
@@ -71,7 +75,8 @@ impl Angle {
             "srcB_horiz" => Angle::Horizontal(false),
             "srcB_horiz2" => Angle::Horizontal(true),
             _ => return None,
-        })
+        };
+        Some((angle, more))
     }
 
     /// Degrees, for a unit direction in which light goes.
@@ -123,7 +128,7 @@ impl Lamp {
     /// In a unit direction of the world, from a surface whose normal has this cosine to it.
     fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         let e = (self.turn * dir).normalize_or_zero();
-        let angles: Vec<f64> = self.angles.iter().map(|angle| angle.at(e)).collect();
+        let angles: Vec<f64> = self.angles.iter().map(|(angle, more)| angle.at(e) + more).collect();
         let shown = match self.correction {
             Correction::Nothing => 1.0,
             Correction::Flat => cosine,

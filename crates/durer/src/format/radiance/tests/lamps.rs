@@ -155,6 +155,45 @@ fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
 }
 
 #[test]
+fn points_of_a_lamp_lie_around_its_middle() {
+    let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
+    let lamp = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1\n";
+    for (surface, middle) in [
+        ("l polygon r 0 0 12 -.6 -.3 2 -.6 .3 2 .6 .3 2 .6 -.3 2", DVec3::new(0.0, 0.0, 2.0)),
+        ("l polygon r 0 0 9 0 0 0 3 0 0 0 6 0", DVec3::new(1.0, 2.0, 0.0)),
+        ("l ring r 0 0 8 1 2 3 0 0 1 0 1", DVec3::new(1.0, 2.0, 3.0)),
+        ("l cylinder r 0 0 7 1 2 3 1 2 5 .1", DVec3::new(1.0, 2.0, 4.0)),
+    ] {
+        let (scene, _) = read_in(files.path(), "scene.rad", &format!("{lamp}{surface}"));
+        let lights = scene.unwrap().lights.unwrap();
+        let places = lights.iter().map(|light| {
+            let Light::Photometric(lamp) = &light.value else { panic!("{light:?}") };
+            lamp.position.as_dvec3()
+        });
+        let mean = places.sum::<DVec3>() / lights.len() as f64;
+        assert!(lights.len() == 16 && (mean - middle).length() < 1e-6, "{surface}: {mean}");
+    }
+}
+
+#[test]
+fn angles_may_have_something_added() {
+    // As `ies2rad` has it of files from 90 to 270 degrees.
+    let files = folder(&[("b.dat", by_two().as_bytes())]);
+    let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
+        l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
+    let (scene, _) = read_in(files.path(), "scene.rad", text);
+    let scene = scene.unwrap();
+    for (theta, phi) in [(30.0, 0.0), (30.0, 200.0)] {
+        // The lamp is turned back by a quarter: its angle is a quarter more.
+        let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
+        let folded = if around > 180.0 { 360.0 - around } else { around };
+        let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);
+        let found = intensity(&scene, way(theta, phi));
+        assert!((found / expected - 1.0).abs() < 2e-3, "{theta} {phi}: {found}, not {expected}");
+    }
+}
+
+#[test]
 fn so_many_lamps_of_their_own_and_no_more() {
     let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
     let mut text = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1".to_string();
