@@ -1,7 +1,7 @@
 //! Scenes that are described, and what is made of their pictures.
 
 use crate::rays::{self, JOB, Rays};
-use crate::work::{LOOK, each, look};
+use crate::work::{LOOK, each, install, look, pool};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
@@ -70,7 +70,7 @@ impl World {
     ) -> PyResult<Self> {
         let mut options = asked(&words)?.load_options().map_err(PyValueError::new_err)?;
         options.given = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
-        crate::work::install(py, options.threads, || {
+        install(py, options.threads, || {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
             let loaded = match text {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
@@ -115,10 +115,10 @@ impl World {
     }
 
     /// A part of a picture of which nothing is made yet.
-    fn part(&self, words: Vec<String>) -> PyResult<Part> {
+    fn part(&self, py: Python, words: Vec<String>) -> PyResult<Part> {
         let asked = asked(&words)?;
         let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let part = render::PartialRender::new(&self.world, &job, asked.shard())
+        let part = install(py, None, || render::PartialRender::new(&self.world, &job, asked.shard()))
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Part(Arc::new(part)))
     }
@@ -131,7 +131,11 @@ impl World {
                 let (end, wait) = mpsc::channel::<()>();
                 let control = &control;
                 let work = scope.spawn(move || {
-                    let stop = part.render(&self.world, control, &mut |_, _| {});
+                    let render = || part.render(&self.world, control, &mut |_, _| {});
+                    let stop = match pool(None) {
+                        Some(pool) => pool.install(render),
+                        None => render(),
+                    };
                     drop(end);
                     stop
                 });
@@ -205,14 +209,14 @@ impl World {
     /// Why a pixel has its colour, as JSON.
     fn explain(&self, py: Python, words: Vec<String>, pixel: (u32, u32)) -> PyResult<String> {
         let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let found = py.detach(|| embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
+        let found = install(py, None, || embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
         found.map(|value| value.to_string()).map_err(PyValueError::new_err)
     }
 
     /// What is odd about it, as JSON.
     fn check(&self, py: Python, words: Vec<String>) -> PyResult<String> {
         let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        Ok(py.detach(|| embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
+        Ok(install(py, None, || embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
     }
 }
 
@@ -229,19 +233,19 @@ impl Part {
     /// From the bytes of a file.
     #[staticmethod]
     fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
-        let part = py.detach(|| render::PartialRender::read(bytes)).map_err(failed)?;
+        let part = install(py, None, || render::PartialRender::read(bytes)).map_err(failed)?;
         Ok(Part(Arc::new(part)))
     }
 
     /// The bytes of a file.
     fn write<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let bytes = py.detach(|| self.0.write());
+        let bytes = install(py, None, || self.0.write());
         PyBytes::new(py, &bytes)
     }
 
     /// The hash of the film.
     fn hash(&self, py: Python) -> String {
-        py.detach(|| self.0.hash().to_string())
+        install(py, None, || self.0.hash().to_string())
     }
 
     /// The hash of all that decides the picture.
@@ -278,7 +282,7 @@ impl Part {
     /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows
     /// them.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
-        let rendered = py.detach(|| self.0.pictures()).map_err(failed)?;
+        let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
         let picture = |layer: Layer| {
             let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
@@ -298,7 +302,7 @@ impl Part {
 /// Puts parts together, each with its name.
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
-    let whole = py.detach(|| {
+    let whole = install(py, None, || {
         let read = |(name, bytes): (String, Vec<u8>)| match render::PartialRender::read(&bytes) {
             Ok(part) => Ok((name, part)),
             Err(error) => Err(failed(format!("`{name}` cannot be merged: {error}"))),

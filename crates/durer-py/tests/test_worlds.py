@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import multiprocessing
 import re
 import subprocess
 import sys
@@ -220,3 +221,24 @@ def test_how_a_model_becomes_a_scene_is_said_when_it_is_read(tmp_path):
         assert world.render(samples=1, size=(8, 8))["color"].shape == (8, 8, 3)
     with pytest.raises(TypeError, match="no option view"):
         durer.load(tmp_path / "m.obj").render(view="front")
+
+
+def _picture_in_child(queue, world):
+    pictures = world.render(size=(40, 30), samples=2)
+    world.check(size=(40, 30))
+    queue.put((pictures.hash, durer.compare(pictures, pictures)["verdict"], len(pictures.file("a.exr"))))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+def test_a_fork_renders_after_its_parent_did(whitted):
+    here = whitted.render(size=(40, 30), samples=2)
+    whitted.check(size=(40, 30))
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_picture_in_child, args=(queue, whitted))
+    child.start()
+    try:
+        assert queue.get(timeout=60) == (here.hash, "identical", len(here.file("a.exr")))
+    finally:
+        child.kill()
+        child.join()
