@@ -6,6 +6,7 @@ use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
 use durer::render::{self, Control, RenderOutcome};
+use durer::source::SourceError;
 use durer::world::Interaction;
 use durer::{Loaded, load, load_text};
 use durer_cli::embed::{self, Asked};
@@ -14,7 +15,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, mpsc};
 
@@ -37,7 +38,12 @@ pub struct World {
 /// Whole numbers of a hit, and others.
 const NUMBERS: usize = 3;
 const VALUES: usize = 10;
-type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
+/// The point in double precision, and how far from it a ray starts that leaves it.
+const PLACES: usize = 4;
+type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
+
+/// Those of some rays.
+type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
 
 /// Findings in lines: `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
@@ -51,6 +57,24 @@ fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -
         format!("{}{severity}: {}{}", place.unwrap_or_default(), d.message, help.unwrap_or_default())
     };
     read.iter().filter(|d| wanted(d.severity)).map(line).collect()
+}
+
+/// As Python has it of its own files: with a number, by which it is `FileNotFoundError`, say.
+fn unreadable(error: &SourceError, path: &Path) -> PyErr {
+    let number = match error {
+        SourceError::Io { error, .. } => error.raw_os_error(),
+        // ENOENT, everywhere.
+        SourceError::Missing { .. } => Some(2),
+        _ => None,
+    };
+    match number {
+        Some(number) => {
+            let said = std::io::Error::from_raw_os_error(number).to_string();
+            let said = said.split(" (os error").next().unwrap_or_default().to_owned();
+            PyOSError::new_err((number, said, path.as_os_str().to_owned()))
+        }
+        None => PyOSError::new_err(error.to_string()),
+    }
 }
 
 fn asked(words: &[String]) -> PyResult<Asked> {
@@ -74,7 +98,7 @@ impl World {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
             let loaded = match text {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
-                None => load(&path, &options, &mut files, &mut read).map_err(|e| PyOSError::new_err(e.to_string()))?,
+                None => load(&path, &options, &mut files, &mut read).map_err(|e| unreadable(&e, &path))?,
             };
             // In the threads that are there already.
             options.threads = None;
@@ -170,10 +194,13 @@ impl World {
         let rays = Rays::new(&asked)?;
         let count = rays.count;
         let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
-        let jobs = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB)).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, (ids, values)): (usize, (&mut [i32], &mut [f32]))| {
+        let mut places = vec![f64::NAN; PLACES * count];
+        let numbers = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB));
+        let jobs = numbers.zip(places.chunks_mut(PLACES * JOB)).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, ((ids, values), places)): (usize, Row)| {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
-            for (ray, (ids, values)) in rays.job(JOB * job).iter().zip(rows) {
+            let rows = rows.zip(places.as_chunks_mut::<PLACES>().0);
+            for (ray, ((ids, values), place)) in rays.exact_job(JOB * job).iter().zip(rows) {
                 values[0] = f32::INFINITY;
                 let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
                     continue;
@@ -183,9 +210,12 @@ impl World {
                 values[1..4].copy_from_slice(&surface.position.to_array());
                 values[4..7].copy_from_slice(&surface.n_geo.to_array());
                 values[7..].copy_from_slice(&surface.n_shade.to_array());
+                place[..3].copy_from_slice(&surface.point().to_array());
+                // As the renderer has it: see `durer::integrator`, where rays leave surfaces.
+                place[3] = f64::from(2.0 * surface.n_geo.abs().dot(surface.error));
             }
         })?;
-        Ok((ids.into_pyarray(py), values.into_pyarray(py)))
+        Ok((ids.into_pyarray(py), values.into_pyarray(py), places.into_pyarray(py)))
     }
 
     /// Whether each ray meets anything.
@@ -201,7 +231,7 @@ impl World {
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
-            to.iter_mut().zip(&rays.job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
+            to.iter_mut().zip(&rays.exact_job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
         })?;
         Ok(answers.into_pyarray(py))
     }

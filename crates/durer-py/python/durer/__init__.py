@@ -13,7 +13,8 @@ import importlib
 from typing import Any
 
 from . import words
-from ._durer import RenderError, SceneError, __version__
+from ._durer import RenderError, __version__
+from ._errors import SceneError
 from .pictures import compare, read
 from .rays import RECORD, AllHits, Hits, Mesh, Nearest, Scene
 from .things import Difference, Group, Intersection, Merge, Model, Moved, Object, Thing, Union_ as Union, Xor
