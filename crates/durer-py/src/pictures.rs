@@ -71,7 +71,8 @@ pub fn encode<'py>(
 /// The values of a picture's file, its width and height, and whether they are for a screen.
 #[pyfunction]
 pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
-    let picture = install(py, None, || Picture::read(bytes, name)).map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
+    let picture = install(py, None, || Picture::read(bytes, name))
+        .map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
     let Image { width, height, pixels } = picture.image;
     let values: Vec<f32> = pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
     Ok((values.into_pyarray(py), width, height, picture.scale == Scale::Display))

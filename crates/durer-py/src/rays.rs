@@ -88,8 +88,7 @@ impl<'a> Rays<'a> {
         let (origins, directions) = (Points::new(origins)?, points(directions)?);
         let (t_min, t_max) = (t_min.as_slice()?, t_max.as_slice()?);
         let fits = |length: usize, each: usize| length == each || length == each * count;
-        let all =
-            fits(origins.count(), 1) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
+        let all = fits(origins.count(), 1) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
@@ -98,13 +97,16 @@ impl<'a> Rays<'a> {
         match self.origins {
             Points::Single(rows) if center == DVec3::ZERO => {
                 let step = if rows.len() == 3 { 0 } else { 3 };
-                self.each(first, |i, dir, t_min, t_max| {
-                    Ray { origin: Vec3::from_slice(&rows[i * step..]), dir, t_min, t_max }
+                self.each(first, |i, dir, t_min, t_max| Ray {
+                    origin: Vec3::from_slice(&rows[i * step..]),
+                    dir,
+                    t_min,
+                    t_max,
                 })
             }
-            origins => self.each(first, |i, dir, t_min, t_max| {
-                Ray { origin: origins.seen_from(center, i), dir, t_min, t_max }
-            }),
+            origins => {
+                self.each(first, |i, dir, t_min, t_max| Ray { origin: origins.seen_from(center, i), dir, t_min, t_max })
+            }
         }
     }
 

@@ -323,7 +323,9 @@ impl Tree {
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray1<f64>>,
     )> {
-        let Target::Mesh(tree) = &self.target else { return Err(PyValueError::new_err("only meshes have nearest points")) };
+        let Target::Mesh(tree) = &self.target else {
+            return Err(PyValueError::new_err("only meshes have nearest points"));
+        };
         let places = Points::new(&places)?;
         let count = places.count();
         let (mut distance, mut triangle) = (vec![f64::INFINITY; count], vec![-1; count]);

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import places, rows
-from .rays import Hits, Mesh, Scene, rays_of
+from .rays import Hits, Mesh, Scene, _Rays, rays_of
 
 _Answers = dict[str, npt.NDArray[Any]]
 
@@ -23,7 +23,7 @@ class RaycastingScene:
     def __init__(self, nthreads: int = 0, device: Any = None) -> None:
         self._threads = nthreads or None
         self._meshes: list[Mesh] = []
-        self._scene: Optional[Scene] = None
+        self._scene: Optional[_Rays] = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Optional[npt.ArrayLike] = None) -> int:
         """Adds a mesh, which may be one of Open3D's own, and gives its number."""
@@ -37,14 +37,15 @@ class RaycastingScene:
         self._scene = None
         return len(self._meshes) - 1
 
-    def _asked(self) -> Scene:
+    def _asked(self) -> _Rays:
         if self._scene is None:
-            self._scene = Scene(self._meshes)
+            self._scene = self._meshes[0] if len(self._meshes) == 1 else Scene(self._meshes)
         return self._scene
 
     @staticmethod
     def _ids(numbers: npt.NDArray[Any]) -> npt.NDArray[np.uint32]:
-        return np.where(numbers < 0, 0xFFFF_FFFF, numbers).astype(np.uint32)
+        # -1 is 2^32 - 1 then.
+        return numbers.astype(np.int32, copy=False).view(np.uint32)
 
     def cast_rays(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
         """The first hit of each ray."""
