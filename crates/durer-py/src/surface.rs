@@ -73,14 +73,20 @@ impl Face<'_> {
     ///
     /// Where a ray meets a triangle, the kernel knows in double precision; whether it meets it, in
     /// single. So a ray that starts in front of a triangle's plane, by more than its origin is
-    /// rounded, does not meet it on the way forwards. `error` bounds what is rounded: in the space of
-    /// the object the origin, once on its way in and once for how far [`Ray64`] reaches; in space the
-    /// way there and back in double precision, as [`Affine::point_error`] has it; and the corners
-    /// around, which the kernel sees from the origin with three roundings each, and in a plane that
-    /// is sheared with as many again. The last keeps what is behind an edge from being met where the
-    /// ray passes it by less than that. The origin lies off the plane by twice the bound, as far as
-    /// its parts count along the normal, and off the edges by eight times: so it is in front of the
-    /// neighbours too, down to a fold of some degrees.
+    /// rounded, does not meet it on the way forwards. `error` bounds what is rounded, each part with
+    /// as much again to spare:
+    ///
+    /// - the origin, to single precision in the space of the object;
+    /// - the way to space and back, in double precision: moved to and from the middle of a mesh that
+    ///   is far away, or by a matrix, where the bound is that of [`Affine::point_error`], or as
+    ///   [`Ray64`] keeps it;
+    /// - the corners around, which the kernel sees from the origin and in a sheared plane, with
+    ///   seven roundings at most. A ray that passes an edge by no more than these might be taken to
+    ///   meet what is behind it.
+    ///
+    /// The origin lies off the plane by twice the bound, as far as its parts count along the normal,
+    /// and off the edges by eight times: so it is in front of the neighbours too, down to folds of
+    /// a few degrees.
     ///
     /// [`Ray64`]: durer::math::Ray64
     fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {

@@ -145,10 +145,10 @@ class Model(Object):
         self.mesh = mesh
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
-        mesh, (x, y, z) = f"TriangleMesh {{ obj_file {writer.mesh(self.mesh)} }}", map(number, self.mesh._center)
+        mesh, (x, y, z) = f"TriangleMesh {{ obj_file {writer.mesh(self.mesh)} }}", self.mesh._center.tolist()
         if not self.mesh._far:
             return mesh
-        return f"Transform {{ Matrix {{ 1 0 0 {x}  0 1 0 {y}  0 0 1 {z}  0 0 0 1 }} {mesh} }}"
+        return f"Transform {{ Matrix {{ 1 0 0 {x!r}  0 1 0 {y!r}  0 0 1 {z!r}  0 0 0 1 }} {mesh} }}"
 
 
 class Group(Object):
