@@ -147,11 +147,13 @@ class Camera:
     def flow(self, scene: Union[Mesh, Scene], other: Camera) -> tuple[Doubles, Bools]:
         """Optical flow to another pose in a scene at rest: how many pixels each moves, of shape (height, width, 2), not a number
         where nothing is seen; and whether the other camera sees the point too, within its picture and not hidden."""
-        points = self.view(scene).points.astype(np.float64)
+        hits = scene.closest(*self.rays())
+        points = hits.point.astype(np.float64)
         there = other.project(points)
         u, v = np.meshgrid(np.arange(self.width), np.arange(self.height))
         eye = other.rays()[0]
         with np.errstate(invalid="ignore"):
             inside = (there >= -0.5).all(-1) & (there[..., 0] < other.width - 0.5) & (there[..., 1] < other.height - 0.5)
-        hidden = scene.occluded(eye, points - eye, t_max=1 - 1e-4)
+            starts = hits.leave(eye - points)
+            hidden = scene.occluded(starts, eye - starts, t_max=1)
         return there - np.stack([u, v], -1), inside & ~hidden

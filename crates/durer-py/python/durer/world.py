@@ -412,7 +412,7 @@ class World:
         `part` goes on with work that was begun; `callback` gets the pictures as far as they are, every so many seconds. Ctrl-C
         and what a callback raises end it; what is made so far is in the part.
         """
-        if part is not None:
+        if part is not None and options:
             self._same(part, options)
         begun = part or self.part(**options)
         shown, last = watch(progress), time.monotonic()
