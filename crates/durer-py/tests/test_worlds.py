@@ -130,6 +130,7 @@ def test_errors_of_scenes_tell_file_line_and_column(tmp_path):
     (tmp_path / "bad.txt").write_text("PerspectiveCamera {\n  center 0 0 0\n  direction 0 0 oops\n}\n")
     with pytest.raises(durer.SceneError, match=r"bad\.txt:3:\d+: error") as raised:
         durer.load(tmp_path / "bad.txt")
+    assert raised.value.__context__ is None
     for error in (raised.value, pickle.loads(pickle.dumps(raised.value))):
         assert error.file.endswith("bad.txt") and (error.line, error.column) == (3, 17) and isinstance(error, ValueError)
         assert str(error).startswith(f"{error.file}:3:17: error: ") and error.findings[0]["severity"] == "error"

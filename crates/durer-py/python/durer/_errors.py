@@ -36,9 +36,11 @@ def spoken(work: Callable[[], T]) -> T:
     try:
         return work()
     except _durer.SceneError as error:
-        raise SceneError(*error.args) from None
+        said: ValueError = SceneError(*error.args)
     except ValueError as error:
-        raise ValueError(_python(str(error))) from None
+        said = ValueError(_python(str(error)))
+    # Here, for the native exception is nobody's context: that could not be pickled.
+    raise said
 
 
 def _python(text: str) -> str:
