@@ -9,7 +9,8 @@ import numpy.typing as npt
 
 from . import _durer
 from ._arrays import places, rows
-from .rays import Hits, Mesh, Scene, _Rays, rays_of
+from .hits import Hits
+from .rays import Mesh, Scene, _Rays, rays_of
 
 _Answers = dict[str, npt.NDArray[Any]]
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Iterable, Literal, Mapping, Optional, Sequence, TypeAlias, Union
 
@@ -11,165 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, Places, finite, indices, matrix, places, rows, scalars, seen, vectors
+from ._arrays import Bools, Doubles, Floats, Ints, Places, indices, matrix, places, rows, scalars, seen, vectors
+from ._mesh import FAR, centered, open_edges
 from ._progress import Progress, watch
+from .hits import AllHits, Hits, Nearest
 
 Preset: TypeAlias = Literal["fast", "balanced", "best"]
-
-#: What `ray` gives for each ray.
-RECORD = np.dtype(
-    [("t", "f4"), ("triangle", "i4"), ("object", "i4"), ("uv", "f4", 2), ("normal", "f4", 3), ("point", "f4", 3)]
-)
-
-
-class _Met:
-    """What is known of the places where rays met a surface."""
-
-    triangle: Ints
-    uv: Floats
-    _source: _Rays
-    _threads: Optional[int]
-
-    def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
-        """Objects, if there are any, triangles, and u and v, as if the hits had such a shape."""
-        raise NotImplementedError
-
-    @cached_property
-    def point(self) -> Places:
-        """Where rays meet the surface, by the triangle's corners; not a number where nothing is met. Float32, or float64 where the mesh
-        or scene is far from the origin. A ray that goes on from there starts at `leave`."""
-        shape, source = self.triangle.shape, self._source
-        return _durer.met_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
-
-    @cached_property
-    def normal(self) -> Floats:
-        """The triangle's normal, of length 1, to the side from which its corners go round counterclockwise in its mesh, outwards say,
-        also where that is mirrored; 0 where nothing is met."""
-        shape = self.triangle.shape
-        return _durer.met_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
-
-    def leave(self, directions: npt.ArrayLike) -> Doubles:
-        """Where rays start that go on from here in such directions: off the surface, on the side to which each goes, by no more than
-        what is rounded. So no ray meets the surface that it leaves, and no distance has to be chosen.
-
-        Directions, of shape (..., 3), are broadcast against the hits: `hits[:, None].leave(directions)` takes several for each. Not
-        numbers where nothing is met: rays from there meet nothing. Float64: far from the origin, and in scenes, single precision is
-        too little.
-        """
-        ways = vectors("directions", directions)
-        try:
-            shape = np.broadcast_shapes(self.triangle.shape, ways.shape[:-1])
-        except ValueError:
-            raise ValueError(
-                f"directions must have a shape that fits {(*self.triangle.shape, 3)}, but has {ways.shape}"
-            ) from None
-        ways = rows(np.broadcast_to(ways, (*shape, 3)), 3)
-        return _durer.met_leave(self._source._tree, self._flat(shape), ways, self._threads).reshape(*shape, 3)
-
-
-def _row(array: Any, shape: tuple[int, ...]) -> Any:
-    return np.ascontiguousarray(array if array.shape == shape else np.broadcast_to(array, shape)).reshape(-1)
-
-
-@dataclass(frozen=True, eq=False)
-class Hits(_Met):
-    """What rays meet first. All arrays have the shape of the rays, (n,) say, with the components of vectors behind it. Hits can be
-    indexed as arrays of that shape: `hits[hits.hit]`, `hits[:, None]`."""
-
-    #: Position along the ray, in units of its direction's length; infinite where nothing is met.
-    t: Floats
-    #: Number of the triangle in its mesh; -1 where nothing is met.
-    triangle: Ints
-    #: Second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
-    uv: Floats
-    _objects: Optional[Ints]
-    _source: _Rays
-    _threads: Optional[int] = None
-
-    @property
-    def hit(self) -> Bools:
-        """Where something is met."""
-        return self.triangle >= 0
-
-    @cached_property
-    def object(self) -> Ints:
-        """Number of the object in its scene, 0 in a mesh; -1 where nothing is met."""
-        return np.minimum(self.triangle, 0) if self._objects is None else self._objects
-
-    def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
-        objects = None if self._objects is None else _row(self._objects, shape)
-        return objects, _row(self.triangle, shape), _row(self.uv, (*shape, 2)).reshape(-1, 2)
-
-    def record(self) -> npt.NDArray[np.void]:
-        """All of it as one structured array, of type `RECORD`."""
-        record = np.zeros(self.t.shape, RECORD)
-        for name in RECORD.names or ():
-            record[name] = getattr(self, name)
-        return record
-
-    def __getitem__(self, index: Any) -> Hits:
-        numbers = np.arange(self.t.size).reshape(self.t.shape)[index]
-        objects = None if self._objects is None else np.asarray(self._objects.reshape(-1)[numbers])
-        uv = self.uv.reshape(-1, 2)[numbers]
-        t, triangle = np.asarray(self.t.reshape(-1)[numbers]), np.asarray(self.triangle.reshape(-1)[numbers])
-        return Hits(t, triangle, uv, objects, self._source, self._threads)
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"<Hits of {self.t.size} rays: {int(self.hit.sum())} meet something>"
-
-
-@dataclass(frozen=True, eq=False)
-class AllHits(_Met):
-    """All that rays meet, ray by ray, each from near to far."""
-
-    #: Number of the ray of each hit, in the order of the rays.
-    ray: npt.NDArray[np.int64]
-    #: How many hits each ray has, in the shape of the rays.
-    count: npt.NDArray[np.int64]
-    #: As in `Hits`, one row for each hit.
-    t: Floats
-    triangle: Ints
-    object: Ints
-    uv: Floats
-    _source: _Rays
-    _threads: Optional[int] = None
-
-    @property
-    def offsets(self) -> npt.NDArray[np.int64]:
-        """Where the hits of each ray begin; with one number more, where the last ones end."""
-        return np.concatenate([np.zeros(1, np.int64), np.cumsum(self.count.reshape(-1))])
-
-    def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
-        return _row(self.object, shape), _row(self.triangle, shape), _row(self.uv, (*shape, 2)).reshape(-1, 2)
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"<AllHits of {self.count.size} rays: {len(self)}>"
-
-
-@dataclass(frozen=True, eq=False)
-class Nearest:
-    """The points of a surface that are nearest to some points."""
-
-    #: How far it is, 0 or more; infinite where none is near enough.
-    distance: Doubles
-    #: Where it is; not a number where none is near enough.
-    point: Doubles
-    #: Number of the triangle, -1 where none is near enough.
-    triangle: Ints
-    #: Number of the object in its scene, 0 in a mesh.
-    object: Ints
-    #: Second and third barycentric coordinate.
-    uv: Doubles
-
-    def __repr__(self) -> str:
-        return f"<Nearest of {self.distance.size} points>"
-
 
 #: How many rays, origins, directions, t_min and t_max.
 Asked: TypeAlias = tuple[int, Places, Floats, Floats, Floats]
@@ -352,7 +198,7 @@ class Mesh(_Rays):
         given = places("vertices", vertices)
         if given.ndim != 2:
             raise ValueError(f"vertices must have the shape (n, 3), but has {given.shape}")
-        self._build(*_own(given), indices("faces", faces), preset, threads)
+        self._build(*centered(given), indices("faces", faces), preset, threads)
 
     def _build(
         self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset, threads: Optional[int] = None
@@ -384,7 +230,7 @@ class Mesh(_Rays):
         given = places("vertices", vertices)
         if given.shape != self._own.shape:
             raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
-        own, center = _own(given)
+        own, center = centered(given)
         mesh = Mesh.__new__(Mesh)
         # A tree has no place for a triangle that was not there when it was built.
         if not (np.isfinite(own).all() and np.isfinite(self._own).all()):
@@ -441,20 +287,7 @@ class Mesh(_Rays):
         """How many edges belong to an odd number of triangles, corners being the same where they lie at the same place, or to several
         that are one triangle to the same side. Triangles that are not finite are not there. 0 for a closed mesh, whose inside
         `contains` knows."""
-        is_finite = finite(self._own)
-        _, place = np.unique(np.where(is_finite[:, None], self._own + np.float32(0), 0), axis=0, return_inverse=True)
-        faces = self.faces.astype(np.int64)
-        corners = place.reshape(-1)[faces[is_finite[faces].all(axis=1)]]
-        pairs = np.sort(np.stack([corners, np.roll(corners, -1, 1)], -1), -1)
-        edges, first, times = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
-        is_open = times % 2 == 1
-        # Of triangles with the same corners those to opposite sides are a sheet without thickness; what is left more than once.
-        ways = np.where(_is_even(corners), 1, -1)
-        _, which = np.unique(np.sort(corners, 1), axis=0, return_inverse=True)
-        which = which.reshape(-1)
-        several = np.abs(np.bincount(which, ways, minlength=1)) > 1.5
-        is_open[first.reshape(-1, 3)[several[which]]] = True
-        return int((is_open & (edges[:, 0] != edges[:, 1])).sum())
+        return open_edges(self._own, self.faces)
 
     @property
     def is_closed(self) -> bool:
@@ -467,43 +300,6 @@ class Mesh(_Rays):
         count = len(self.faces)
         all = (None, np.arange(count, dtype=np.int32), np.zeros((count, 2), np.float32))
         return _durer.met_normals(self._tree, all, None).reshape(-1, 3)
-
-
-#: A mesh that is so many times its extent away is kept as it is seen from its own middle: six digits of single precision, of 24.
-_FAR = 32
-
-
-def _center(vertices: Places) -> Doubles:
-    """The middle of the box around vertices, a number of single precision, along the axes along which it is far away; 0 along
-    others. Single coordinates less such a middle are single again, exactly."""
-    if not np.isfinite(vertices).all():
-        vertices = vertices[finite(vertices)]
-    if not len(vertices):
-        return np.zeros(3)
-    least, greatest = vertices.min(0).astype(np.float64), vertices.max(0).astype(np.float64)
-    with np.errstate(over="ignore"):
-        middle = (least / 2 + greatest / 2).astype(np.float32)
-    is_far = np.isfinite(middle) & (np.abs(middle) > _FAR * (greatest / 2 - least / 2).max() * 2)
-    return np.where(is_far, middle, 0).astype(np.float64)
-
-
-def _own(given: Places) -> tuple[Floats, Doubles]:
-    """Vertices as they are seen from a middle, in single precision and a copy; and the middle."""
-    center = _center(given)
-    with np.errstate(over="ignore", invalid="ignore"):
-        own = np.array(given - center if center.any() else given, np.float32, order="C")
-    lost = np.isinf(own) & np.isfinite(given)
-    if lost.any():
-        i = int(lost.any(axis=1).argmax())
-        raise ValueError(f"vertices[{i}] is {given[i].tolist()}, which is beyond single precision")
-    return own, center
-
-
-def _is_even(corners: npt.NDArray[np.int64]) -> Bools:
-    """Whether the corners of triangles are in the order of their numbers, or turned from that."""
-    a, b, c = corners.T
-    is_even: Bools = (a < b) == ((b < c) == (a < c))
-    return is_even
 
 
 Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
@@ -538,7 +334,7 @@ class Scene(_Rays):
         self._tree = _durer.Tree.placed(trees, rows(self.matrices, 12))
         least, greatest = self._tree.bounds()
         size = max((b - a for a, b in zip(least, greatest)), default=0.0)
-        self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > _FAR * size >= 0
+        self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > FAR * size >= 0
 
     def move(self, places: Mapping[int, npt.ArrayLike]) -> Scene:
         """The scene with some objects at other places: matrices by the numbers of objects. Meshes and their trees are shared; what is
