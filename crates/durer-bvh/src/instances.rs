@@ -1,7 +1,7 @@
 //! Trees of triangles, placed in space as often as wanted.
 
 use super::{Bvh, Facing, TraversalCounter, TriangleBvh, TriangleHit};
-use crate::math::{Aabb, Affine, Ray, Vec2, Vec3, triangle_normal};
+use crate::math::{Aabb, Affine, Ray, Ray64, Vec2, Vec3, triangle_normal};
 use std::sync::Arc;
 
 /// A tree of triangles, and where it is placed.
@@ -62,8 +62,8 @@ impl InstanceHit {
 
 /// A tree over instances: each tree of triangles is in memory once, however often it is placed.
 ///
-/// A ray is moved into the space of an instance, in double precision, and rounded once; there it
-/// is traced as by [`TriangleBvh`], and so crosses exactly one of the triangles around an edge. Of
+/// A ray, whose origin may be known in double precision ([`Ray64`]), is moved into the space of an
+/// instance in double precision, and rounded once; there it is traced as by [`TriangleBvh`], and so crosses exactly one of the triangles around an edge. Of
 /// hits at the same `t` the one of the least instance, and then of the least triangle, is the
 /// closest.
 ///
@@ -128,18 +128,18 @@ impl InstanceBvh {
     }
 
     /// The first hit in the ray's open interval (`t_min`, `t_max`).
-    pub fn closest(&self, ray: &Ray) -> Option<InstanceHit> {
+    pub fn closest(&self, ray: impl Into<Ray64>) -> Option<InstanceHit> {
         self.closest_counting(ray, &mut ())
     }
 
     /// As [`InstanceBvh::closest`], counting nodes and tests in both levels.
-    pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<InstanceHit> {
-        self.nearest(ray, u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
+    pub fn closest_counting<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<InstanceHit> {
+        self.nearest(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
     }
 
     /// As [`InstanceBvh::closest`], of the instances that share a bit with `mask`.
-    pub fn closest_masked(&self, ray: &Ray, mask: u32) -> Option<InstanceHit> {
-        self.nearest(ray, mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
+    pub fn closest_masked(&self, ray: impl Into<Ray64>, mask: u32) -> Option<InstanceHit> {
+        self.nearest(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
     }
 
     /// As [`InstanceBvh::closest_masked`], of the hits that a filter lets pass: see
@@ -147,11 +147,11 @@ impl InstanceBvh {
     /// space, where a reflection has turned it.
     pub fn closest_where(
         &self,
-        ray: &Ray,
+        ray: impl Into<Ray64>,
         mask: u32,
         mut filter: impl FnMut(&InstanceHit, Facing) -> bool,
     ) -> Option<InstanceHit> {
-        self.nearest(ray, mask, &mut (), |bvh, local, number, _| {
+        self.nearest(&ray.into(), mask, &mut (), |bvh, local, number, _| {
             let mirrors = self.instances[number as usize].to_world.mirrors();
             bvh.closest_filtered(local, &mut |hit, facing| {
                 filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
@@ -163,12 +163,12 @@ impl InstanceBvh {
     #[inline]
     fn nearest<T: TraversalCounter>(
         &self,
-        ray: &Ray,
+        ray: &Ray64,
         mask: u32,
         counter: &mut T,
         mut closest: impl FnMut(&TriangleBvh, &Ray, u32, &mut T) -> Option<TriangleHit>,
     ) -> Option<InstanceHit> {
-        let (mut best, mut t_max): (Option<InstanceHit>, f32) = (None, ray.t_max);
+        let (mut best, mut t_max): (Option<InstanceHit>, f32) = (None, ray.rounded.t_max);
         self.traverse(ray, mask, counter, |number, bvh, local, counter| {
             if let Some(hit) = closest(bvh, &Ray { t_max, ..local }, number, counter) {
                 let hit = InstanceHit::new(number, hit);
@@ -184,24 +184,29 @@ impl InstanceBvh {
     }
 
     /// Whether anything is hit in the ray's open interval.
-    pub fn occluded(&self, ray: &Ray) -> bool {
+    pub fn occluded(&self, ray: impl Into<Ray64>) -> bool {
         self.occluded_counting(ray, &mut ())
     }
 
     /// As [`InstanceBvh::occluded`], counting nodes and tests in both levels.
-    pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
-        self.any(ray, u32::MAX, counter, |bvh, ray, _, counter| bvh.occluded_counting(ray, counter))
+    pub fn occluded_counting<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
+        self.any(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.occluded_counting(ray, counter))
     }
 
     /// As [`InstanceBvh::occluded`], by the instances that share a bit with `mask`.
-    pub fn occluded_masked(&self, ray: &Ray, mask: u32) -> bool {
-        self.any(ray, mask, &mut (), |bvh, ray, _, _| bvh.occluded(ray))
+    pub fn occluded_masked(&self, ray: impl Into<Ray64>, mask: u32) -> bool {
+        self.any(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.occluded(ray))
     }
 
     /// As [`InstanceBvh::occluded_masked`], by the hits that a filter lets pass: see
     /// [`InstanceBvh::closest_where`].
-    pub fn occluded_where(&self, ray: &Ray, mask: u32, mut filter: impl FnMut(&InstanceHit, Facing) -> bool) -> bool {
-        self.any(ray, mask, &mut (), |bvh, local, number, _| {
+    pub fn occluded_where(
+        &self,
+        ray: impl Into<Ray64>,
+        mask: u32,
+        mut filter: impl FnMut(&InstanceHit, Facing) -> bool,
+    ) -> bool {
+        self.any(&ray.into(), mask, &mut (), |bvh, local, number, _| {
             let mirrors = self.instances[number as usize].to_world.mirrors();
             bvh.occluded_filtered(local, &mut |hit, facing| {
                 filter(&InstanceHit::new(number, *hit), facing.turned_if(mirrors))
@@ -212,7 +217,7 @@ impl InstanceBvh {
     #[inline]
     fn any<T: TraversalCounter>(
         &self,
-        ray: &Ray,
+        ray: &Ray64,
         mask: u32,
         counter: &mut T,
         mut occluded: impl FnMut(&TriangleBvh, &Ray, u32, &mut T) -> bool,
@@ -220,25 +225,25 @@ impl InstanceBvh {
         let mut found = false;
         self.traverse(ray, mask, counter, |number, bvh, local, counter| {
             found |= occluded(bvh, &local, number, counter);
-            if found { f32::NEG_INFINITY } else { ray.t_max }
+            if found { f32::NEG_INFINITY } else { ray.rounded.t_max }
         });
         found
     }
 
     /// All hits in the ray's open interval, by `t`, then by number of the instance, then of the
     /// triangle.
-    pub fn all_hits(&self, ray: &Ray) -> Vec<InstanceHit> {
-        let mut all = Vec::new();
-        self.traverse(ray, u32::MAX, &mut (), |number, bvh, local, _| {
+    pub fn all_hits(&self, ray: impl Into<Ray64>) -> Vec<InstanceHit> {
+        let (mut all, ray) = (Vec::new(), ray.into());
+        self.traverse(&ray, u32::MAX, &mut (), |number, bvh, local, _| {
             all.extend(bvh.all_hits(&local).into_iter().map(|hit| InstanceHit::new(number, hit)));
-            ray.t_max
+            ray.rounded.t_max
         });
         all.sort_by(|a, b| a.t.total_cmp(&b.t).then((a.instance, a.triangle).cmp(&(b.instance, b.triangle))));
         all
     }
 
     /// How many triangles the ray crosses in its open interval.
-    pub fn hit_count(&self, ray: &Ray) -> usize {
+    pub fn hit_count(&self, ray: impl Into<Ray64>) -> usize {
         self.all_hits(ray).len()
     }
 
@@ -295,12 +300,12 @@ impl InstanceBvh {
     #[inline]
     fn traverse<T: TraversalCounter>(
         &self,
-        ray: &Ray,
+        ray: &Ray64,
         mask: u32,
         counter: &mut T,
         mut ask: impl FnMut(u32, &TriangleBvh, Ray, &mut T) -> f32,
     ) {
-        self.bvh.traverse(ray, counter, |item, t_max, counter| {
+        self.bvh.traverse(&ray.rounded, counter, |item, t_max, counter| {
             let number = self.bvh.primitive_indices()[item];
             let instance = &self.instances[number as usize];
             match instance.mask & mask {
@@ -327,7 +332,7 @@ mod tests {
     use crate::math::Vec3;
     use crate::math::random::Random;
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
-    use glam::{DAffine3, DMat3};
+    use glam::{DAffine3, DMat3, DVec3};
 
     /// A map that turns, shears, stretches and mirrors.
     fn map(random: &mut Random) -> Affine {
@@ -377,6 +382,30 @@ mod tests {
         }
         assert!(met > 500, "{met}");
         assert!(scene.memory_usage() < 2 * (trees[0].memory_usage() + trees[1].memory_usage()));
+    }
+
+    #[test]
+    fn an_origin_in_double_precision_is_seen_from_the_instance() {
+        let mut random = Random(10);
+        let mesh = torus(16, 8);
+        let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
+        // Numbers that are sums of a few powers of two: what is moved there and back is the same.
+        let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
+        let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
+        let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);
+        let mut met = 0;
+        for _ in 0..2_000 {
+            let near = ray(&mesh, &mut random, 1.0, Vec3::ZERO);
+            let origin = (near.origin * 1024.0).round() / 1024.0;
+            let near = Ray { origin, ..near };
+            let from_there = Ray64::new(origin.as_dvec3() + far, near.dir, near.t_min, near.t_max);
+            let hit = scene.closest(from_there);
+            assert_eq!(hit.map(|hit| (hit.t, hit.triangle)), bvh.closest(&near).map(|hit| (hit.t, hit.triangle)));
+            assert_eq!(scene.occluded(from_there), bvh.occluded(&near));
+            assert_eq!(scene.hit_count(from_there), bvh.hit_count(&near));
+            met += usize::from(hit.is_some());
+        }
+        assert!(met > 500, "{met}");
     }
 
     #[test]

@@ -23,23 +23,17 @@ def directions_about(normals: np.ndarray, count: int, seed: int = 1) -> np.ndarr
     return (r * np.cos(turn))[..., None] * frame[0] + (r * np.sin(turn))[..., None] * frame[1] + z[..., None] * frame[2]
 
 
-def vertex_normals(mesh: durer.Mesh) -> np.ndarray:
-    """Means of the normals of the triangles around each vertex, by area."""
-    a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(float) for i in range(3))
-    area = np.cross(b - a, c - a)
-    sums = np.zeros(mesh.vertices.shape)
-    for i in range(3):
-        np.add.at(sums, mesh.faces[:, i], area)
-    return sums / np.maximum(np.linalg.norm(sums, axis=1, keepdims=True), 1e-30)
-
-
 def openness(mesh: durer.Mesh, count: int) -> np.ndarray:
-    """The share of the sky above each vertex, by the cosine, that is seen: 1 where nothing is in the way."""
-    normals = vertex_normals(mesh)
-    # Vertices lie on the surface: rays begin a hundred-thousandth of the whole above it.
-    lift = 1e-5 * np.ptp(mesh.bounds, axis=0).max()
-    origins = (mesh.vertices + lift * normals)[:, None, :]
-    return 1 - mesh.occluded(origins, directions_about(normals, count)).mean(axis=1)
+    """The share of the sky above each vertex, by the cosine, that is seen: 1 where nothing is in the way. Above is what the triangles
+    around it say, each for its part; they share so many rays."""
+    triangles = np.repeat(np.arange(len(mesh.faces)), 3)
+    corners = mesh.surface(triangles, np.tile([[0, 0], [1, 0], [0, 1]], (len(mesh.faces), 1)))
+    ways = directions_about(corners.normal, -(-count // 6))
+    seen = 1 - mesh.occluded(corners[:, None].leave(ways), ways).mean(axis=1)
+    a, b, c = (mesh.vertices[mesh.faces[:, i]].astype(float) for i in range(3))
+    area = np.repeat(np.linalg.norm(np.cross(b - a, c - a), axis=1), 3)
+    at, vertices = mesh.faces.reshape(-1), len(mesh.vertices)
+    return np.bincount(at, area * seen, vertices) / np.maximum(np.bincount(at, area, vertices), 1e-300)
 
 
 def main(count: int = 64, output: str = "baked.ply") -> None:

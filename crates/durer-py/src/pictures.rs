@@ -1,5 +1,6 @@
 //! Arrays as pictures.
 
+use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
 use durer::image::{Image, Layer, Transfer, WriteOptions, format_for};
 use durer::math::Vec3;
@@ -35,7 +36,7 @@ pub fn compare<'py>(
     let reference = Picture { image: image(&reference.0)?, scale: scale(reference.1) };
     let picture = Picture { image: image(&picture.0)?, scale: scale(picture.1) };
     let options = Options { tolerance, allowed, ..Options::default() };
-    let found = crate::work::install(py, None, || comparing::compare(&reference, &picture, &options)).map_err(wrong)?;
+    let found = install(py, None, || comparing::compare(&reference, &picture, &options)).map_err(wrong)?;
     Ok((durer_cli::embed::comparison(&found).to_string(), found.flip_map.into_pyarray(py)))
 }
 
@@ -62,14 +63,16 @@ pub fn encode<'py>(
         });
     }
     let mut bytes = Vec::new();
-    format.write(&all, &WriteOptions { display: transfer.into(), attributes: &[] }, &mut bytes).map_err(wrong)?;
+    let options = WriteOptions { display: transfer.into(), attributes: &[] };
+    install(py, None, || format.write(&all, &options, &mut bytes)).map_err(wrong)?;
     Ok(PyBytes::new(py, &bytes))
 }
 
 /// The values of a picture's file, its width and height, and whether they are for a screen.
 #[pyfunction]
 pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
-    let picture = Picture::read(bytes, name).map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
+    let picture = install(py, None, || Picture::read(bytes, name))
+        .map_err(|error| wrong(format!("cannot read `{name}`: {error}")))?;
     let Image { width, height, pixels } = picture.image;
     let values: Vec<f32> = pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
     Ok((values.into_pyarray(py), width, height, picture.scale == Scale::Display))

@@ -1,6 +1,7 @@
 //! Rays as they lie in arrays.
 
-use durer::math::{Ray, Vec3};
+use durer::math::{Ray, Ray64, Vec3};
+use glam::DVec3;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -8,21 +9,66 @@ use pyo3::prelude::*;
 /// So many rays are one job: their copies stay in a near cache.
 pub const JOB: usize = 2048;
 
+/// Rows of three numbers, of either precision.
+#[derive(FromPyObject)]
+pub enum Array<'py> {
+    Single(PyReadonlyArray2<'py, f32>),
+    Double(PyReadonlyArray2<'py, f64>),
+}
+
 /// How many rays there are; their origins and directions, and where they begin and end: a row for
 /// each ray, or one for all.
-pub type Asked<'py> = (
-    usize,
-    PyReadonlyArray2<'py, f32>,
-    PyReadonlyArray2<'py, f32>,
-    PyReadonlyArray1<'py, f32>,
-    PyReadonlyArray1<'py, f32>,
-);
+pub type Asked<'py> =
+    (usize, Array<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
+
+/// Points one after the other, a row for each thing, or one for all.
+#[derive(Clone, Copy)]
+pub enum Points<'a> {
+    Single(&'a [f32]),
+    Double(&'a [f64]),
+}
+
+impl<'a> Points<'a> {
+    /// Those of an array.
+    pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
+        let wrong = || PyValueError::new_err("points are rows of three numbers, one after the other");
+        match array {
+            Array::Single(array) => Ok(Points::Single(points(array)?)),
+            Array::Double(array) => {
+                let rows = array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)?;
+                Ok(Points::Double(rows))
+            }
+        }
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        match self {
+            Points::Single(rows) => rows.len() / 3,
+            Points::Double(rows) => rows.len() / 3,
+        }
+    }
+
+    /// The i-th, or the only one.
+    pub fn at(&self, i: usize) -> DVec3 {
+        let at = if self.count() == 1 { 0 } else { 3 * i };
+        match self {
+            Points::Single(rows) => Vec3::from_slice(&rows[at..]).as_dvec3(),
+            Points::Double(rows) => DVec3::from_slice(&rows[at..]),
+        }
+    }
+
+    /// The same as it is seen from another point, rounded once.
+    pub fn seen_from(&self, center: DVec3, i: usize) -> Vec3 {
+        (self.at(i) - center).as_vec3()
+    }
+}
 
 /// Rays as they lie in arrays.
 #[derive(Clone, Copy)]
 pub struct Rays<'a> {
     pub count: usize,
-    origins: &'a [f32],
+    origins: Points<'a>,
     directions: &'a [f32],
     t_min: &'a [f32],
     t_max: &'a [f32],
@@ -34,35 +80,50 @@ pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
     array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)
 }
 
-/// The i-th of some points, or the only one.
-pub fn point(points: &[f32], i: usize) -> Vec3 {
-    let at = if points.len() == 3 { 0 } else { 3 * i };
-    Vec3::new(points[at], points[at + 1], points[at + 2])
-}
-
 impl<'a> Rays<'a> {
     /// The rays of arrays, if these are long enough.
     pub fn new((count, origins, directions, t_min, t_max): &'a Asked) -> PyResult<Self> {
-        let wrong = || PyValueError::new_err("rays are float32, one after the other, one for all or one for each");
+        let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
         let count = *count;
-        let (origins, directions) = (points(origins)?, points(directions)?);
+        let (origins, directions) = (Points::new(origins)?, points(directions)?);
         let (t_min, t_max) = (t_min.as_slice()?, t_max.as_slice()?);
         let fits = |length: usize, each: usize| length == each || length == each * count;
-        let all = fits(origins.len(), 3) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
+        let all = fits(origins.count(), 1) && fits(directions.len(), 3) && fits(t_min.len(), 1) && fits(t_max.len(), 1);
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
-    /// Those of a job, by the number of the first.
-    pub fn job(&self, first: usize) -> Vec<Ray> {
+    /// Those of a job, by the number of the first, as they are seen from a point: rounded once.
+    pub fn job(&self, first: usize, center: DVec3) -> Vec<Ray> {
+        match self.origins {
+            Points::Single(rows) if center == DVec3::ZERO => {
+                let step = if rows.len() == 3 { 0 } else { 3 };
+                self.each(first, |i, dir, t_min, t_max| Ray {
+                    origin: Vec3::from_slice(&rows[i * step..]),
+                    dir,
+                    t_min,
+                    t_max,
+                })
+            }
+            origins => {
+                self.each(first, |i, dir, t_min, t_max| Ray { origin: origins.seen_from(center, i), dir, t_min, t_max })
+            }
+        }
+    }
+
+    /// Those of a job with their origins in double precision.
+    pub fn exact_job(&self, first: usize) -> Vec<Ray64> {
+        self.each(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
+    }
+
+    /// What becomes of the rays of a job.
+    #[inline(always)]
+    fn each<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
         let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };
-        let (origin, direction) = (step(self.origins, 3), step(self.directions, 3));
-        let (t_min, t_max) = (step(self.t_min, 1), step(self.t_max, 1));
-        let ray = |i| Ray {
-            origin: Vec3::from_slice(&self.origins[i * origin..]),
-            dir: Vec3::from_slice(&self.directions[i * direction..]),
-            t_min: self.t_min[i * t_min],
-            t_max: self.t_max[i * t_max],
+        let (direction, t_min, t_max) = (step(self.directions, 3), step(self.t_min, 1), step(self.t_max, 1));
+        let one = |i| {
+            let dir = Vec3::from_slice(&self.directions[i * direction..]);
+            ray(i, dir, self.t_min[i * t_min], self.t_max[i * t_max])
         };
-        (first..self.count.min(first + JOB)).map(ray).collect()
+        (first..self.count.min(first + JOB)).map(one).collect()
     }
 }

@@ -1,9 +1,9 @@
 //! Trees of triangles, and questions to them.
 
-use crate::rays::{Asked, JOB, Rays, point, points};
+use crate::rays::{Array, Asked, JOB, Points, Rays, points};
 use crate::work::{each, install};
 use durer::bvh::{BuildQuality, Instance, InstanceBvh, InstanceHit, TriangleBvh, TriangleHit};
-use durer::math::{Affine, Ray, Vec3};
+use durer::math::{Affine, Ray, Ray64, Vec3};
 use glam::{DAffine3, DMat3, DVec3};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
@@ -13,9 +13,14 @@ use std::sync::Arc;
 
 /// Triangles, or trees of triangles in places.
 #[pyclass(frozen, module = "durer._durer")]
-pub struct Tree(Target);
+pub struct Tree {
+    pub target: Target,
+    /// Where the origin of a mesh's own coordinates is. Far away, these are more exact than those
+    /// of space, for they are single.
+    pub center: DVec3,
+}
 
-enum Target {
+pub enum Target {
     Mesh(Arc<TriangleBvh>),
     Placed(InstanceBvh),
 }
@@ -50,43 +55,55 @@ impl From<InstanceHit> for Row {
 
 const MISS: Row = Row(f32::INFINITY, -1, -1, [0.0; 2]);
 
-impl Target {
-    fn closest(&self, rays: &[Ray], mut put: impl FnMut(usize, Row)) {
-        match self {
+impl Tree {
+    fn closest_of(&self, rays: &Rays, first: usize, mut put: impl FnMut(usize, Row)) {
+        match &self.target {
             Target::Mesh(tree) => {
+                let rays = rays.job(first, self.center);
                 let mut hits = vec![None; rays.len()];
-                tree.closest_batch(rays, &mut hits);
+                tree.closest_batch(&rays, &mut hits);
                 for (i, hit) in hits.into_iter().enumerate() {
                     put(i, hit.map_or(MISS, Row::from));
                 }
             }
             Target::Placed(scene) => {
-                for (i, ray) in rays.iter().enumerate() {
+                for (i, ray) in rays.exact_job(first).iter().enumerate() {
                     put(i, scene.closest(ray).map_or(MISS, Row::from));
                 }
             }
         }
     }
 
-    fn occluded(&self, rays: &[Ray], answers: &mut [bool]) {
-        match self {
-            Target::Mesh(tree) => tree.occluded_batch(rays, answers),
-            Target::Placed(scene) => scene.occluded_batch(rays, answers),
+    fn occluded_of(&self, rays: &Rays, first: usize, answers: &mut [bool]) {
+        match &self.target {
+            Target::Mesh(tree) => tree.occluded_batch(&rays.job(first, self.center), answers),
+            Target::Placed(scene) => {
+                let rays = rays.exact_job(first);
+                answers.iter_mut().zip(&rays).for_each(|(answer, ray)| *answer = scene.occluded(ray));
+            }
         }
     }
 
-    fn all_hits(&self, ray: &Ray) -> Vec<Row> {
-        match self {
-            Target::Mesh(tree) => tree.all_hits(ray).into_iter().map(Row::from).collect(),
-            Target::Placed(scene) => scene.all_hits(ray).into_iter().map(Row::from).collect(),
+    fn all_hits_of(&self, rays: &Rays, first: usize, mut take: impl FnMut(usize, Vec<Row>)) {
+        match &self.target {
+            Target::Mesh(tree) => {
+                for (i, ray) in rays.job(first, self.center).iter().enumerate() {
+                    take(i, tree.all_hits(ray).into_iter().map(Row::from).collect());
+                }
+            }
+            Target::Placed(scene) => {
+                for (i, ray) in rays.exact_job(first).iter().enumerate() {
+                    take(i, scene.all_hits(ray).into_iter().map(Row::from).collect());
+                }
+            }
         }
     }
 
-    fn contains(&self, point: Vec3) -> bool {
-        match self {
-            Target::Mesh(tree) => tree.hit_count(&outward(tree, point)) % 2 == 1,
+    fn contains_point(&self, point: DVec3) -> bool {
+        match &self.target {
+            Target::Mesh(tree) => tree.hit_count(&outward(tree, (point - self.center).as_vec3())) % 2 == 1,
             Target::Placed(scene) => scene.instances().iter().any(|instance| {
-                let ray = instance.to_world.inverse_ray(Ray::new(point, Vec3::Z));
+                let ray = instance.to_world.inverse_ray(Ray64::new(point, Vec3::Z, 0.0, f32::INFINITY));
                 instance.bvh.hit_count(&ray) % 2 == 1
             }),
         }
@@ -112,7 +129,7 @@ fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
 
 /// So many zeros. Where there are many, all threads write them: one alone takes a tenth of the time
 /// of tracing.
-fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
+pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
     match count <= 2 * JOB {
         true => vec![T::default(); count],
         false => {
@@ -123,12 +140,13 @@ fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: u
 
 #[pymethods]
 impl Tree {
-    /// A tree of triangles.
+    /// A tree of triangles, by their vertices as they are seen from `center`.
     #[staticmethod]
     fn mesh(
         py: Python,
         vertices: PyReadonlyArray2<f32>,
         faces: PyReadonlyArray2<u32>,
+        center: [f64; 3],
         preset: &str,
         threads: Option<usize>,
     ) -> PyResult<Self> {
@@ -143,7 +161,26 @@ impl Tree {
             return Err(PyValueError::new_err(message));
         }
         let tree = install(py, threads, || TriangleBvh::build(&vertices, &faces, preset));
-        Ok(Tree(Target::Mesh(Arc::new(tree))))
+        Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
+    }
+
+    /// The tree of the same triangles with vertices that have moved, in the same order of triangles.
+    fn refitted(
+        &self,
+        py: Python,
+        vertices: PyReadonlyArray2<f32>,
+        faces: PyReadonlyArray2<u32>,
+        center: [f64; 3],
+    ) -> PyResult<Self> {
+        let Target::Mesh(tree) = &self.target else { return Err(PyValueError::new_err("only meshes are refitted")) };
+        let vertices: Vec<Vec3> = points(&vertices)?.chunks_exact(3).map(Vec3::from_slice).collect();
+        let faces = faces.as_slice()?.as_chunks().0;
+        let refitted = install(py, None, || {
+            let mut tree = TriangleBvh::clone(tree);
+            tree.try_refit(&vertices, faces).map(|()| tree)
+        });
+        let tree = refitted.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
     /// Trees in places: for each a matrix of three rows and four columns.
@@ -152,16 +189,17 @@ impl Tree {
         let rows = matrices.as_slice()?.as_chunks::<12>().0;
         let mut placed = Vec::with_capacity(trees.len());
         for (i, (tree, m)) in trees.iter().zip(rows).enumerate() {
-            let Target::Mesh(tree) = &tree.0 else {
+            let (Target::Mesh(mesh), center) = (&tree.target, tree.center) else {
                 return Err(PyValueError::new_err(format!("object {i} is no mesh")));
             };
             let column = |j: usize| DVec3::new(m[j], m[j + 4], m[j + 8]);
             let matrix3 = DMat3::from_cols(column(0), column(1), column(2));
             let singular = || PyValueError::new_err(format!("the matrix of object {i} cannot be inverted"));
-            let to_world = Affine::new(DAffine3 { matrix3, translation: column(3) }).ok_or_else(singular)?;
-            placed.push(Instance::new(tree.clone(), to_world));
+            let translation = column(3) + matrix3 * center;
+            let to_world = Affine::new(DAffine3 { matrix3, translation }).ok_or_else(singular)?;
+            placed.push(Instance::new(mesh.clone(), to_world));
         }
-        Ok(Tree(Target::Placed(InstanceBvh::new(placed))))
+        Ok(Tree { target: Target::Placed(InstanceBvh::new(placed)), center: DVec3::ZERO })
     }
 
     /// The first hit of each ray.
@@ -177,12 +215,12 @@ impl Tree {
         let (mut t, mut uv) = (zeros(py, threads, count), zeros::<f32>(py, threads, 2 * count));
         let mut triangle = zeros(py, threads, count);
         // In a mesh, whose object is known, there is no array of objects.
-        let mut object = zeros(py, threads, if matches!(self.0, Target::Placed(_)) { count } else { 0 });
+        let mut object = zeros(py, threads, if matches!(self.target, Target::Placed(_)) { count } else { 0 });
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
         let jobs = found.zip(objects).enumerate().collect();
         each(py, threads, watch, jobs, |(job, (((t, uv), triangle), mut object))| {
-            self.0.closest(&rays.job(JOB * job), |i, row| {
+            self.closest_of(&rays, JOB * job, |i, row| {
                 (t[i], triangle[i], uv[i]) = (row.0, row.1, row.3);
                 object.iter_mut().for_each(|object| object[i] = row.2);
             });
@@ -203,7 +241,7 @@ impl Tree {
         let count = rays.count;
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, to)| self.0.occluded(&rays.job(JOB * job), to))?;
+        each(py, threads, watch, jobs, |(job, to)| self.occluded_of(&rays, JOB * job, to))?;
         Ok(answers.into_pyarray(py))
     }
 
@@ -220,8 +258,7 @@ impl Tree {
         let mut counts = vec![0; count];
         let jobs = counts.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [i32])| {
-            let rays = rays.job(JOB * job);
-            to.iter_mut().zip(&rays).for_each(|(to, ray)| *to = self.0.all_hits(ray).len() as i32);
+            self.all_hits_of(&rays, JOB * job, |i, hits| to[i] = hits.len() as i32);
         })?;
         Ok(counts.into_pyarray(py))
     }
@@ -240,11 +277,10 @@ impl Tree {
         let mut rows: Vec<Vec<Row>> = vec![Vec::new(); count.div_ceil(JOB)];
         let jobs = counts.chunks_mut(JOB).zip(&mut rows).enumerate().collect();
         each(py, threads, watch, jobs, |(job, (counts, rows)): (usize, (&mut [i64], &mut Vec<Row>))| {
-            for (count, ray) in counts.iter_mut().zip(&rays.job(JOB * job)) {
-                let hits = self.0.all_hits(ray);
-                *count = hits.len() as i64;
+            self.all_hits_of(&rays, JOB * job, |i, hits| {
+                counts[i] = hits.len() as i64;
                 rows.extend(hits);
-            }
+            });
         })?;
         let rows: Vec<Row> = rows.concat();
         let t: Vec<f32> = rows.iter().map(|row| row.0).collect();
@@ -259,15 +295,15 @@ impl Tree {
     fn contains<'py>(
         &self,
         py: Python<'py>,
-        places: PyReadonlyArray2<'py, f32>,
+        places: Array<'py>,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray1<bool>>> {
-        let places = points(&places)?;
-        let mut answers = vec![false; places.len() / 3];
-        let jobs = answers.chunks_mut(JOB).zip(places.chunks(3 * JOB)).collect();
-        each(py, threads, watch, jobs, |(to, places): (&mut [bool], &[f32])| {
-            to.iter_mut().enumerate().for_each(|(i, to)| *to = self.0.contains(point(places, i)));
+        let places = Points::new(&places)?;
+        let mut answers = vec![false; places.count()];
+        let jobs = answers.chunks_mut(JOB).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
+            to.iter_mut().enumerate().for_each(|(i, to)| *to = self.contains_point(places.at(JOB * job + i)));
         })?;
         Ok(answers.into_pyarray(py))
     }
@@ -277,7 +313,7 @@ impl Tree {
     fn nearest<'py>(
         &self,
         py: Python<'py>,
-        places: PyReadonlyArray2<'py, f32>,
+        places: Array<'py>,
         within: f64,
         threads: Option<usize>,
         watch: Option<Py<PyAny>>,
@@ -287,18 +323,20 @@ impl Tree {
         Bound<'py, PyArray1<f64>>,
         Bound<'py, PyArray1<f64>>,
     )> {
-        let Target::Mesh(tree) = &self.0 else { return Err(PyValueError::new_err("only meshes have nearest points")) };
-        let places = points(&places)?;
-        let count = places.len() / 3;
+        let Target::Mesh(tree) = &self.target else {
+            return Err(PyValueError::new_err("only meshes have nearest points"));
+        };
+        let places = Points::new(&places)?;
+        let count = places.count();
         let (mut distance, mut triangle) = (vec![f64::INFINITY; count], vec![-1; count]);
         let (mut near, mut uv) = (vec![f64::NAN; 3 * count], vec![0.0; 2 * count]);
         let numbers = distance.chunks_mut(JOB).zip(triangle.chunks_mut(JOB));
-        let jobs = numbers.zip(near.chunks_mut(3 * JOB)).zip(uv.chunks_mut(2 * JOB)).zip(places.chunks(3 * JOB));
-        each(py, threads, watch, jobs.collect(), |((((distance, triangle), near), uv), places)| {
+        let jobs = numbers.zip(near.chunks_mut(3 * JOB)).zip(uv.chunks_mut(2 * JOB)).enumerate();
+        each(py, threads, watch, jobs.collect(), |(job, (((distance, triangle), near), uv))| {
             for i in 0..distance.len() {
-                if let Some(found) = tree.nearest_point(point(places, i), within) {
+                if let Some(found) = tree.nearest_point(places.seen_from(self.center, JOB * job + i), within) {
                     (distance[i], triangle[i]) = (found.distance, found.triangle as i32);
-                    near[3 * i..3 * i + 3].copy_from_slice(&found.point.to_array());
+                    near[3 * i..3 * i + 3].copy_from_slice(&(found.point + self.center).to_array());
                     uv[2 * i..2 * i + 2].copy_from_slice(&found.uv);
                 }
             }
@@ -306,9 +344,9 @@ impl Tree {
         Ok((distance.into_pyarray(py), triangle.into_pyarray(py), near.into_pyarray(py), uv.into_pyarray(py)))
     }
 
-    /// The box around everything: least and greatest corner.
+    /// The box around everything, as it is seen from the center: least and greatest corner.
     fn bounds(&self) -> ([f32; 3], [f32; 3]) {
-        let bounds = match &self.0 {
+        let bounds = match &self.target {
             Target::Mesh(tree) => tree.bounds(),
             Target::Placed(scene) => scene.bounds(),
         };
@@ -317,7 +355,7 @@ impl Tree {
 
     /// Bytes in memory.
     fn bytes(&self) -> usize {
-        match &self.0 {
+        match &self.target {
             Target::Mesh(tree) => tree.memory_usage(),
             Target::Placed(scene) => scene.memory_usage(),
         }

@@ -1,5 +1,8 @@
 //! Work on threads with the interpreter's lock released, while the calling thread hears Ctrl-C and
 //! tells of progress.
+//!
+//! All that may share its work among threads does so in a [`pool`] of this process, never in the one
+//! that rayon has for everybody: after a fork, that one waits for threads which are not there.
 
 use durer::threads;
 use pyo3::prelude::*;

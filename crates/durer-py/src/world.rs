@@ -1,11 +1,12 @@
 //! Scenes that are described, and what is made of their pictures.
 
 use crate::rays::{self, JOB, Rays};
-use crate::work::{LOOK, each, look};
+use crate::work::{LOOK, each, install, look, pool};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
 use durer::render::{self, Control, RenderOutcome};
+use durer::source::SourceError;
 use durer::world::Interaction;
 use durer::{Loaded, load, load_text};
 use durer_cli::embed::{self, Asked};
@@ -14,7 +15,7 @@ use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, mpsc};
 
@@ -37,7 +38,12 @@ pub struct World {
 /// Whole numbers of a hit, and others.
 const NUMBERS: usize = 3;
 const VALUES: usize = 10;
-type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
+/// The point in double precision, and how far from it a ray starts that leaves it.
+const PLACES: usize = 4;
+type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
+
+/// Those of some rays.
+type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
 
 /// Findings in lines: `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
@@ -51,6 +57,24 @@ fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -
         format!("{}{severity}: {}{}", place.unwrap_or_default(), d.message, help.unwrap_or_default())
     };
     read.iter().filter(|d| wanted(d.severity)).map(line).collect()
+}
+
+/// As Python has it of its own files: with a number, by which it is `FileNotFoundError`, say.
+fn unreadable(error: &SourceError, path: &Path) -> PyErr {
+    let number = match error {
+        SourceError::Io { error, .. } => error.raw_os_error(),
+        // ENOENT, everywhere.
+        SourceError::Missing { .. } => Some(2),
+        _ => None,
+    };
+    match number {
+        Some(number) => {
+            let said = std::io::Error::from_raw_os_error(number).to_string();
+            let said = said.split(" (os error").next().unwrap_or_default().to_owned();
+            PyOSError::new_err((number, said, path.as_os_str().to_owned()))
+        }
+        None => PyOSError::new_err(error.to_string()),
+    }
 }
 
 fn asked(words: &[String]) -> PyResult<Asked> {
@@ -70,11 +94,11 @@ impl World {
     ) -> PyResult<Self> {
         let mut options = asked(&words)?.load_options().map_err(PyValueError::new_err)?;
         options.given = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
-        crate::work::install(py, options.threads, || {
+        install(py, options.threads, || {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
             let loaded = match text {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
-                None => load(&path, &options, &mut files, &mut read).map_err(|e| PyOSError::new_err(e.to_string()))?,
+                None => load(&path, &options, &mut files, &mut read).map_err(|e| unreadable(&e, &path))?,
             };
             // In the threads that are there already.
             options.threads = None;
@@ -115,10 +139,10 @@ impl World {
     }
 
     /// A part of a picture of which nothing is made yet.
-    fn part(&self, words: Vec<String>) -> PyResult<Part> {
+    fn part(&self, py: Python, words: Vec<String>) -> PyResult<Part> {
         let asked = asked(&words)?;
         let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let part = render::PartialRender::new(&self.world, &job, asked.shard())
+        let part = install(py, None, || render::PartialRender::new(&self.world, &job, asked.shard()))
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Part(Arc::new(part)))
     }
@@ -131,7 +155,11 @@ impl World {
                 let (end, wait) = mpsc::channel::<()>();
                 let control = &control;
                 let work = scope.spawn(move || {
-                    let stop = part.render(&self.world, control, &mut |_, _| {});
+                    let render = || part.render(&self.world, control, &mut |_, _| {});
+                    let stop = match pool(None) {
+                        Some(pool) => pool.install(render),
+                        None => render(),
+                    };
                     drop(end);
                     stop
                 });
@@ -166,10 +194,13 @@ impl World {
         let rays = Rays::new(&asked)?;
         let count = rays.count;
         let (mut ids, mut values) = (vec![-1; NUMBERS * count], vec![f32::NAN; VALUES * count]);
-        let jobs = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB)).enumerate().collect();
-        each(py, threads, watch, jobs, |(job, (ids, values)): (usize, (&mut [i32], &mut [f32]))| {
+        let mut places = vec![f64::NAN; PLACES * count];
+        let numbers = ids.chunks_mut(NUMBERS * JOB).zip(values.chunks_mut(VALUES * JOB));
+        let jobs = numbers.zip(places.chunks_mut(PLACES * JOB)).enumerate().collect();
+        each(py, threads, watch, jobs, |(job, ((ids, values), places)): (usize, Row)| {
             let rows = ids.as_chunks_mut::<NUMBERS>().0.iter_mut().zip(values.as_chunks_mut::<VALUES>().0);
-            for (ray, (ids, values)) in rays.job(JOB * job).iter().zip(rows) {
+            let rows = rows.zip(places.as_chunks_mut::<PLACES>().0);
+            for (ray, ((ids, values), place)) in rays.exact_job(JOB * job).iter().zip(rows) {
                 values[0] = f32::INFINITY;
                 let Some(Interaction { hit, surface, material, .. }) = self.world.intersect(ray, &mut ()) else {
                     continue;
@@ -179,9 +210,12 @@ impl World {
                 values[1..4].copy_from_slice(&surface.position.to_array());
                 values[4..7].copy_from_slice(&surface.n_geo.to_array());
                 values[7..].copy_from_slice(&surface.n_shade.to_array());
+                place[..3].copy_from_slice(&surface.point().to_array());
+                // As the renderer has it: see `durer::integrator`, where rays leave surfaces.
+                place[3] = f64::from(2.0 * surface.n_geo.abs().dot(surface.error));
             }
         })?;
-        Ok((ids.into_pyarray(py), values.into_pyarray(py)))
+        Ok((ids.into_pyarray(py), values.into_pyarray(py), places.into_pyarray(py)))
     }
 
     /// Whether each ray meets anything.
@@ -197,7 +231,7 @@ impl World {
         let mut answers = vec![false; count];
         let jobs = answers.chunks_mut(JOB).enumerate().collect();
         each(py, threads, watch, jobs, |(job, to): (usize, &mut [bool])| {
-            to.iter_mut().zip(&rays.job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
+            to.iter_mut().zip(&rays.exact_job(JOB * job)).for_each(|(to, ray)| *to = self.world.occluded(ray, &mut ()));
         })?;
         Ok(answers.into_pyarray(py))
     }
@@ -205,14 +239,14 @@ impl World {
     /// Why a pixel has its colour, as JSON.
     fn explain(&self, py: Python, words: Vec<String>, pixel: (u32, u32)) -> PyResult<String> {
         let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let found = py.detach(|| embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
+        let found = install(py, None, || embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
         found.map(|value| value.to_string()).map_err(PyValueError::new_err)
     }
 
     /// What is odd about it, as JSON.
     fn check(&self, py: Python, words: Vec<String>) -> PyResult<String> {
         let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        Ok(py.detach(|| embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
+        Ok(install(py, None, || embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
     }
 }
 
@@ -229,19 +263,19 @@ impl Part {
     /// From the bytes of a file.
     #[staticmethod]
     fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
-        let part = py.detach(|| render::PartialRender::read(bytes)).map_err(failed)?;
+        let part = install(py, None, || render::PartialRender::read(bytes)).map_err(failed)?;
         Ok(Part(Arc::new(part)))
     }
 
     /// The bytes of a file.
     fn write<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
-        let bytes = py.detach(|| self.0.write());
+        let bytes = install(py, None, || self.0.write());
         PyBytes::new(py, &bytes)
     }
 
     /// The hash of the film.
     fn hash(&self, py: Python) -> String {
-        py.detach(|| self.0.hash().to_string())
+        install(py, None, || self.0.hash().to_string())
     }
 
     /// The hash of all that decides the picture.
@@ -278,7 +312,7 @@ impl Part {
     /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows
     /// them.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
-        let rendered = py.detach(|| self.0.pictures()).map_err(failed)?;
+        let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
         let picture = |layer: Layer| {
             let values: Vec<f32> = layer.image.pixels.iter().flat_map(|pixel| pixel.to_array()).collect();
@@ -298,7 +332,7 @@ impl Part {
 /// Puts parts together, each with its name.
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
-    let whole = py.detach(|| {
+    let whole = install(py, None, || {
         let read = |(name, bytes): (String, Vec<u8>)| match render::PartialRender::read(&bytes) {
             Ok(part) => Ok((name, part)),
             Err(error) => Err(failed(format!("`{name}` cannot be merged: {error}"))),

@@ -25,6 +25,12 @@ def test_open3d_calls_answer():
     points = np.array([[0.5, 0.5, 0.5], [2, 0.5, 0.5], [3.5, 0.5, 0.75]], np.float32)
     assert scene.compute_signed_distance(points).tolist() == [-0.5, 1, -0.25]
     assert scene.compute_occupancy(points).tolist() == [1, 0, 1]
+    # What lies in two meshes lies outside, as in Open3D.
+    twice = durer.open3d.RaycastingScene()
+    for shift in (0, 0.5):
+        twice.add_triangles(CUBE + np.float32(shift), CUBE_FACES)
+    assert twice.compute_occupancy([[0.25] * 3, [0.75] * 3, [1.25] * 3]).tolist() == [1, 0, 1]
+    assert twice.compute_signed_distance(np.float32([[0.25] * 3, [0.75] * 3])).tolist() == [-0.25, 0.25]
     near = scene.compute_closest_points(points)
     assert near["geometry_ids"].tolist()[2] == 1 and np.allclose(near["points"][2], [3.5, 0.5, 1])
     inner, outer = [[10, 0, 4], [0, 10, 3], [0, 0, 1]], np.eye(4)

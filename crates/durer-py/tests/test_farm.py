@@ -30,8 +30,9 @@ def test_dask_makes_the_same_bits_whoever_dies(scenes, killed, after):
             nonlocal left
             if left and done > after:
                 left -= 1
-                workers = [w.process.process for w in cluster.workers.values() if w.process and w.process.process.is_alive()]
-                random_.choice(workers).kill()
+                # Each is asked for once: Dask takes those away that have ended, meanwhile.
+                workers = [w.process.process for w in cluster.workers.values() if w.process]
+                random_.choice([process for process in workers if process and process.is_alive()]).kill()
 
         pictures = durer.farm.render(scenes / "whitted.txt", client=client, shards=64, progress=watch, **JOB)
         assert pictures.hash == wanted and left == 0

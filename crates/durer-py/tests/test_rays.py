@@ -117,7 +117,7 @@ def test_scenes_are_their_moved_meshes(ball):
     turn = np.array([[0, -2, 0, 5], [1, 0, 0.5, -1], [0, 0, 3, 2], [0, 0, 0, 1.0]])
     cube = durer.Mesh(CUBE, CUBE_FACES)
     scene = durer.Scene([ball, (cube, turn), (cube, np.eye(4)[:3])])
-    flat = scene._flat[0]
+    flat = scene._joined[0]
     o, d = 6 * directions(4000, 9), directions(4000, 10)
     found, wanted = scene.closest(o, d), flat.closest(o, d)
     assert np.allclose(found.t, wanted.t, rtol=1e-4) and set(found.object) == {-1, 0, 1, 2}
@@ -193,7 +193,7 @@ def test_threads_change_no_bit(ball):
         (lambda m: m.closest("here", [0, 0, 1]), "origins must be an array of numbers"),
         (lambda m: m.closest([[0, 0], [1]], [0, 0, 1]), "origins must be an array of numbers"),
         (lambda m: m.closest([0, 0, 0], [0, 0, 1], threads=0), "threads must be 1 or more"),
-        (lambda m: durer.Scene([(m, np.zeros((4, 4)))]), "the last row 0 0 0 1"),
+        (lambda m: durer.Scene([(m, np.zeros((4, 4)))]), "the last row of the matrix of object 0 must be 0 0 0 1, but is 0 0 0 0"),
         (lambda m: durer.Scene([(m, np.zeros((3, 4)))]), "the matrix of object 0 cannot be inverted"),
         (lambda m: durer.Scene([3]), "object 0 must be a Mesh"),
     ],

@@ -50,12 +50,21 @@ def test_flow_of_a_turned_camera_is_its_projection():
     assert seen[y, x] and (turn @ view.points[y, x] + shift)[2] == pytest.approx(second.view(scene).depth[there[1], there[0]], rel=0.02)
 
 
-def test_wrong_matrices_are_told():
-    for camera, said in [
-        (Camera(np.eye(4), np.eye(4), 8, 8), r"intrinsics must have the shape \(3, 3\)"),
-        (Camera(K, np.eye(3), 8, 8), r"extrinsics must have the shape \(3, 4\)"),
-        (Camera(K, 2 * np.eye(4), 8, 8), "must be a rotation"),
-        (Camera(K, np.eye(4), 8, 8, [1, 2, 3]), "4, 5 or 8 numbers"),
+def test_wrong_cameras_are_told():
+    skew, nan = K.copy(), K.copy()
+    skew[2, 0], nan[0, 2] = 1, np.nan
+    for wrong, said in [
+        ((np.eye(4), np.eye(4), 8, 8), r"intrinsics must have the shape \(3, 3\)"),
+        ((K, np.eye(3), 8, 8), r"extrinsics must have the shape \(3, 4\)"),
+        ((K, 2 * np.eye(4), 8, 8), "the last row 0 0 0 1"),
+        ((K, 2 * np.eye(4)[:3], 8, 8), "must be a rotation"),
+        ((K, np.eye(4), 8, 8, [1, 2, 3]), "4, 5 or 8 numbers"),
+        ((K, np.eye(4), 8, 8, [0, 0, np.inf, 0]), "distortion must be finite"),
+        ((skew, np.eye(4), 8, 8), "intrinsics must be fx s cx, 0 fy cy, 0 0 1"),
+        ((nan, np.eye(4), 8, 8), "intrinsics must be fx s cx"),
+        ((np.diag([0, 1, 1]), np.eye(4), 8, 8), "focal lengths must be more than 0"),
+        ((K, np.eye(4), 8, 0), "height must be a whole number of pixels"),
+        ((K, np.eye(4), 8.5, 8), "width must be a whole number of pixels"),
     ]:
         with pytest.raises(ValueError, match=said):
-            camera.rays()
+            Camera(*wrong)

@@ -1,7 +1,12 @@
 """Scenes, pictures, parts; beside the command, which comes with the package."""
 
 import asyncio
+import copy
+import errno
 import json
+import multiprocessing
+import os
+import pickle
 import re
 import subprocess
 import sys
@@ -123,12 +128,17 @@ def test_scenes_in_code_are_what_their_text_says(tmp_path):
 
 def test_errors_of_scenes_tell_file_line_and_column(tmp_path):
     (tmp_path / "bad.txt").write_text("PerspectiveCamera {\n  center 0 0 0\n  direction 0 0 oops\n}\n")
-    with pytest.raises(durer.SceneError, match=r"bad\.txt:3:\d+: error"):
+    with pytest.raises(durer.SceneError, match=r"bad\.txt:3:\d+: error") as raised:
         durer.load(tmp_path / "bad.txt")
+    assert raised.value.__context__ is None
+    for error in (raised.value, pickle.loads(pickle.dumps(raised.value))):
+        assert error.file.endswith("bad.txt") and (error.line, error.column) == (3, 17) and isinstance(error, ValueError)
+        assert str(error).startswith(f"{error.file}:3:17: error: ") and error.findings[0]["severity"] == "error"
     found = durer.check(tmp_path / "bad.txt")
     assert found[0]["severity"] == "error" and found[0]["place"]["line"] == 3
-    with pytest.raises(OSError, match="nothing.txt"):
+    with pytest.raises(FileNotFoundError, match="nothing.txt") as missing:
         durer.load(tmp_path / "nothing.txt")
+    assert missing.value.errno == errno.ENOENT and os.fspath(missing.value.filename) == str(tmp_path / "nothing.txt")
     with pytest.raises(durer.SceneError, match="radius"):
         durer.World(durer.OrthographicCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), size=3),
                     [durer.Sphere(center=(0, 0, 0), radius=-1)])  # fmt: skip
@@ -152,6 +162,23 @@ def test_wrong_options_are_told(whitted):
         whitted.render(show="colour")
     with pytest.raises(TypeError, match="did you mean dialect"):
         durer.load("x.txt", dialekt="f04")
+    for wrong, said in [
+        ({"size": 64}, "^size must be width and height, whole numbers, but is 64$"),
+        ({"size": (64,)}, "size must be width and height"),
+        ({"size": (-64, 4)}, "size must be width and height"),
+        ({"size": "64"}, r'^size cannot be 64: say it as \(640, 480\) or "640x480"$'),
+        ({"crop": (1, 2)}, "crop must be left, top, width and height"),
+        ({"samples": "many"}, "^samples cannot be many"),
+        ({"noise_threshold": "a"}, "^noise_threshold cannot be a"),
+        ({"show": "dept"}, "^show cannot be dept: it is one of color, depth, "),
+        ({"depth_range": 3}, "depth_range must be two numbers"),
+    ]:
+        with pytest.raises(ValueError, match=said) as raised:
+            whitted.render(**wrong)
+        assert "--" not in str(raised.value)
+    for x in (-1, 0.5, 1 << 40):
+        with pytest.raises(ValueError, match="x must be the number of a pixel, 0 or more, but is"):
+            whitted.explain(x, 0)
     assert "samples" in durer.options() and "output" not in durer.options() and "depth" in durer.kinds()
 
 
@@ -220,3 +247,74 @@ def test_how_a_model_becomes_a_scene_is_said_when_it_is_read(tmp_path):
         assert world.render(samples=1, size=(8, 8))["color"].shape == (8, 8, 3)
     with pytest.raises(TypeError, match="no option view"):
         durer.load(tmp_path / "m.obj").render(view="front")
+
+
+def _picture_in_child(queue, world):
+    pictures = world.render(size=(40, 30), samples=2)
+    world.check(size=(40, 30))
+    queue.put((pictures.hash, durer.compare(pictures, pictures)["verdict"], len(pictures.file("a.exr"))))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="there is no fork")
+def test_a_fork_renders_after_its_parent_did(whitted):
+    here = whitted.render(size=(40, 30), samples=2)
+    whitted.check(size=(40, 30))
+    context = multiprocessing.get_context("fork")
+    queue = context.Queue()
+    child = context.Process(target=_picture_in_child, args=(queue, whitted))
+    child.start()
+    try:
+        assert queue.get(timeout=60) == (here.hash, "identical", len(here.file("a.exr")))
+    finally:
+        child.kill()
+        child.join()
+
+
+def test_a_part_is_gone_on_with_as_it_was_begun(whitted):
+    part = whitted.part(size=(40, 30), samples=2)
+    for wrong in ({"size": (20, 15)}, {"samples": 3}, {"show": "depth"}, {"shard": (1, 2)}, {"threads": 1, "seed": 4}):
+        name = list(wrong)[-1]
+        with pytest.raises(ValueError, match=f"the part is of another picture than {name} asks for"):
+            whitted.render(part=part, **wrong)
+    with pytest.raises(ValueError, match="another picture than size, samples asks for"):
+        whitted.render(part=durer.Part.read(part.bytes()), size=(40, 30), samples=3)
+    same = whitted.render(part=part, size="40x30", threads=1, time_limit=100)
+    assert same.hash == whitted.render(size=(40, 30), samples=2).hash
+    assert whitted.render(part=durer.Part.read(part.bytes()), size=(40, 30), samples=2).hash == same.hash
+
+    def fail(pictures):
+        raise ValueError("--size is none of it")
+
+    with pytest.raises(ValueError, match="^--size is none of it$"):
+        whitted.render(size=(400, 300), samples=100, callback=fail, every=0)
+
+
+def test_worlds_parts_and_pictures_can_be_pickled_and_copied(whitted):
+    tetra = durer.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    camera = durer.PerspectiveCamera(center=(0, 1, 8), direction=(0, -0.1, -1), up=(0, 1, 0), angle=40)
+    for world in (whitted, durer.World(camera, [tetra], [])):
+        for other in (pickle.loads(pickle.dumps(world)), copy.deepcopy(world)):
+            assert other.digest == world.digest and other.text == world.text
+    pictures = whitted.render(size=(40, 30), samples=1, show="color,depth")
+    for thing in (pictures, pictures.part):
+        for other in (pickle.loads(pickle.dumps(thing)), copy.deepcopy(thing)):
+            assert other.hash == pictures.hash
+    other = pickle.loads(pickle.dumps(pictures))
+    assert list(other) == list(pictures) and all((other[name] == pictures[name]).all() for name in pictures)
+
+
+def test_a_models_ground_is_left_out_where_it_is_not_wanted(tmp_path):
+    mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    (tmp_path / "a.obj").write_text(mesh)
+    down = ([5, 5, 5], [0.1, -1, 0.1])
+    assert durer.load(tmp_path / "a.obj").occluded(*down)
+    for none in (False, None, "none"):
+        world = durer.load(tmp_path / "a.obj", studio=none)
+        assert not world.occluded(*down) and world.closest([0.2, 0.2, 5], [0, 0, -1]).hit
+
+
+def test_depth_is_what_its_words_say_where_nothing_is_seen(whitted):
+    camera = durer.PerspectiveCamera(center=(0, 0, 5), direction=(0, 0, -1), up=(0, 1, 0), angle=60)
+    pictures = durer.World(camera, [durer.Sphere(center=(0, 0, 0), radius=1)], []).render(size=(16, 16), samples=1, show="depth,normals")
+    assert pictures["depth"][0, 0] == 0 and pictures["depth"][8, 8] == pytest.approx(4, abs=0.1)
+    assert (pictures["normals"][0, 0] == 0).all() and "0 where nothing is hit" in durer.kinds()["depth"]

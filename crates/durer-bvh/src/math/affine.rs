@@ -43,6 +43,12 @@ impl Affine {
         self.forward.matrix3.determinant() < 0.0
     }
 
+    /// The matrix of the map.
+    #[inline]
+    pub fn forward(&self) -> DAffine3 {
+        self.forward
+    }
+
     /// Maps a point forward.
     #[inline]
     pub fn point(&self, p: Vec3) -> Vec3 {

@@ -226,17 +226,9 @@ impl TriangleBvh {
     /// no finite point.
     ///
     /// The first call notes where each triangle lies, in four bytes for each.
+    #[inline]
     pub fn corners(&self, triangle: u32) -> Option<[Vec3; 3]> {
-        let leaf_of = self.leaf_of.get_or_init(|| {
-            let mut leaf_of = vec![0; self.count];
-            for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
-                if leaf & node::LEAF != 0 {
-                    let (rows, count) = self.rows(leaf);
-                    (0..count).for_each(|lane| leaf_of[number(rows, count, lane) as usize] = leaf);
-                }
-            }
-            leaf_of
-        });
+        let leaf_of = self.leaf_of.get_or_init(|| self.note_leaves());
         // A triangle that is in no leaf has 0, which is none.
         let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
         let (rows, count) = self.rows(leaf);
@@ -244,6 +236,18 @@ impl TriangleBvh {
         let at = |row: usize| rows[row * count + lane];
         let corners = [0, 3, 6].map(|row| Vec3::new(at(row), at(row + 1), at(row + 2)));
         corners.iter().all(|corner| corner.is_finite()).then_some(corners)
+    }
+
+    #[cold]
+    fn note_leaves(&self) -> Vec<u32> {
+        let mut leaf_of = vec![0; self.count];
+        for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
+            if leaf & node::LEAF != 0 {
+                let (rows, count) = self.rows(leaf);
+                (0..count).for_each(|lane| leaf_of[number(rows, count, lane) as usize] = leaf);
+            }
+        }
+        leaf_of
     }
 
     /// The unit normal (b - a) x (c - a) of the triangle that was hit; zero if it has no area.

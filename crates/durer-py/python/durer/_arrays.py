@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +11,8 @@ Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Ints: TypeAlias = npt.NDArray[np.int32]
 Bools: TypeAlias = npt.NDArray[np.bool_]
+#: Points in space: single precision, or double where that is too little.
+Places: TypeAlias = Union[Floats, Doubles]
 
 _WORDS = {"f": "numbers", "i": "whole numbers", "u": "whole numbers", "b": "numbers"}
 
@@ -37,13 +39,21 @@ def vectors(name: str, value: Any, width: int = 3) -> Floats:
         return np.asarray(array, dtype=np.float32)
 
 
+def places(name: str, value: Any) -> Places:
+    """Points: shape (..., 3); float32 where they are that, else float64."""
+    array = seen(name, value)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise ValueError(f"{name} must have the shape (..., 3), but has {array.shape}")
+    return array if array.dtype in (np.float32, np.float64) else array.astype(np.float64)
+
+
 def rows(array: npt.NDArray[Any], width: int) -> npt.NDArray[Any]:
     """The same as a list of rows, one after the other in memory."""
     return np.ascontiguousarray(array.reshape(-1, width))
 
 
 def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
-    """Rows of so many whole numbers, 0 or more: shape (n, width)."""
+    """Rows of so many whole numbers, 0 or more: shape (n, width). A copy."""
     array = seen(name, value)
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(f"{name} must have the shape (n, {width}), but has {array.shape}")
@@ -51,11 +61,13 @@ def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
         raise TypeError(f"{name} must be whole numbers, but the type is {array.dtype}")
     if array.size and (array.min() < 0 or array.max() > 0xFFFF_FFFF):
         raise ValueError(f"{name} must be 0 or more, but the least is {array.min()} and the greatest {array.max()}")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    return np.array(array, dtype=np.uint32, order="C")
 
 
 def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
     """One float32, or one for each of a shape."""
+    if type(value) is float:
+        return np.array([value], np.float32)
     array = seen(name, value)
     if array.ndim == 0:
         return np.asarray(array, dtype=np.float32).reshape(1)
@@ -67,10 +79,17 @@ def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
 def matrix(name: str, value: Any) -> Doubles:
     """An affine map as three rows of four numbers; given so, or as 4 x 4 with 0 0 0 1 below."""
     array = np.asarray(seen(name, value), dtype=np.float64)
-    if array.shape == (4, 4) and (array[3] == (0, 0, 0, 1)).all():
-        array = array[:3]
-    if array.shape != (3, 4):
-        raise ValueError(f"{name} must be 4 x 4 with the last row 0 0 0 1, or 3 x 4, but has the shape {array.shape}")
+    if array.shape not in ((3, 4), (4, 4)):
+        raise ValueError(f"{name} must be 3 x 4, or 4 x 4 with the last row 0 0 0 1, but has the shape {array.shape}")
+    if array.shape == (4, 4) and not (array[3] == (0, 0, 0, 1)).all():
+        raise ValueError(f"the last row of {name} must be 0 0 0 1, but is {' '.join(f'{x:g}' for x in array[3])}")
+    array = array[:3]
     if not np.isfinite(array).all():
         raise ValueError(f"{name} has numbers that are not finite")
     return np.ascontiguousarray(array)
+
+
+def finite(array: npt.NDArray[Any]) -> Bools:
+    """Which rows are finite."""
+    answer: Bools = np.logical_and.reduce(np.isfinite(array), axis=-1)
+    return answer

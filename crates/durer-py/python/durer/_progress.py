@@ -10,11 +10,15 @@ Watch: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = Union[None, bool, Watch]
 
 
-def watch(progress: Progress) -> Optional[Watch]:
-    """What is told how much is done of how much: the given function; without one, a line on a terminal."""
+#: So much is done before anybody could look.
+_LITTLE = 1 << 14
+
+
+def watch(progress: Progress, count: int = _LITTLE) -> Optional[Watch]:
+    """What is told how much is done of how much: the given function; without one, a line on a terminal, unless there are few things."""
     if callable(progress):
         return progress
-    if progress is False or progress is None and not sys.stderr.isatty():
+    if progress is False or progress is None and count < _LITTLE or progress is None and not sys.stderr.isatty():
         return None
     start = time.monotonic()
 

@@ -7,20 +7,24 @@ from typing import Any, Optional
 import numpy as np
 import numpy.typing as npt
 
-from .rays import Hits, Mesh, Scene, rays_of
+from . import _durer
+from ._arrays import places, rows
+from .hits import Hits
+from .rays import Mesh, Scene, _Rays, rays_of
 
 _Answers = dict[str, npt.NDArray[Any]]
 
 
 class RaycastingScene:
-    """Triangles with rays of six numbers: origin and direction. Numbers of things are uint32, `INVALID_ID` where there is none."""
+    """Triangles with rays of six numbers: origin and direction. Numbers of things are uint32, `INVALID_ID` where there is none. Inside is
+    what an odd number of meshes hold, as there."""
 
     INVALID_ID = 0xFFFF_FFFF
 
     def __init__(self, nthreads: int = 0, device: Any = None) -> None:
         self._threads = nthreads or None
         self._meshes: list[Mesh] = []
-        self._scene: Optional[Scene] = None
+        self._scene: Optional[_Rays] = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Optional[npt.ArrayLike] = None) -> int:
         """Adds a mesh, which may be one of Open3D's own, and gives its number."""
@@ -34,14 +38,15 @@ class RaycastingScene:
         self._scene = None
         return len(self._meshes) - 1
 
-    def _asked(self) -> Scene:
+    def _asked(self) -> _Rays:
         if self._scene is None:
-            self._scene = Scene(self._meshes)
+            self._scene = self._meshes[0] if len(self._meshes) == 1 else Scene(self._meshes)
         return self._scene
 
     @staticmethod
     def _ids(numbers: npt.NDArray[Any]) -> npt.NDArray[np.uint32]:
-        return np.where(numbers < 0, 0xFFFF_FFFF, numbers).astype(np.uint32)
+        # -1 is 2^32 - 1 then.
+        return numbers.astype(np.int32, copy=False).view(np.uint32)
 
     def cast_rays(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
         """The first hit of each ray."""
@@ -80,15 +85,14 @@ class RaycastingScene:
         """The nearest points of the surface."""
         scene = self._asked()
         near = scene.nearest(query_points, threads=nthreads or self._threads)
-        corners = scene._corners(near.object, near.triangle)
-        normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
-        length = np.linalg.norm(normal, axis=-1, keepdims=True)
+        met = (near.object.reshape(-1), near.triangle.reshape(-1), rows(near.uv.astype(np.float32), 2))
+        normal = _durer.met_normals(scene._tree, met, nthreads or self._threads)
         return {
             "points": near.point.astype(np.float32),
             "geometry_ids": self._ids(near.object),
             "primitive_ids": self._ids(near.triangle),
             "primitive_uvs": near.uv.astype(np.float32),
-            "primitive_normals": np.divide(normal, length, out=np.zeros_like(normal), where=length > 0).astype(np.float32),
+            "primitive_normals": normal.reshape(near.point.shape),
         }
 
     def compute_distance(self, query_points: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.float32]:
@@ -99,14 +103,22 @@ class RaycastingScene:
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
         """The same, negative inside. `nsamples` is taken and not needed: one ray is exact."""
-        scene, threads = self._asked(), nthreads or self._threads
-        return scene.distance(query_points, signed=True, threads=threads).astype(np.float32)
+        distance = self.compute_distance(query_points, nthreads)
+        return np.where(self._inside(query_points, nthreads), -distance, distance)
 
     def compute_occupancy(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
         """1 inside, 0 outside."""
-        return self._asked().contains(query_points, threads=nthreads or self._threads).astype(np.float32)
+        return self._inside(query_points, nthreads).astype(np.float32)
+
+    def _inside(self, query_points: npt.ArrayLike, nthreads: int) -> npt.NDArray[np.bool_]:
+        """By the parity of all crossings, as Open3D has it: what lies in two meshes lies outside."""
+        points, threads = places("query_points", query_points), nthreads or self._threads
+        inside = np.zeros(points.shape[:-1], np.bool_)
+        for mesh in self._meshes:
+            inside ^= mesh.contains(points, threads=threads)
+        return inside
 
     @staticmethod
     def create_rays_pinhole(

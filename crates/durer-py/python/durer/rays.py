@@ -2,151 +2,44 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
 from functools import cached_property
-from typing import Any, Iterable, Literal, Optional, Sequence, TypeAlias, Union
+from typing import Any, Iterable, Literal, Mapping, Optional, Sequence, TypeAlias, Union
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Doubles, Floats, Ints, indices, matrix, rows, scalars, seen, vectors
+from ._arrays import Bools, Doubles, Floats, Ints, Places, indices, matrix, places, rows, scalars, seen, vectors
+from ._mesh import FAR, centered, open_edges
 from ._progress import Progress, watch
+from .hits import AllHits, Hits, Nearest
 
 Preset: TypeAlias = Literal["fast", "balanced", "best"]
 
-#: What `ray` gives for each ray.
-RECORD = np.dtype(
-    [("t", "f4"), ("triangle", "i4"), ("object", "i4"), ("uv", "f4", 2), ("normal", "f4", 3), ("point", "f4", 3)]
-)
-
-
-def _unit_normals(corners: Doubles) -> Doubles:
-    """Normals of triangles with corners of shape (..., 3, 3); 0 for those without area."""
-    normal = np.cross(corners[..., 1, :] - corners[..., 0, :], corners[..., 2, :] - corners[..., 0, :])
-    length = np.linalg.norm(normal, axis=-1, keepdims=True)
-    unit: Doubles = np.divide(normal, length, out=np.zeros_like(normal), where=length > 0)
-    return unit
-
-
-@dataclass(frozen=True, eq=False)
-class Hits:
-    """What rays meet first. All arrays have the shape of the rays, (n,) say, with the components of vectors behind it."""
-
-    #: Position along the ray, in units of its direction's length; infinite where nothing is met.
-    t: Floats
-    #: Number of the triangle in its mesh; -1 where nothing is met.
-    triangle: Ints
-    #: Second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
-    uv: Floats
-    _objects: Optional[Ints]
-    _source: _Rays
-    _origins: Floats
-    _directions: Floats
-
-    @property
-    def hit(self) -> Bools:
-        """Where something is met."""
-        return self.triangle >= 0
-
-    @cached_property
-    def object(self) -> Ints:
-        """Number of the object in its scene, 0 in a mesh; -1 where nothing is met."""
-        return np.minimum(self.triangle, 0) if self._objects is None else self._objects
-
-    @cached_property
-    def point(self) -> Floats:
-        """Where rays meet the surface, by the triangle's corners; not a number where nothing is met."""
-        corners = self._source._corners(self.object, self.triangle)
-        u, v = self.uv[..., 0:1].astype(np.float64), self.uv[..., 1:2].astype(np.float64)
-        point = (1 - u - v) * corners[..., 0, :] + u * corners[..., 1, :] + v * corners[..., 2, :]
-        return np.where(self.hit[..., None], point, np.nan).astype(np.float32)
-
-    @cached_property
-    def normal(self) -> Floats:
-        """The triangle's normal, of length 1, to the side from which its corners go round counterclockwise; 0 where nothing is met."""
-        normal = _unit_normals(self._source._corners(self.object, self.triangle))
-        return np.where(self.hit[..., None], normal, 0).astype(np.float32)
-
-    def record(self) -> npt.NDArray[np.void]:
-        """All of it as one structured array, of type `RECORD`."""
-        record = np.zeros(self.t.shape, RECORD)
-        for name in RECORD.names or ():
-            record[name] = getattr(self, name)
-        return record
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"<Hits of {self.t.size} rays: {int(self.hit.sum())} meet something>"
-
-
-@dataclass(frozen=True, eq=False)
-class AllHits:
-    """All that rays meet, ray by ray, each from near to far."""
-
-    #: Number of the ray of each hit, in the order of the rays.
-    ray: npt.NDArray[np.int64]
-    #: How many hits each ray has, in the shape of the rays.
-    count: npt.NDArray[np.int64]
-    #: As in `Hits`, one row for each hit.
-    t: Floats
-    triangle: Ints
-    object: Ints
-    uv: Floats
-
-    @property
-    def offsets(self) -> npt.NDArray[np.int64]:
-        """Where the hits of each ray begin; with one number more, where the last ones end."""
-        return np.concatenate([np.zeros(1, np.int64), np.cumsum(self.count.reshape(-1))])
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"<AllHits of {self.count.size} rays: {len(self)}>"
-
-
-@dataclass(frozen=True, eq=False)
-class Nearest:
-    """The points of a surface that are nearest to some points."""
-
-    #: How far it is, 0 or more; infinite where none is near enough.
-    distance: Doubles
-    #: Where it is; not a number where none is near enough.
-    point: Doubles
-    #: Number of the triangle, -1 where none is near enough.
-    triangle: Ints
-    #: Number of the object in its scene, 0 in a mesh.
-    object: Ints
-    #: Second and third barycentric coordinate.
-    uv: Doubles
-
-    def __repr__(self) -> str:
-        return f"<Nearest of {self.distance.size} points>"
-
-
 #: How many rays, origins, directions, t_min and t_max.
-Asked: TypeAlias = tuple[int, Floats, Floats, Floats, Floats]
+Asked: TypeAlias = tuple[int, Places, Floats, Floats, Floats]
 
 
 def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], Asked]:
     """The shape of rays, and their arrays: checked, and broadcast against each other."""
-    origins, directions = vectors("origins", origins), vectors("directions", directions)
-    try:
-        shape = np.broadcast_shapes(origins.shape, directions.shape)[:-1]
-    except ValueError:
-        raise ValueError(
-            f"origins and directions must have shapes that fit together, but have {origins.shape} and {directions.shape}"
-        ) from None
-    count = int(np.prod(shape))
-    arrays: list[Floats] = []
-    for array in (origins, directions):
-        if array.size != 3 and array.shape[:-1] != shape:
-            array = np.broadcast_to(array, (*shape, 3))
-        arrays.append(rows(array, 3))
-    return shape, (count, arrays[0], arrays[1], scalars("t_min", t_min, shape), scalars("t_max", t_max, shape))
+    starts, ways = places("origins", origins), vectors("directions", directions)
+    shape = starts.shape[:-1]
+    if starts.shape != ways.shape:
+        try:
+            shape = np.broadcast_shapes(starts.shape, ways.shape)[:-1]
+        except ValueError:
+            raise ValueError(
+                f"origins and directions must have shapes that fit together, but have {starts.shape} and {ways.shape}"
+            ) from None
+    starts, ways = (_spread(array, shape) for array in (starts, ways))
+    return shape, (math.prod(shape), starts, ways, scalars("t_min", t_min, shape), scalars("t_max", t_max, shape))
+
+
+def _spread(array: Any, shape: tuple[int, ...]) -> Any:
+    if array.size != 3 and array.shape[:-1] != shape:
+        array = np.broadcast_to(array, (*shape, 3))
+    return rows(array, 3)
 
 
 class _Rays:
@@ -155,17 +48,17 @@ class _Rays:
     Origins and directions have the shape (..., 3) and are broadcast against each other: one origin for all directions, say.
     Directions need not have length 1: `t` is in units of it. Hits lie in the open interval from `t_min` to `t_max`, each of
     which is one number or has the shape of the rays. Rays that are not finite, or have no direction, hit nothing. Computed in
-    single precision with exact edges: a ray through an edge or vertex crosses exactly one of the triangles around it. Rays that
-    are neighbours in the array are fastest if they are neighbours in space.
+    single precision with exact edges: a ray through an edge or vertex crosses exactly one of the triangles around it. Origins and
+    points in double precision keep it until they are seen from the mesh, from the middle of its box where that is far away. Rays
+    that are neighbours in the array are fastest if they are neighbours in space.
 
     `threads` says how many may work, None all of the machine; answers have the same bits with any number. `progress` is called
     with how much is done of how much; without one, long work shows a line on a terminal. Ctrl-C stops it.
     """
 
     _tree: _durer.Tree
-
-    def _corners(self, objects: Ints, triangles: Ints) -> Doubles:
-        raise NotImplementedError
+    #: Whether it is so far from the origin that points in single precision say too little.
+    _far: bool
 
     def closest(
         self,
@@ -179,16 +72,9 @@ class _Rays:
     ) -> Hits:
         """What each ray meets first."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        t, triangle, objects, uv = self._tree.closest(rays, threads_asked(threads), watch(progress))
-        return Hits(
-            t.reshape(shape),
-            triangle.reshape(shape),
-            uv.reshape(*shape, 2),
-            None if objects is None else objects.reshape(shape),
-            self,
-            rays[1],
-            rays[2],
-        )
+        t, triangle, objects, uv = self._tree.closest(rays, threads_asked(threads), watch(progress, rays[0]))
+        objects = None if objects is None else objects.reshape(shape)
+        return Hits(t.reshape(shape), triangle.reshape(shape), uv.reshape(*shape, 2), objects, self, threads)
 
     def ray(self, origins: npt.ArrayLike, directions: npt.ArrayLike, **options: Any) -> npt.NDArray[np.void]:
         """As `closest`, as one structured array with the fields t, triangle, object, uv, normal and point."""
@@ -207,7 +93,7 @@ class _Rays:
         """Whether each ray meets anything: faster than `closest`. With directions from point to point and `t_max` 1: whether
         they do not see each other."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
+        return self._tree.occluded(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
     def count(
         self,
@@ -221,7 +107,7 @@ class _Rays:
     ) -> Ints:
         """How many triangles each ray crosses: exact, also through edges and vertices."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        return self._tree.count(rays, threads_asked(threads), watch(progress)).reshape(shape)
+        return self._tree.count(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
     def all_hits(
         self,
@@ -235,18 +121,18 @@ class _Rays:
     ) -> AllHits:
         """All that each ray meets, from near to far."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress))
+        count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress, rays[0]))
         ray = np.repeat(np.arange(len(count)), count)
-        return AllHits(ray, count.reshape(shape), t, triangle, object, uv.reshape(-1, 2))
+        return AllHits(ray, count.reshape(shape), t, triangle, object, uv.reshape(-1, 2), self, threads)
 
     def contains(
         self, points: npt.ArrayLike, *, threads: Optional[int] = None, progress: Progress = None
     ) -> Bools:
         """Whether points, of shape (..., 3), lie inside: by the parity of crossings, which is exact for closed meshes. In a
         scene, inside any of its objects."""
-        places = vectors("points", points)
-        answer = self._tree.contains(rows(places, 3), threads_asked(threads), watch(progress))
-        return answer.reshape(places.shape[:-1])
+        at = places("points", points)
+        answer = self._tree.contains(rows(at, 3), threads_asked(threads), watch(progress))
+        return answer.reshape(at.shape[:-1])
 
     def nearest(
         self,
@@ -269,8 +155,9 @@ class _Rays:
         return distance
 
     @property
-    def bounds(self) -> Floats:
-        """Least and greatest corner of the box around everything: shape (2, 3)."""
+    def bounds(self) -> Places:
+        """Least and greatest corner of a box around everything: shape (2, 3). That of a scene is the box around the boxes of its meshes
+        where these are placed, which may be larger than need be."""
         return np.array(self._tree.bounds(), np.float32)
 
     @property
@@ -280,8 +167,8 @@ class _Rays:
 
 
 def threads_asked(threads: Optional[int]) -> Optional[int]:
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads must be 1 or more, or None for all, but is {threads}")
+    if threads is not None and (not isinstance(threads, (int, np.integer)) or threads < 1):
+        raise ValueError(f"threads must be 1 or more, a whole number, or None for all, but is {threads!r}")
     return threads
 
 
@@ -290,15 +177,15 @@ class Mesh(_Rays):
         "The questions that a mesh and a scene answer alike.",
         """Triangles, ready for rays.
 
-    `vertices` has the shape (n, 3) and `faces` (m, 3): numbers of vertices. Float32 and uint32 arrays in C order are taken as they
-    are, all others are copied to these. `preset` says how long the tree is built for: "fast", "balanced" or "best", for many rays.
+    `vertices` has the shape (n, 3) and `faces` (m, 3): numbers of vertices. Both are copied, and do not change. Vertices are kept in
+    single precision; where they lie far from the origin for their extent, as they are seen from the middle of their box, so that
+    nothing is lost. Triangles with a corner that is not finite are not there. `preset` says how long the tree is built for: "fast", "balanced" or "best", for many rays.
     """,
     )
 
-    #: Corners, float32 of shape (n, 3).
-    vertices: Floats
     #: Corners of triangles, uint32 of shape (m, 3).
     faces: npt.NDArray[np.uint32]
+    _preset: Preset
 
     def __init__(
         self,
@@ -308,19 +195,66 @@ class Mesh(_Rays):
         *,
         threads: Optional[int] = None,
     ) -> None:
-        self.vertices = np.ascontiguousarray(vectors("vertices", vertices))
-        if self.vertices.ndim != 2:
-            raise ValueError(f"vertices must have the shape (n, 3), but has {self.vertices.shape}")
-        self.faces = indices("faces", faces)
-        self._tree = _durer.Tree.mesh(self.vertices, self.faces, preset, threads_asked(threads))
+        given = places("vertices", vertices)
+        if given.ndim != 2:
+            raise ValueError(f"vertices must have the shape (n, 3), but has {given.shape}")
+        self._build(*centered(given), indices("faces", faces), preset, threads)
+
+    def _build(
+        self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset, threads: Optional[int] = None
+    ) -> None:
+        self._hold(own, center, faces, preset)
+        self._tree = _durer.Tree.mesh(own, faces, tuple(center.tolist()), preset, threads_asked(threads))
+
+    def _hold(self, own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> None:
+        own.setflags(write=False)
+        faces.setflags(write=False)
+        self._own, self._center, self.faces, self._preset = own, center, faces, preset
+        self._far = bool(center.any())
+
+    @staticmethod
+    def _again(own: Floats, center: Doubles, faces: npt.NDArray[np.uint32], preset: Preset) -> Mesh:
+        mesh = Mesh.__new__(Mesh)
+        mesh._build(own, center, faces, preset)
+        return mesh
+
+    def __reduce__(self) -> Any:
+        return Mesh._again, (self._own, self._center, self.faces, self._preset)
 
     def __repr__(self) -> str:
         return f"<Mesh of {len(self.faces)} triangles>"
 
-    def _corners(self, objects: Ints, triangles: Ints) -> Doubles:
-        if not len(self.faces):
-            return np.zeros((*triangles.shape, 3, 3))
-        return self.vertices[self.faces[triangles]].astype(np.float64)
+    def refit(self, vertices: npt.ArrayLike) -> Mesh:
+        """The mesh with vertices that have moved, as many as before. Its tree is that of this one, made to fit: much faster than
+        building, but the farther vertices have moved, the slower rays become. Answers are those of a new mesh."""
+        given = places("vertices", vertices)
+        if given.shape != self._own.shape:
+            raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
+        own, center = centered(given)
+        mesh = Mesh.__new__(Mesh)
+        # A tree has no place for a triangle that was not there when it was built.
+        if not (np.isfinite(own).all() and np.isfinite(self._own).all()):
+            mesh._build(own, center, self.faces, self._preset)
+            return mesh
+        mesh._hold(own, center, self.faces, self._preset)
+        mesh._tree = self._tree.refitted(own, self.faces, tuple(center.tolist()))
+        return mesh
+
+    @cached_property
+    def vertices(self) -> Places:
+        """Corners, of shape (n, 3), as they are traced: float32, or float64 where they lie far from the origin."""
+        if not self._far:
+            return self._own
+        vertices = self._own + self._center
+        vertices.setflags(write=False)
+        return vertices
+
+    @property
+    def bounds(self) -> Places:
+        bounds = np.array(self._tree.bounds(), np.float32)
+        return bounds + self._center if self._far else bounds
+
+    bounds.__doc__ = _Rays.bounds.__doc__
 
     def nearest(
         self,
@@ -330,9 +264,9 @@ class Mesh(_Rays):
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Nearest:
-        places = vectors("points", points)
-        shape = places.shape[:-1]
-        found = self._tree.nearest(rows(places, 3), within, threads_asked(threads), watch(progress))
+        at = places("points", points)
+        shape = at.shape[:-1]
+        found = self._tree.nearest(rows(at, 3), within, threads_asked(threads), watch(progress))
         distance, triangle, point, uv = found
         triangle = triangle.reshape(shape)
         objects = np.where(triangle >= 0, np.int32(0), np.int32(-1))
@@ -340,15 +274,20 @@ class Mesh(_Rays):
 
     nearest.__doc__ = _Rays.nearest.__doc__
 
+    def surface(self, triangle: npt.ArrayLike, uv: npt.ArrayLike) -> Hits:
+        """Places of the surface by triangle, of shape (...), and u and v, (..., 2): as if rays had met it there, with `t` 0. So they have
+        point, normal and `leave`; of nearest points, say, or of vertices."""
+        triangles, places = np.asarray(seen("triangle", triangle), np.int32), vectors("uv", uv, 2)
+        if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
+            raise ValueError(f"there are {len(self.faces)} triangles, and each place must have one of them with u and v")
+        return Hits(np.zeros(triangles.shape, np.float32), triangles, places, None, self)
+
     @cached_property
     def open_edges(self) -> int:
-        """How many edges belong to an odd number of triangles, corners being the same where they lie at the same place. 0 for a
-        closed mesh, whose inside `contains` knows."""
-        _, place = np.unique(self.vertices + np.float32(0), axis=0, return_inverse=True)
-        corners = place.reshape(-1)[self.faces.astype(np.int64)]
-        edges = np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]]), axis=1)
-        edges = edges[edges[:, 0] != edges[:, 1]]
-        return int((np.unique(edges, axis=0, return_counts=True)[1] % 2).sum())
+        """How many edges belong to an odd number of triangles, corners being the same where they lie at the same place, or to several
+        that are one triangle to the same side. Triangles that are not finite are not there. 0 for a closed mesh, whose inside
+        `contains` knows."""
+        return open_edges(self._own, self.faces)
 
     @property
     def is_closed(self) -> bool:
@@ -358,8 +297,9 @@ class Mesh(_Rays):
     @property
     def normals(self) -> Floats:
         """The normals of all triangles, of length 1; 0 for those without area."""
-        zeros = np.zeros(len(self.faces), np.int32)
-        return _unit_normals(self._corners(zeros, np.arange(len(self.faces), dtype=np.int32))).astype(np.float32)
+        count = len(self.faces)
+        all = (None, np.arange(count, dtype=np.int32), np.zeros((count, 2), np.float32))
+        return _durer.met_normals(self._tree, all, None).reshape(-1, 3)
 
 
 Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
@@ -392,21 +332,26 @@ class Scene(_Rays):
         self.matrices = np.array(matrices, np.float64).reshape(-1, 3, 4)
         trees = [mesh._tree for mesh in self.meshes]
         self._tree = _durer.Tree.placed(trees, rows(self.matrices, 12))
+        least, greatest = self._tree.bounds()
+        size = max((b - a for a, b in zip(least, greatest)), default=0.0)
+        self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > FAR * size >= 0
+
+    def move(self, places: Mapping[int, npt.ArrayLike]) -> Scene:
+        """The scene with some objects at other places: matrices by the numbers of objects. Meshes and their trees are shared; what is
+        made anew is the tree over objects, which takes little."""
+        for i in places:
+            if not 0 <= i < len(self.meshes):
+                raise ValueError(f"there is no object {i} among {len(self.meshes)}")
+        return Scene((mesh, places.get(i, self.matrices[i])) for i, mesh in enumerate(self.meshes))
+
+    def __reduce__(self) -> Any:
+        return Scene, (list(zip(self.meshes, self.matrices)),)
 
     def __repr__(self) -> str:
         return f"<Scene of {len(self.meshes)} objects>"
 
-    def _corners(self, objects: Ints, triangles: Ints) -> Doubles:
-        corners = np.zeros((*triangles.shape, 3, 3))
-        for i, mesh in enumerate(self.meshes):
-            there = objects == i
-            if there.any():
-                local = mesh._corners(objects[there], triangles[there])
-                corners[there] = local @ self.matrices[i][:, :3].T + self.matrices[i][:, 3]
-        return corners
-
     @cached_property
-    def _flat(self) -> tuple[Mesh, npt.NDArray[np.int64]]:
+    def _joined(self) -> tuple[Mesh, npt.NDArray[np.int64]]:
         """All objects as one mesh, and where the triangles of each begin."""
         moved = [m.vertices @ a[:, :3].T + a[:, 3] for m, a in zip(self.meshes, self.matrices)]
         first = np.cumsum([0] + [len(mesh.vertices) for mesh in self.meshes])
@@ -423,7 +368,7 @@ class Scene(_Rays):
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Nearest:
-        mesh, starts = self._flat
+        mesh, starts = self._joined
         near = mesh.nearest(points, within, threads=threads, progress=progress)
         objects = np.where(near.triangle >= 0, np.searchsorted(starts, near.triangle, side="right") - 1, -1)
         triangle = np.where(near.triangle >= 0, near.triangle - starts[np.maximum(objects, 0)], -1).astype(np.int32)

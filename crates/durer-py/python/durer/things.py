@@ -7,7 +7,7 @@ from typing import Any, Iterable, Mapping, Optional, TypeVar, Union
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import matrix, seen
+from ._arrays import finite, matrix, seen
 from .rays import Mesh
 
 Self = TypeVar("Self", bound="Object")
@@ -145,7 +145,10 @@ class Model(Object):
         self.mesh = mesh
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
-        return f"TriangleMesh {{ obj_file {writer.mesh(self.mesh)} }}"
+        mesh, (x, y, z) = f"TriangleMesh {{ obj_file {writer.mesh(self.mesh)} }}", self.mesh._center.tolist()
+        if not self.mesh._far:
+            return mesh
+        return f"Transform {{ Matrix {{ 1 0 0 {x!r}  0 1 0 {y!r}  0 0 1 {z!r}  0 0 0 1 }} {mesh} }}"
 
 
 class Group(Object):
@@ -209,12 +212,18 @@ class Moved(Object):
 
 
 def ply(mesh: Mesh) -> bytes:
-    """A mesh as a binary PLY file."""
+    """A mesh as a binary PLY file, as it is seen from the middle of what is far away."""
+    vertices, corners = mesh._own, mesh.faces
+    is_finite = finite(vertices)
+    if not is_finite.all():
+        # Such triangles are not there, but keep their numbers: they are points.
+        vertices = np.where(is_finite[:, None], vertices, np.float32(0))
+        corners = np.where(is_finite[corners].all(axis=1, keepdims=True), corners, corners[:, :1])
     head = (
         "ply\nformat binary_little_endian 1.0\n"
-        f"element vertex {len(mesh.vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
-        f"element face {len(mesh.faces)}\nproperty list uchar uint vertex_indices\nend_header\n"
+        f"element vertex {len(vertices)}\nproperty float x\nproperty float y\nproperty float z\n"
+        f"element face {len(corners)}\nproperty list uchar uint vertex_indices\nend_header\n"
     )
-    faces = np.zeros(len(mesh.faces), [("count", "u1"), ("corners", "<u4", 3)])
-    faces["count"], faces["corners"] = 3, mesh.faces
-    return head.encode() + mesh.vertices.astype("<f4").tobytes() + faces.tobytes()
+    faces = np.zeros(len(corners), [("count", "u1"), ("corners", "<u4", 3)])
+    faces["count"], faces["corners"] = 3, corners
+    return head.encode() + vertices.astype("<f4").tobytes() + faces.tobytes()

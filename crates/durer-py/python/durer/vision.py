@@ -8,7 +8,7 @@ from typing import Union
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Bools, Doubles, Floats, Ints, seen
+from ._arrays import Bools, Doubles, Floats, Ints, Places, seen
 from .rays import Mesh, Scene
 
 
@@ -27,7 +27,7 @@ class View:
     #: Number of the triangle, -1 where nothing is seen.
     triangles: Ints
     #: The place in the world; not a number where nothing is seen.
-    points: Floats
+    points: Places
 
 
 def _zeros() -> Doubles:
@@ -48,16 +48,30 @@ class Camera:
     height: int
     distortion: npt.ArrayLike = field(default_factory=_zeros)
 
+    def __post_init__(self) -> None:
+        for name, size in (("width", self.width), ("height", self.height)):
+            if not isinstance(size, (int, np.integer)) or size < 1:
+                raise ValueError(f"{name} must be a whole number of pixels, 1 or more, but is {size!r}")
+        self._inner()
+        self._outer()
+        self._coefficients()
+
     def _inner(self) -> Doubles:
         inner = np.asarray(seen("intrinsics", self.intrinsics), np.float64)
         if inner.shape != (3, 3):
             raise ValueError(f"intrinsics must have the shape (3, 3), but has {inner.shape}")
+        if not np.isfinite(inner).all() or (inner[2] != (0, 0, 1)).any() or inner[1, 0] != 0:
+            raise ValueError(f"intrinsics must be fx s cx, 0 fy cy, 0 0 1, but is {inner.tolist()}")
+        if inner[0, 0] <= 0 or inner[1, 1] <= 0:
+            raise ValueError(f"focal lengths must be more than 0, but are {inner[0, 0]:g} and {inner[1, 1]:g}")
         return inner
 
     def _outer(self) -> tuple[Doubles, Doubles]:
         outer = np.asarray(seen("extrinsics", self.extrinsics), np.float64)
         if outer.shape not in ((3, 4), (4, 4)):
             raise ValueError(f"extrinsics must have the shape (3, 4) or (4, 4), but has {outer.shape}")
+        if not np.isfinite(outer).all() or len(outer) == 4 and (outer[3] != (0, 0, 0, 1)).any():
+            raise ValueError(f"extrinsics must be finite, with the last row 0 0 0 1 if there are four, but is {outer.tolist()}")
         turn = outer[:3, :3]
         if not np.allclose(turn @ turn.T, np.eye(3), atol=1e-5) or np.linalg.det(turn) < 0:
             raise ValueError("the left part of extrinsics must be a rotation")
@@ -67,6 +81,8 @@ class Camera:
         given = np.asarray(seen("distortion", self.distortion), np.float64).reshape(-1)
         if len(given) not in (0, 4, 5, 8):
             raise ValueError(f"distortion must be 4, 5 or 8 numbers, but is {len(given)}")
+        if not np.isfinite(given).all():
+            raise ValueError(f"distortion must be finite, but is {given.tolist()}")
         return np.concatenate([given, np.zeros(8 - len(given))])
 
     def _distorted(self, x: Doubles, y: Doubles) -> tuple[Doubles, Doubles]:
@@ -131,11 +147,13 @@ class Camera:
     def flow(self, scene: Union[Mesh, Scene], other: Camera) -> tuple[Doubles, Bools]:
         """Optical flow to another pose in a scene at rest: how many pixels each moves, of shape (height, width, 2), not a number
         where nothing is seen; and whether the other camera sees the point too, within its picture and not hidden."""
-        points = self.view(scene).points.astype(np.float64)
+        hits = scene.closest(*self.rays())
+        points = hits.point.astype(np.float64)
         there = other.project(points)
         u, v = np.meshgrid(np.arange(self.width), np.arange(self.height))
         eye = other.rays()[0]
         with np.errstate(invalid="ignore"):
             inside = (there >= -0.5).all(-1) & (there[..., 0] < other.width - 0.5) & (there[..., 1] < other.height - 0.5)
-        hidden = scene.occluded(eye, points - eye, t_max=1 - 1e-4)
+            starts = hits.leave(eye - points)
+            hidden = scene.occluded(starts, eye - starts, t_max=1)
         return there - np.stack([u, v], -1), inside & ~hidden

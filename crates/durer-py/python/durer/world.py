@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _durer
-from ._arrays import Bools, Floats, Ints
-from ._durer import SceneError
+from ._arrays import Bools, Doubles, Floats, Ints, vectors
+from ._errors import SceneError, spoken
 from ._progress import Progress, watch
 from .rays import Mesh, asked, threads_asked
 from .things import Camera, Group, Light, Object, Thing, Writer, ply
@@ -37,6 +37,9 @@ _READING = {
 #: Kinds of picture whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
+#: Those that only say how the work is done.
+_CONTROL = {"threads", "tile", "time_limit", "time"}
+
 #: Words of before, and what they are now.
 _OLDER = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
 
@@ -55,6 +58,9 @@ def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
             hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
             raise TypeError(f"there is no option {name}: {hint}")
         takes = _OPTIONS[option][1]
+        if option == "studio" and value in (None, False, True):
+            words += [] if value else ["--studio", "none"]
+            continue
         if value is None or value is False and takes is None:
             continue
         if takes is None:
@@ -62,6 +68,8 @@ def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
         elif isinstance(value, bool):
             words.append(f"--{option}={'on' if value else 'off'}")
         elif option == "depth-range":
+            if np.shape(value) != (2,):
+                raise ValueError(f"{name} must be two numbers, but is {value!r}")
             words += [f"--{option}", *(repr(float(x)) for x in value)]
         elif option == "assets" and not isinstance(value, (str, os.PathLike)):
             words += [word for folder in value for word in (f"--{option}", os.fspath(folder))]
@@ -70,7 +78,16 @@ def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
     return words
 
 
+#: Options of several numbers, and what they are.
+_SEVERAL = {"size": ("width and height", 2), "crop": ("left, top, width and height", 4), "shard": ("number and count", 2)}
+
+
 def _word(option: str, value: Any) -> str:
+    meaning, count = _SEVERAL.get(option, ("", 0))
+    if count and not isinstance(value, str):
+        numbers = np.asarray(value)
+        if numbers.shape != (count,) or numbers.dtype.kind not in "iu" or (numbers < 0).any():
+            raise ValueError(f"{option} must be {meaning}, whole numbers, but is {value!r}")
     if isinstance(value, (tuple, list, np.ndarray)):
         parts = [str(x) for x in value]
         if option == "crop" and len(parts) == 4:
@@ -96,6 +113,9 @@ class Pictures(dict[str, Floats]):
             self._alpha[name] = alpha
             if alpha is not None and "alpha" not in self:
                 self["alpha"] = alpha.reshape(height, width)
+
+    def __reduce__(self) -> Any:
+        return Pictures, (self.part,)
 
     @property
     def hash(self) -> str:
@@ -137,6 +157,11 @@ class Part:
 
     def __init__(self, part: _durer.Part) -> None:
         self._part = part
+        #: What it was asked for with, if that is known.
+        self._options: Optional[dict[str, Any]] = None
+
+    def __reduce__(self) -> Any:
+        return Part.read, (self.bytes(),)
 
     @classmethod
     def read(cls, source: Union[PathLike, bytes]) -> Part:
@@ -223,6 +248,22 @@ class Surfaces:
     normal: Floats
     #: The normal for shading: interpolated on smooth meshes.
     shading_normal: Floats
+    #: The point in double precision, and how far off it a ray starts.
+    _place: Doubles
+
+    def leave(self, directions: npt.ArrayLike) -> Doubles:
+        """Where rays start that go on from here in such directions: see `Hits.leave`. What leaves a solid of several parts closer to an
+        edge than the point is known may start on the other side of that."""
+        ways = vectors("directions", directions)
+        try:
+            ways = np.broadcast_to(ways, self.point.shape)
+        except ValueError:
+            raise ValueError(f"directions must have the shape {self.point.shape}, but has {ways.shape}") from None
+        normal = self.normal.astype(np.float64)
+        behind = (normal * ways).sum(-1, keepdims=True) < 0
+        off = self._place[..., 3:]
+        starts: Doubles = self._place[..., :3] + np.where(behind, -off, off) * normal
+        return starts
 
     @property
     def hit(self) -> Bools:
@@ -269,13 +310,14 @@ class World:
         words: Optional[Sequence[str]] = None,
     ) -> None:
         self.path, self._text, self._given, self._reading = path, text, given, [*_words(reading, True), *(words or [])]
-        self._world = _durer.World(path, text, given, self._reading)
+        self._world = spoken(lambda: _durer.World(path, text, given, self._reading))
 
     @classmethod
     def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
         """Reads any scene that the command reads; options are those of `durer render` about reading: dialect, compat, strict,
-        allow_outside, assets, memory, and of models up, view, studio, environment, view_file, camera, fit, at. What a model's own
-        picture shows depends on its `size`, which is given here then, and is that of `render` too. `words` are options as they stand
+        allow_outside, assets, memory, and of models up, view, studio, environment, view_file, camera, fit, at. A model gets lights and a
+        ground to stand on, which rays meet too, unless `studio` is False. What a model's own picture shows depends on its `size`, which is given here then,
+        and is that of `render` too. `words` are options as they stand
         after `durer render SCENE`, those of renders among them, which hold for all that is made of the world. Raises SceneError with
         file, line and column."""
         world = cls.__new__(cls)
@@ -289,12 +331,18 @@ class World:
         world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
         return world
 
+    def __reduce__(self) -> Any:
+        return World._again, (self.path, self._text, self._given, self._reading)
+
+    @staticmethod
+    def _again(path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: list[str]) -> World:
+        world = World.__new__(World)
+        world._load(path, text, given, {}, reading)
+        return world
+
     def rewritten(self, text: str) -> World:
         """A world of another text in the place of this one's: in the same folder, with the same meshes, read in the same way."""
-        other = World.__new__(World)
-        other.path, other._text, other._given, other._reading = self.path, text.encode(), self._given, self._reading
-        other._world = _durer.World(other.path, other._text, other._given, other._reading)
-        return other
+        return World._again(self.path, text.encode(), self._given, self._reading)
 
     @property
     def text(self) -> str:
@@ -337,7 +385,10 @@ class World:
 
     def part(self, **options: Any) -> Part:
         """A part of a picture of which nothing is made yet; with `shard=(3, 16)` a shard."""
-        return Part(self._world.part(self._all(options)))
+        words = self._all(options)
+        part = Part(spoken(lambda: self._world.part(words)))
+        part._options = {name: value for name, value in options.items() if name not in _CONTROL}
+        return part
 
     def _all(self, options: Mapping[str, Any]) -> list[str]:
         reading = self._reading
@@ -361,6 +412,8 @@ class World:
         `part` goes on with work that was begun; `callback` gets the pictures as far as they are, every so many seconds. Ctrl-C
         and what a callback raises end it; what is made so far is in the part.
         """
+        if part is not None and options:
+            self._same(part, options)
         begun = part or self.part(**options)
         shown, last = watch(progress), time.monotonic()
 
@@ -377,6 +430,20 @@ class World:
         if shown is not None:
             shown(1, 1)
         return begun.pictures()
+
+    def _same(self, part: Part, options: Mapping[str, Any]) -> None:
+        """Refuses options that ask for another picture than a part is of."""
+
+        def differs(wanted: Mapping[str, Any]) -> bool:
+            deciding = {name: value for name, value in wanted.items() if name not in _CONTROL}
+            asked = self.part(**{**(part._options or {}), **deciding})
+            return bool(deciding) and (asked.job != part.job or "shard" in deciding and asked.shard != part.shard)
+
+        self.part(**options)
+        if differs(options):
+            alone = [name for name in options if part._options is not None and differs({name: options[name]})]
+            given = ", ".join(alone or options)
+            raise ValueError(f"the part is of another picture than {given} asks for: leave out what decides the picture")
 
     async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
         """Renders in a thread, and gives the pictures as far as they are every so many seconds, at last the finished ones."""
@@ -412,8 +479,8 @@ class World:
         """What each ray meets first among all objects: spheres, solids and meshes alike, as the pictures show them. Arrays are those
         of `Mesh.closest`."""
         shape, rays = asked(origins, directions, t_min, t_max)
-        ids, values = self._world.closest(rays, threads_asked(threads), watch(progress))
-        whole, other = ids.reshape(-1, 3), values.reshape(-1, 10)
+        ids, values, places = self._world.closest(rays, threads_asked(threads), watch(progress))
+        whole, other, place = ids.reshape(-1, 3), values.reshape(-1, 10), places.reshape(*shape, 4)
 
         def one(column: npt.NDArray[Any]) -> Any:
             return np.ascontiguousarray(column).reshape(shape)
@@ -423,7 +490,7 @@ class World:
 
         object, triangle, material = (one(whole[:, i]) for i in range(3))
         point, normal, shading = (three(other[:, i : i + 3]) for i in (1, 4, 7))
-        return Surfaces(one(other[:, 0]), object, triangle, material, point, normal, shading)
+        return Surfaces(one(other[:, 0]), object, triangle, material, point, normal, shading, place)
 
     def occluded(
         self,
@@ -441,12 +508,17 @@ class World:
 
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
         """Why a pixel has its colour: a tree of terms that sums to it, as docs/explain.md tells. Give the options of the render."""
-        answer: dict[str, Any] = json.loads(self._world.explain(self._all(options), (x, y)))
+        for name, value in (("x", x), ("y", y)):
+            if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
+                raise ValueError(f"{name} must be the number of a pixel, 0 or more, but is {value!r}")
+        words = self._all(options)
+        answer: dict[str, Any] = json.loads(spoken(lambda: self._world.explain(words, (int(x), int(y)))))
         return answer
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
         """What is odd about it, in the order of cause, as `durer check --json` lists it."""
-        found: list[dict[str, Any]] = json.loads(self._world.check(self._all(options)))
+        words = self._all(options)
+        found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(words)))
         return found
 
     def _repr_png_(self) -> bytes:
@@ -467,8 +539,7 @@ def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
     try:
         return World.load(path, **reading).check(**options)
     except SceneError as error:
-        found: list[dict[str, Any]] = json.loads(error.args[1])
-        return found
+        return error.findings
 
 
 def options() -> dict[str, str]:

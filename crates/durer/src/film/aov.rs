@@ -158,7 +158,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
-        doc: "t of the first hit: the distance, for cameras; infinite where nothing is hit",
+        doc: "t of the first hit: the distance, for cameras; 0 where nothing is hit",
         value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
         picture: depth_picture,
         relative: true,

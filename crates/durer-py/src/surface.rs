@@ -1,0 +1,212 @@
+//! What is known of the surface where rays met it: points, normals, and where a ray goes on.
+
+use crate::rays::{JOB, points};
+use crate::tree::{Target, Tree, zeros};
+use crate::work::each;
+use durer::math::{Affine, Ray, Vec3, gamma};
+use glam::DVec3;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+/// What was met: objects, if there are several, triangles, and u and v.
+pub type Met<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
+
+struct Hits<'a> {
+    tree: &'a Tree,
+    objects: Option<&'a [i32]>,
+    triangles: &'a [i32],
+    uv: &'a [[f32; 2]],
+}
+
+/// A triangle that was met, in the space of its object, and where that is placed.
+struct Face<'a> {
+    corners: [DVec3; 3],
+    to_world: Option<&'a Affine>,
+    center: DVec3,
+}
+
+impl<'a> Hits<'a> {
+    fn new(tree: &'a Tree, (objects, triangles, uv): &'a Met) -> PyResult<Self> {
+        let objects = objects.as_ref().map(|objects| objects.as_slice()).transpose()?;
+        let (triangles, uv) = (triangles.as_slice()?, uv.as_slice()?.as_chunks().0);
+        let count = triangles.len();
+        if uv.len() != count || objects.is_some_and(|objects| objects.len() != count) {
+            return Err(PyValueError::new_err("hits have as many triangles as objects and u and v"));
+        }
+        Ok(Hits { tree, objects, triangles, uv })
+    }
+
+    fn face(&self, i: usize) -> Option<Face<'a>> {
+        let triangle = u32::try_from(self.triangles[i]).ok()?;
+        let (tree, to_world) = match &self.tree.target {
+            Target::Mesh(tree) => (tree, None),
+            Target::Placed(scene) => {
+                let object = usize::try_from(self.objects.map_or(0, |objects| objects[i])).ok()?;
+                let instance = scene.instances().get(object)?;
+                (&instance.bvh, Some(&instance.to_world))
+            }
+        };
+        Some(Face { corners: tree.corners(triangle)?.map(|c| c.as_dvec3()), to_world, center: self.tree.center })
+    }
+}
+
+impl Face<'_> {
+    /// The point with such coordinates in the triangle's own space.
+    fn point(&self, [u, v]: [f32; 2]) -> DVec3 {
+        let ([a, b, c], u, v) = (self.corners, f64::from(u), f64::from(v));
+        (1.0 - u - v) * a + u * b + v * c
+    }
+
+    /// A point of the triangle's own space in space.
+    fn placed(&self, point: DVec3) -> DVec3 {
+        self.to_world.map_or(point + self.center, |map| map.forward().transform_point3(point))
+    }
+
+    /// The unit normal in the triangle's own space; zero if it has no area.
+    fn normal(&self) -> DVec3 {
+        let [a, b, c] = self.corners;
+        (b - a).cross(c - a).normalize_or_zero()
+    }
+
+    /// Where a ray of some direction starts that goes on from a point, on the side to which it goes.
+    ///
+    /// Where a ray meets a triangle, the kernel knows in double precision; whether it meets it, in
+    /// single. So a ray that starts in front of a triangle's plane, by more than its origin is
+    /// rounded, does not meet it on the way forwards. `error` bounds what is rounded, each part with
+    /// as much again to spare:
+    ///
+    /// - the origin, to single precision in the space of the object;
+    /// - the way to space and back, in double precision: moved to and from the middle of a mesh that
+    ///   is far away, or by a matrix, where the bound is that of [`Affine::point_error`], or as
+    ///   [`Ray64`] keeps it;
+    /// - the corners around, which the kernel sees from the origin and in a sheared plane, with
+    ///   seven roundings at most. A ray that passes an edge by no more than these might be taken to
+    ///   meet what is behind it.
+    ///
+    /// The origin lies off the plane by twice the bound, as far as its parts count along the normal,
+    /// and off the edges by eight times: so it is in front of the neighbours too, down to folds of
+    /// a few degrees.
+    ///
+    /// [`Ray64`]: durer::math::Ray64
+    fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {
+        const DOUBLE: f64 = 1.0 / (1u64 << 40) as f64;
+        let (point, normal) = (self.point(uv), self.normal());
+        let (local, back) = match self.to_world {
+            None => (dir, DVec3::splat(DOUBLE / 256.0) * self.center.abs()),
+            Some(map) => {
+                let forward = map.forward();
+                let far = forward.translation.abs() + forward.matrix3.abs() * point.abs();
+                let local = map.inverse_ray(Ray::new(Vec3::ZERO, dir)).dir;
+                (local, map.inverse_spread((DOUBLE * far).as_vec3()).as_dvec3())
+            }
+        };
+        let reach = self.corners.iter().map(|corner| (corner - point).abs().max_element()).fold(0.0, f64::max);
+        let error = f64::from(gamma(2)) * point.abs() + f64::from(gamma(7)) * DVec3::splat(reach) + back;
+        let offset = 2.0 * normal.abs().dot(error);
+        let side = if normal.dot(local.as_dvec3()) < 0.0 { -offset } else { offset };
+        self.placed(inset(self.corners, normal, point, 8.0 * error.length()) + side * normal)
+    }
+}
+
+/// A point of a triangle, moved off its edges by a margin where it is nearer; in the middle of what
+/// is narrower, and by no more than a few margins in any case.
+fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3 {
+    let [a, b, c] = corners;
+    let inward = [(b, c), (c, a), (a, b)].map(|(from, to)| (from, normal.cross(to - from).normalize_or_zero()));
+    let mut sides = inward.map(|(from, way)| ((point - from).dot(way), way));
+    sides.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [(near, way), (next, other), _] = sides;
+    if near >= margin {
+        return point;
+    }
+    let cosine = way.dot(other);
+    let step = margin - near;
+    if next + step * cosine >= margin {
+        return point + step * way;
+    }
+    // At a corner: off both sides by the margin.
+    let (to_other, square) = (margin - next, 1.0 - cosine * cosine);
+    let moved = ((step - to_other * cosine) * way + (to_other - step * cosine) * other) / square;
+    if moved.length() <= 4.0 * margin {
+        return point + moved;
+    }
+    // Between two sides that are nearer to each other: in the middle.
+    let middle = (next - near) / (1.0 - cosine);
+    if middle.is_finite() { point + middle.min(margin) * way } else { point }
+}
+
+/// Three numbers for each hit, worked out by all threads.
+fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
+    py: Python,
+    hits: &Hits,
+    threads: Option<usize>,
+    missing: T,
+    of: impl Fn(&Face, usize) -> [T; 3] + Sync + Send,
+) -> PyResult<Vec<T>> {
+    let mut values = zeros::<T>(py, threads, 3 * hits.triangles.len());
+    let jobs = values.as_chunks_mut().0.chunks_mut(JOB).enumerate().collect();
+    each(py, threads, None, jobs, |(job, rows): (usize, &mut [[T; 3]])| {
+        for (i, row) in rows.iter_mut().enumerate() {
+            let i = JOB * job + i;
+            *row = hits.face(i).map_or([missing; 3], |face| of(&face, i));
+        }
+    })?;
+    Ok(values)
+}
+
+/// The points where rays met the surface, in single precision or `double`; not numbers where they
+/// did not.
+#[pyfunction]
+pub fn met_points<'py>(
+    py: Python<'py>,
+    tree: PyRef<'py, Tree>,
+    met: Met<'py>,
+    double: bool,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let hits = Hits::new(&tree, &met)?;
+    let point = |face: &Face, i: usize| face.placed(face.point(hits.uv[i]));
+    Ok(match double {
+        true => rows(py, &hits, threads, f64::NAN, |face, i| point(face, i).to_array())?.into_pyarray(py).into_any(),
+        false => {
+            let single = |face: &Face, i: usize| point(face, i).as_vec3().to_array();
+            rows(py, &hits, threads, f32::NAN, single)?.into_pyarray(py).into_any()
+        }
+    })
+}
+
+/// The normals of the triangles that rays met, outwards also where a mesh is mirrored; zero where
+/// they met none.
+#[pyfunction]
+pub fn met_normals<'py>(
+    py: Python<'py>,
+    tree: PyRef<'py, Tree>,
+    met: Met<'py>,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyArray1<f32>>> {
+    let hits = Hits::new(&tree, &met)?;
+    let normal = |face: &Face, _| {
+        let normal = face.normal().as_vec3();
+        face.to_world.map_or(normal, |map| map.normal(normal)).to_array()
+    };
+    Ok(rows(py, &hits, threads, 0.0, normal)?.into_pyarray(py))
+}
+
+/// Where rays start that go on from where others met the surface, each in its direction.
+#[pyfunction]
+pub fn met_leave<'py>(
+    py: Python<'py>,
+    tree: PyRef<'py, Tree>,
+    met: Met<'py>,
+    directions: PyReadonlyArray2<'py, f32>,
+    threads: Option<usize>,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let hits = Hits::new(&tree, &met)?;
+    let directions = points(&directions)?;
+    if directions.len() != 3 * hits.triangles.len() {
+        return Err(PyValueError::new_err("each hit has a direction"));
+    }
+    let start = |face: &Face, i: usize| face.leave(hits.uv[i], Vec3::from_slice(&directions[3 * i..])).to_array();
+    Ok(rows(py, &hits, threads, f64::NAN, start)?.into_pyarray(py))
+}
