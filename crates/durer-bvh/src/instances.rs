@@ -63,9 +63,9 @@ impl InstanceHit {
 /// A tree over instances: each tree of triangles is in memory once, however often it is placed.
 ///
 /// A ray, whose origin may be known in double precision ([`Ray64`]), is moved into the space of an
-/// instance in double precision, and rounded once; there it is traced as by [`TriangleBvh`], and so crosses exactly one of the triangles around an edge. Of
-/// hits at the same `t` the one of the least instance, and then of the least triangle, is the
-/// closest.
+/// instance in double precision, and rounded once; there it is traced as by [`TriangleBvh`], and so
+/// crosses exactly one of the triangles around an edge. Of hits at the same `t` the one of the
+/// least instance, and then of the least triangle, is the closest.
 ///
 /// ```
 /// use durer_bvh::glam::{DAffine3, DVec3};

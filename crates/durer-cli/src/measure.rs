@@ -126,7 +126,7 @@ impl Sums {
 fn lies_on_a_surface(world: &World, (point, normal): &(Vec3, Vec3)) -> bool {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
-    let near = 1e-3 * if size.is_finite() { size } else { 1.0 };
+    let near = 0.01 * if size.is_finite() { size } else { 1.0 };
     let from = point.as_dvec3() + f64::from(near) * normal.as_dvec3();
     world.closest(&Ray64::new(from, -*normal, 0.0, 2.0 * near), &mut ()).is_some()
 }

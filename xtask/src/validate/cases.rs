@@ -75,6 +75,18 @@ fn fresnel(cosine: f64, eta: f64) -> f64 {
     0.5 * (parallel * parallel + across * across)
 }
 
+/// What a pane of index 1.5 lets through of both polarisations, of which a share is left after one
+/// way inside.
+fn polarised_pane(cosine: f64, kept: f64) -> f64 {
+    let inside = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
+    let faces = [(1.5 * cosine - inside) / (1.5 * cosine + inside), (cosine - 1.5 * inside) / (cosine + 1.5 * inside)];
+    let through = faces.map(|amplitude| {
+        let face = amplitude * amplitude;
+        (1.0 - face) * (1.0 - face) * kept / (1.0 - face * face * kept * kept)
+    });
+    0.5 * (through[0] + through[1])
+}
+
 /// What a pane lets through at a cosine: all ways to and fro, each of which loses a share `1 -
 /// kept`.
 fn pane(cosine: f64, kept: f64) -> f64 {
@@ -424,9 +436,33 @@ fn panes() -> Vec<Case> {
             bounces: 60,
             ..case(
                 name,
-                "T = (1 − F)² τ / (1 − F² τ²), Fresnel and Beer",
+                "T = (1 − F)² τ / (1 − F² τ²), Fresnel at each face, and Beer",
                 What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
                 1000.0 * pane(cosine, kept),
+            )
+        });
+        let name = match (degrees as u32, absorbed) {
+            (60, false) => "[5.5] As a sheet (`walls thin` with a depth), at 60°",
+            (80, false) => "[5.5] The same at 80°",
+            (60, true) => "[5.5] As a tinted sheet, at 60°",
+            _ => continue,
+        };
+        let tint = if absorbed { tint } else { "transmissionDepth 0.006" };
+        let (x, y) = (20.0 * sine, 20.0 * cosine);
+        let (nx, ny) = (-sine, -cosine);
+        all.push(Case {
+            materials: format!(
+                "PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 walls thin {tint} }} {LAMP}"
+            ),
+            group: format!(
+                "MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }}
+                 MaterialIndex 0 Rectangle {{ corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }}"
+            ),
+            ..case(
+                name,
+                "the mean of T along and across the plane of incidence: light stays polarised",
+                What::Luminance(Vec3::ZERO, Vec3::new(sine as f32, cosine as f32, 0.0)),
+                1000.0 * polarised_pane(cosine, kept),
             )
         });
     }

@@ -19,6 +19,9 @@ described! {
         up: Vec3 = Vec3::Y, required, Rule::NonZero, ["up" in set::ALL];
         /// Length of the picture's larger side.
         size: f32 = 2.0, required, Rule::Positive, ["size" in set::ALL];
+        /// How far before `center` sight begins, for plans and sections; where nothing is written
+        /// all is seen, also what is behind.
+        near: Option<f32> = None, optional, Rule::Any, ["near" in set::DURER];
         /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
         /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
@@ -30,12 +33,14 @@ impl Projection for OrthographicCamera {
         Pose { center: self.center, direction: self.direction, up: self.up }
     }
 
-    /// The ray runs both ways: things behind `center` are seen as well, at negative `t`.
+    /// The ray runs both ways where no `near` says otherwise: things behind `center` are seen as
+    /// well, at negative `t`.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (point, half) = (sample.point, 0.5 * self.size);
         let x = self.handedness.sign() as f32 * point.x;
         let origin = frame.eye + x * half * frame.right + point.y * half * frame.up;
-        Some(Ray { t_min: f32::NEG_INFINITY, ..Ray::new(origin, frame.forward) })
+        let t_min = self.near.unwrap_or(f32::NEG_INFINITY);
+        Some(Ray { t_min, ..Ray::new(origin, frame.forward) })
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {

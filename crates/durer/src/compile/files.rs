@@ -313,6 +313,10 @@ impl<'r> Loader<'r> {
                 Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
                 None => {
                     let clear = Sky::new(written.sun()?, written.turbidity());
+                    let clear = match written.ground_reflectance {
+                        Some(share) => clear.over(share),
+                        None => clear,
+                    };
                     sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
                 }
             };

@@ -66,8 +66,9 @@ described! {
         cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
         /// How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
         zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
-        /// What share of that sky's light the ground below gives back; 0.2 where nothing is
-        /// written.
+        /// What share of the light of sun and sky the ground below the horizon gives back. Where
+        /// nothing is written it is 0.2 below a standard sky, and below a clear one with `sun` a
+        /// fifth of the zenith's light.
         ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
         /// How far the environment is turned about y, in degrees.
         environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];

@@ -25,6 +25,8 @@ pub struct Sky {
     perez: [[f32; 5]; 3],
     /// Perez' function at the zenith.
     there: Vec3,
+    /// The light from below the horizon.
+    ground: Color,
 }
 
 impl Sky {
@@ -58,14 +60,32 @@ impl Sky {
             line([(-0.0167, -0.2608), (-0.0950, 0.0092), (-0.0079, 0.2102), (-0.0441, -1.6537), (-0.0109, 0.0529)]),
         ];
         let there = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
-        Sky { sun, turbidity: t, zenith: Vec3::new(bright.max(0.0), x, y), perez, there }
+        let zenith = Vec3::new(bright.max(0.0), x, y);
+        // A fifth of what is overhead.
+        Sky { sun, turbidity: t, zenith, perez, there, ground: Vec3::splat(0.2 * zenith.x) }
     }
 
-    /// The light from a unit direction; below the horizon that of the ground, which reflects a
-    /// fifth.
+    /// The same over a matte ground that gives back a share of the light of sun and sky.
+    pub fn over(self, reflectance: f32) -> Self {
+        const ROWS: u32 = 64;
+        let mut sky = Color::ZERO;
+        for row in 0..ROWS {
+            // Rings that a level surface sees alike.
+            let sine = ((row as f32 + 0.5) / ROWS as f32).sqrt();
+            for column in 0..ROWS {
+                let (s, c) = fp::sin_cos_degrees((f64::from(column) + 0.5) * 360.0 / f64::from(ROWS));
+                let up = (1.0 - sine * sine).sqrt();
+                sky += self.at(Vec3::new(sine * s as f32, up, sine * c as f32)) / (ROWS * ROWS) as f32;
+            }
+        }
+        let ground = reflectance * (sky + self.sun() * self.sun.y / PI);
+        Sky { ground, ..self }
+    }
+
+    /// The light from a unit direction; below the horizon that of the ground.
     pub fn at(&self, dir: Vec3) -> Color {
         if dir.y < 0.0 {
-            return Vec3::splat(0.2 * self.zenith.x);
+            return self.ground;
         }
         let cos_sun = dir.dot(self.sun).clamp(-1.0, 1.0);
         let here = Vec3::from(self.perez.map(|p| shape(&p, dir.y.max(0.01), angle(cos_sun), cos_sun)));
@@ -131,6 +151,24 @@ mod tests {
 
     fn brightness(color: Color) -> f32 {
         color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    }
+
+    #[test]
+    fn the_ground_gives_back_its_share_of_sun_and_sky() {
+        let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).over(0.5);
+        // By equal solid angles instead of equal shares of the illuminance.
+        let (mut light, steps) = (Color::ZERO, 400);
+        for row in 0..steps {
+            let up = (row as f32 + 0.5) / steps as f32;
+            for column in 0..steps {
+                let (s, c) = fp::sin_cos_degrees((f64::from(column) + 0.5) * 360.0 / f64::from(steps));
+                let flat = (1.0 - up * up).sqrt();
+                light += sky.at(Vec3::new(flat * s as f32, up, flat * c as f32)) * (2.0 * up / (steps * steps) as f32);
+            }
+        }
+        let expected = 0.5 * (light + sky.sun() * sky.sun.y / PI);
+        let found = sky.at(Vec3::NEG_Y);
+        assert!(((found - expected) / expected).abs().max_element() < 0.01, "{found}, not {expected}");
     }
 
     #[test]

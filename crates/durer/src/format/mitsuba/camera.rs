@@ -251,6 +251,7 @@ fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
         up: up.normalize_or(DVec3::Y).as_vec3(),
         size: (across * (size.y / size.x).max(1.0)) as f32,
         handedness: handedness(right, up, forward),
+        near: Some(0.0),
     }
     .into()
 }

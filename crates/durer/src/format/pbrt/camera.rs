@@ -202,6 +202,7 @@ impl Reader<'_> {
             up: b.normalize().as_vec3(),
             size: (2.0 * half) as f32,
             handedness: Placed::handedness(a, b, c),
+            near: Some(0.0),
         };
         Some(camera.into())
     }

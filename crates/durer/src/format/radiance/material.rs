@@ -10,10 +10,13 @@ use super::spread::Spread;
 use super::state::Reader;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
+use crate::material::mix::Mix;
 use crate::material::principled::Walls;
 use crate::math::{Color, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
+
+const TURNED: &str = "highlights are longer along the surface's own directions, not along those that are written";
 
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
@@ -134,6 +137,15 @@ impl Reader<'_> {
         let both = |i: usize| [value(i); 2];
         let color = thing.color(0) * above.tint;
         let instead = |what: &str| said.once(at, format!("`{kind}` has no counterpart: {what}"));
+        if matches!(kind, "plastic" | "plastic2") && value(3) > 0.0 {
+            let roughness = if kind == "plastic" { both(4) } else { [value(4), value(5)] };
+            if roughness[0] != roughness[1] {
+                said.once(at, TURNED);
+            }
+            if roughness != [0.0; 2] {
+                return self.rough_plastic(color, value(3).min(1.0), roughness, at);
+            }
+        }
         let m = match kind {
             "plastic" => plastic(color, value(3), both(4)),
             "metal" => metal(color, value(3), both(4)),
@@ -233,9 +245,19 @@ impl Reader<'_> {
             _ => matte(color),
         };
         if matches!(kind, "plastic2" | "metal2" | "trans2" | "ashik2") && m.specular_anisotropy > 0.0 {
-            said.once(at, "highlights are longer along the surface's own directions, not along those that are written");
+            said.once(at, TURNED);
         }
         Made { number: Some(self.add_material(m, at)), ..Made::nothing() }
+    }
+
+    /// Rough plastic gives back the same share as a highlight in all directions, in white, and
+    /// scatters the rest: only smooth plastic reflects more at an angle.
+    fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> Made {
+        let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
+        let material2 = self.add_material(matte(color), at);
+        let mix = Material::Solid(Mix { material1, material2, share }.into(), Vec::new());
+        self.scene.materials.push(Spanned { value: mix, span: at });
+        Made { number: Some((self.scene.materials.len() - 1) as u32), ..Made::nothing() }
     }
 
     /// Mist in a body: it does not bend light.

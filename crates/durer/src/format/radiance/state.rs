@@ -154,7 +154,7 @@ impl<'a> Reader<'a> {
     /// Whether no more materials are made: those below many patterns and mixtures with `void` would
     /// be as many as their product.
     pub fn is_full(&mut self, at: Span) -> bool {
-        if !self.full && self.scene.materials.len() > self.modifiers.len() + MOST_COPIES {
+        if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
             self.said.bad(at, format!("more than {MOST_COPIES} materials come of patterns and `void` over others"));
         }

@@ -105,10 +105,17 @@ fn commands_are_made_and_not_run() {
 
 #[test]
 fn materials_become_layers() {
-    let (m, told) = sphere("void plastic m 0 0 5 .8 .4 .2 .04 .09");
+    let (m, told) = sphere("void plastic m 0 0 5 .8 .4 .2 .04 0");
     assert_eq!((m.base_color, told.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
-    // An index of 1.5 reflects 4 %; the roughness is the root of the slope.
-    assert!((m.specular_ior - 1.5).abs() < 1e-5 && (m.specular_roughness - 0.3).abs() < 1e-6);
+    // An index of 1.5 reflects 4 %.
+    assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
+    // Of rough plastic that share is white, in all directions; its roughness is the root of the slope.
+    let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
+    let Material::Solid(crate::material::Solid::Mix(mix), _) = &scene.materials[2].value else { panic!("no mixture") };
+    assert_eq!((mix.material1, mix.material2, mix.share), (0, 1, 0.04));
+    let (shine, matte) = (layers(&scene, 0), layers(&scene, 1));
+    assert!((shine.specular_roughness - 0.3).abs() < 1e-6 && shine.base_metalness == 1.0);
+    assert_eq!((matte.base_color, matte.specular_weight), (Vec3::new(0.8, 0.4, 0.2), 0.0));
     assert_eq!(sphere("void plastic m 0 0 5 .8 .4 .2 0 0").0.specular_weight, 0.0);
     let (m, _) = sphere("void metal m 0 0 5 .9 .5 .1 .95 .04");
     assert!(m.base_metalness == 0.95 && (m.specular_roughness - 0.2).abs() < 1e-6);

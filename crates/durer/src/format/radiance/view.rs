@@ -26,6 +26,8 @@ pub(super) struct View {
     pub size: [f64; 2],
     /// By how many of its own widths and heights the picture is moved.
     shift: [f64; 2],
+    /// How far from the point sight begins.
+    fore: f64,
     at: Span,
 }
 
@@ -38,6 +40,7 @@ impl Default for View {
             up: DVec3::Z,
             size: [45.0; 2],
             shift: [0.0; 2],
+            fore: 0.0,
             at: Span::default(),
         }
     }
@@ -114,8 +117,9 @@ impl View {
                         "v" => self.size[1] = value,
                         "s" => self.shift[0] = value,
                         "l" => self.shift[1] = value,
+                        "o" => self.fore = value,
                         _ if value != 0.0 => {
-                            said.once(option.at, "planes before and behind which nothing is seen have no counterpart");
+                            said.once(option.at, "a plane behind which nothing is seen has no counterpart");
                         }
                         _ => {}
                     }
@@ -129,6 +133,12 @@ impl View {
 
     /// Gives a scene this camera, and the size of its picture.
     pub fn place(&self, scene: &mut Scene, larger: u32, said: &Said) {
+        if self.kind != 'l' && self.fore != 0.0 {
+            said.once(
+                self.at,
+                "a plane before which nothing is seen has its counterpart in parallel views alone (`-vtl`)",
+            );
+        }
         let half = |degrees: f64| 0.5 * degrees.to_radians();
         let [across, upwards] = self.size;
         let most = match self.kind {
@@ -184,6 +194,7 @@ impl View {
                     direction,
                     up,
                     size: across.max(upwards) as f32,
+                    near: Some(self.fore as f32),
                     ..OrthographicCamera::default()
                 }
                 .into()

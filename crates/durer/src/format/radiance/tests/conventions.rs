@@ -84,6 +84,15 @@ fn views_see_what_radiance_s_do() {
     // From the front x is to the right, z upwards.
     close(sees("-vh 90 -vv 90", 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vh 90 -vv 90", 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0).normalize());
+    // Parallel views see what is before their point, or before `-vo`.
+    for (options, near) in [("-vtl -vp 1 2 3 -vh 4 -vv 4", 0.0), ("-vtl -vo -2.5 -vh 4 -vv 4", -2.5)] {
+        let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
+        let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
+        let Some(crate::camera::Camera::Orthographic(camera)) = scene.unwrap().camera else { panic!("{told:?}") };
+        assert_eq!(camera.near, Some(near));
+        let frame = CameraBasis::of(&camera, Dialect::Durer.rules());
+        assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
+    }
     // A picture higher than wide: its height is 90 degrees.
     close(sees("-vh 53.130102 -vv 90", 0.5, 0.0), Vec3::new(0.5, 1.0, 0.0).normalize());
     // Moved to the right by half its width: the middle is where the edge was.

@@ -209,6 +209,31 @@ fn a_sheet_has_the_shares_that_are_written() {
 }
 
 #[test]
+fn rough_plastic_and_metal_reflect_what_is_written_from_everywhere() {
+    let sky = "void glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 360\n";
+    for (material, expected) in [
+        ("plastic m 0 0 5 .2 .2 .2 .04 .05", 0.2 * 0.96 + 0.04),
+        ("plastic m 0 0 5 .5 .5 .5 .02 .1", 0.5 * 0.98 + 0.02),
+        ("plastic m 0 0 5 .5 .5 .5 0 .1", 0.5),
+        ("plastic2 m 0 0 6 .2 .2 .2 .1 .1 .1", 0.2 * 0.9 + 0.1),
+        ("metal m 0 0 5 .5 .5 .5 .9 .1", 0.5),
+    ] {
+        let text = format!("{sky}void {material} m ring r 0 0 8 0 0 0 0 0 1 0 5");
+        let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+        let options = LoadOptions::default();
+        let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
+        let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics)).unwrap();
+        let paths = Paths::new(&world, Job::default().settings, Transport::default());
+        for (x, z) in [(0.0, -1.0), (0.8, -0.6), (0.97, -0.243)] {
+            let ray = Ray::new(Vec3::new(-x, 0.0, -z), Vec3::new(x, 0.0, z));
+            let seen = (0..4096).map(|i| f64::from(paths.radiance(&ray, SampleId::new(0, (0, 0), i), &mut ()).x));
+            let mean = seen.sum::<f64>() / 4096.0;
+            assert!((mean / expected - 1.0).abs() < 0.02, "{material} {z}: {mean}, not {expected}");
+        }
+    }
+}
+
+#[test]
 fn mirrors_show_what_stands_for_them_and_void_lets_see_through() {
     let other = "void plastic blue 0 0 5 0 0 .7 0 0\n";
     let what = "scene.rad:2:6 warning `mirror` has no counterpart: what is shown instead of it is taken, which mirrors no lamps";
