@@ -45,7 +45,7 @@ class Background(Thing):
 
     zenith_luminance: number, more than 0. How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
 
-    ground_reflectance: number, from 0 to 1. What share of that sky's light the ground below gives back; 0.2 where nothing is written.
+    ground_reflectance: number, from 0 to 1. What share of the light of sun and sky the ground below the horizon gives back. Where nothing is written it is 0.2 below a standard sky, and below a clear one with `sun` a fifth of the zenith's light.
 
     environment_rotation: number. How far the environment is turned about y, in degrees.
 
@@ -231,6 +231,8 @@ class OrthographicCamera(Camera):
 
     size: number, more than 0; must be given. Length of the picture's larger side.
 
+    near: number. How far before `center` sight begins, for plans and sections; where nothing is written all is seen, also what is behind.
+
     handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
     """
 
@@ -241,6 +243,7 @@ class OrthographicCamera(Camera):
         direction: npt.ArrayLike,
         up: npt.ArrayLike,
         size: float,
+        near: Optional[float] = None,
         handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("OrthographicCamera", [
@@ -248,6 +251,7 @@ class OrthographicCamera(Camera):
             ("direction", direction),
             ("up", up),
             ("size", size),
+            ("near", near),
             ("handedness", handedness),
         ])
 
