@@ -443,7 +443,7 @@ fn panes() -> Vec<Case> {
         });
         let name = match (degrees as u32, absorbed) {
             (60, false) => "[5.5] As a sheet (`walls thin` with a depth), at 60°",
-            (80, false) => "[5.5] The same at 80°",
+            (80, false) => "[5.5] As a sheet, at 80°",
             (60, true) => "[5.5] As a tinted sheet, at 60°",
             _ => continue,
         };
