@@ -29,9 +29,9 @@ use std::path::PathBuf;
 
 A grid is a corner, two edges from it and numbers of points: the points are the middles of its cells. Unless --normal says otherwise
 it measures what falls from above; an upright grid has the normal of its second edge times its first.
-The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and of Radiance's scenes; the irradiance is by colour. Nothing
-is measured on the other side of the normal. Standard errors are those of independent samples; these are spread more evenly, and
-are nearer than that.")]
+The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and of Radiance's scenes; the
+irradiance is by colour. Nothing is measured on the other side of the normal. Standard errors are those of independent samples;
+these are spread more evenly, and are nearer than that.")]
 pub struct MeasureArgs {
     /// The scene file
     pub scene: PathBuf,
@@ -122,13 +122,16 @@ impl Sums {
     }
 }
 
-/// Whether there is a surface just below or above a point with a normal.
-fn lies_on_a_surface(world: &World, (point, normal): &(Vec3, Vec3)) -> bool {
+/// The first point with a normal that has no surface just below or above it.
+fn in_the_air(world: &World, places: &[(Vec3, Vec3)]) -> Option<Vec3> {
     let bounds = world.bounds();
     let size = (bounds.max - bounds.min).length();
     let near = 0.01 * if size.is_finite() { size } else { 1.0 };
-    let from = point.as_dvec3() + f64::from(near) * normal.as_dvec3();
-    world.closest(&Ray64::new(from, -*normal, 0.0, 2.0 * near), &mut ()).is_some()
+    let lies_on_a_surface = |(point, normal): &&(Vec3, Vec3)| {
+        let from = point.as_dvec3() + f64::from(near) * normal.as_dvec3();
+        world.closest(&Ray64::new(from, -*normal, 0.0, 2.0 * near), &mut ()).is_some()
+    };
+    places.iter().find(|place| !lies_on_a_surface(place)).map(|place| place.0)
 }
 
 fn vector_of(v: Vec3) -> String {
@@ -164,11 +167,11 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         return Err(bad("illuminances are measured by paths: --integrator path, or photons"));
     };
     if path.photons.is_some()
-        && let Some((point, _)) = places.iter().find(|place| !lies_on_a_surface(&opened.world, place))
+        && let Some(point) = in_the_air(&opened.world, &places)
     {
         let message = format!(
             "photons are kept on surfaces, and {} lies on none: light by mirrors and glass would be missing",
-            vector_of(*point)
+            vector_of(point)
         );
         return Err(bad(format!("{message}; measure there by --integrator path, or put a surface there")));
     }

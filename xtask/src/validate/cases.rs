@@ -67,31 +67,36 @@ fn cos3(h: f64, x: f64) -> f64 {
     h / ((h * h + x * x) * (h * h + x * x).sqrt())
 }
 
-/// The share of unpolarised light that a boundary reflects, by Fresnel's equations.
-fn fresnel(cosine: f64, eta: f64) -> f64 {
+/// The shares that a boundary reflects of light along the plane of incidence and across it, by
+/// Fresnel's equations.
+fn polarised(cosine: f64, eta: f64) -> [f64; 2] {
     let behind = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).sqrt();
     let parallel = (eta * cosine - behind) / (eta * cosine + behind);
     let across = (cosine - eta * behind) / (cosine + eta * behind);
-    0.5 * (parallel * parallel + across * across)
+    [parallel * parallel, across * across]
 }
 
-/// What a pane of index 1.5 lets through of both polarisations, of which a share is left after one
-/// way inside.
-fn polarised_pane(cosine: f64, kept: f64) -> f64 {
-    let inside = (1.0 - (1.0 - cosine * cosine) / 2.25).sqrt();
-    let faces = [(1.5 * cosine - inside) / (1.5 * cosine + inside), (cosine - 1.5 * inside) / (cosine + 1.5 * inside)];
-    let through = faces.map(|amplitude| {
-        let face = amplitude * amplitude;
-        (1.0 - face) * (1.0 - face) * kept / (1.0 - face * face * kept * kept)
-    });
-    0.5 * (through[0] + through[1])
+/// The same of unpolarised light.
+fn fresnel(cosine: f64, eta: f64) -> f64 {
+    let [parallel, across] = polarised(cosine, eta);
+    0.5 * (parallel + across)
 }
 
-/// What a pane lets through at a cosine: all ways to and fro, each of which loses a share `1 -
-/// kept`.
-fn pane(cosine: f64, kept: f64) -> f64 {
-    let r = fresnel(cosine, 1.5);
+/// What goes through two faces that reflect a share `r`: all ways to and fro, each of which loses a
+/// share `1 - kept`.
+fn through_faces(r: f64, kept: f64) -> f64 {
     (1.0 - r) * (1.0 - r) * kept / (1.0 - r * r * kept * kept)
+}
+
+/// What a pane lets through at a cosine, of light that is unpolarised at each face.
+fn pane(cosine: f64, kept: f64) -> f64 {
+    through_faces(fresnel(cosine, 1.5), kept)
+}
+
+/// The same of light that stays as it was polarised.
+fn polarised_pane(cosine: f64, kept: f64) -> f64 {
+    let [along, across] = polarised(cosine, 1.5).map(|r| through_faces(r, kept));
+    0.5 * (along + across)
 }
 
 /// The illuminance at the origin, on the side of `n`, of a sky seen through an opening, by the
@@ -406,13 +411,11 @@ fn panes() -> Vec<Case> {
             PI * 1000.0,
         )
     }];
-    // A lamp far beyond the pane, black elsewhere.
-    let lamp = |sine: f64, cosine: f64| {
+    // A lamp far beyond a pane, black elsewhere.
+    let lamp = |sine: f64, cosine: f64, pane: &str| {
         let (x, y) = (20.0 * sine, 20.0 * cosine);
         let (nx, ny) = (-sine, -cosine);
-        format!(
-            "MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 Box {{ min -99 1 -99 max 99 1.006 99 }}"
-        )
+        format!("MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }} MaterialIndex 0 {pane}")
     };
     for (name, degrees, absorbed) in [
         ("[5.5] Through a pane of clear glass, n 1.5, straight on", 0.0, false),
@@ -432,7 +435,7 @@ fn panes() -> Vec<Case> {
         };
         all.push(Case {
             materials: format!("PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 {tint} }} {LAMP}"),
-            group: lamp(sine, cosine),
+            group: lamp(sine, cosine, "Box { min -99 1 -99 max 99 1.006 99 }"),
             bounces: 60,
             ..case(
                 name,
@@ -448,16 +451,11 @@ fn panes() -> Vec<Case> {
             _ => continue,
         };
         let tint = if absorbed { tint } else { "transmissionDepth 0.006" };
-        let (x, y) = (20.0 * sine, 20.0 * cosine);
-        let (nx, ny) = (-sine, -cosine);
         all.push(Case {
             materials: format!(
                 "PrincipledMaterial {{ transmissionWeight 1 specularRoughness 0 walls thin {tint} }} {LAMP}"
             ),
-            group: format!(
-                "MaterialIndex 1 Disc {{ center {x} {y} 0 normal {nx} {ny} 0 radius 3 }}
-                 MaterialIndex 0 Rectangle {{ corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }}"
-            ),
+            group: lamp(sine, cosine, "Rectangle { corner -99 1 -99 edge0 198 0 0 edge1 0 0 198 }"),
             ..case(
                 name,
                 "the mean of T along and across the plane of incidence: light stays polarised",

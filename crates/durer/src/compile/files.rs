@@ -10,7 +10,7 @@ use crate::dialect::{Compat, Rules};
 use crate::format;
 use crate::image::{self, Encoded};
 use crate::light::{Emitter as _, Light, Profile};
-use crate::math::{Aabb, Color};
+use crate::math::Aabb;
 use crate::medium::DensityGrid;
 use crate::scene::{Assets, Background, PictureBytes};
 use crate::shape::{HeightField, Mesh, MeshData};
@@ -308,8 +308,10 @@ impl<'r> Loader<'r> {
                 diagnostics.push(Diagnostic::error(message).at(span).help(help));
                 return None;
             }
+            if written.is_night() {
+                return None;
+            }
             let picture = match written.cie_sky() {
-                _ if written.is_night() => vec![Color::ZERO; (SKY_WIDTH * SKY_WIDTH / 2) as usize],
                 Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
                 None => {
                     let clear = Sky::new(written.sun()?, written.turbidity());

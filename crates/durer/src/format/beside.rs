@@ -3,9 +3,8 @@
 
 use super::ply::write_whole;
 use super::{extension, ies};
-use crate::describe::{Describe, FileName, Value};
+use crate::describe::{DescribedList, FileName, Value};
 use crate::image;
-use crate::light::Light;
 use crate::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
 use crate::source::Source;
 use crate::texture::Mapping;
@@ -35,7 +34,7 @@ pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<B
     }
     put.fields(&mut made.background);
     for light in made.lights.iter_mut().flatten() {
-        put.light(&mut light.value);
+        put.fields(&mut light.value);
     }
     made.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
     (made, put.files)
@@ -99,16 +98,6 @@ impl Put<'_> {
         })
     }
 
-    /// What a measured lamp and a measured spectrum name.
-    fn light(&mut self, light: &mut Light) {
-        match light {
-            Light::Directional(light) => self.fields(light),
-            Light::Point(light) => self.fields(light),
-            Light::Spot(light) => self.fields(light),
-            Light::Photometric(light) => self.fields(light),
-        }
-    }
-
     /// The new name of a thing, which is put beside the scene when it is first named.
     fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
@@ -129,11 +118,11 @@ impl Put<'_> {
     }
 
     /// What the fields of a thing name.
-    fn fields<T: Describe>(&mut self, thing: &mut T) {
-        for i in 0..T::FIELDS.len() {
-            let Some(Value::Path(file)) = Describe::get(thing, i) else { continue };
+    fn fields<T: DescribedList>(&mut self, thing: &mut T) {
+        for i in 0..thing.fields().len() {
+            let Some(Value::Path(file)) = DescribedList::get(thing, i) else { continue };
             let path = self.named(&file.path);
-            Describe::set(thing, i, Value::Path(FileName { path, ..file }));
+            DescribedList::set(thing, i, Value::Path(FileName { path, ..file }));
         }
     }
 

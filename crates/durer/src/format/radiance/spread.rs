@@ -188,15 +188,17 @@ impl Spread {
             let [(sine, cosine), (s, c)] = [from, around].map(fp::sin_cos_degrees);
             let dir = cosine * down + sine * (c * front + s * side);
             let (share, facing) = shows(dir);
-            // Just behind its end a cone's rounding may show it still.
-            let ends = matches!(self, Spread::Cone { degrees, .. } if from > *degrees + 1e-3);
-            if share > 0.0 && !ends { (share * self.inside(dir, facing, from)) as f32 } else { 0.0 }
+            // Where a cone ends its angle is known better than by the cosine of a direction.
+            let strength = match self {
+                Spread::Table(lamp) => lamp.at(dir, facing),
+                Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
+            };
+            // What is not seen may be as strong as it likes.
+            if share > 0.0 { (share * strength) as f32 } else { 0.0 }
         };
-        let mut candela: Vec<f32> = horizontal
-            .iter()
-            .flat_map(|&around| vertical.iter().map(move |&from| (around, from)))
-            .map(|(a, f)| value(a, f))
-            .collect();
+        let column = |&around: &f64| vertical.iter().map(move |&from| (around, from));
+        let mut candela: Vec<f32> =
+            horizontal.iter().flat_map(column).map(|(around, from)| value(around, from)).collect();
         let rows = vertical.len();
         let most = candela.iter().copied().fold(0.0, f32::max);
         if (rows..candela.len()).all(|i| (candela[i] - candela[i % rows]).abs() <= 1e-4 * most) {
@@ -205,13 +207,5 @@ impl Spread {
         }
         let single = |angles: Vec<f64>| angles.into_iter().map(|angle| angle as f32).collect();
         Profile { kind: ProfileKind::C, vertical: single(vertical), horizontal: single(horizontal), candela }
-    }
-
-    /// The same as [`Spread::at`], where an angle from the axis is known better than by its cosine.
-    fn inside(&self, dir: DVec3, cosine: f64, from: f64) -> f64 {
-        match self {
-            Spread::Table(lamp) => lamp.at(dir, cosine),
-            Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
-        }
     }
 }
