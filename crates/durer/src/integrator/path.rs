@@ -351,7 +351,7 @@ impl<'w> Path<'w> {
             return sum;
         }
         let kept = self.kept(at, state, sample);
-        state.by_target = self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object));
+        state.by_target = self.is_target(at);
         let place = Place::Surface(&at.surface, &shading, passage);
         let vertex = self.vertex(place, state, sample);
         let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
@@ -419,8 +419,11 @@ impl<'w> Path<'w> {
             media: place.media(state, chosen.wi).clone(),
             throughput: throughput / survival,
             depth: state.depth + 1,
-            // Nothing can be connected with over a single direction.
-            from: (!delta).then(|| Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
+            // Nothing can be connected with over a single direction, but straight on.
+            from: match delta {
+                false => Some(Scattered { point: place.point(), n: place.normal(), pdf: chosen.pdf }),
+                true => state.from.filter(|_| self.is_seen_through(vertex, chosen.lobe)),
+            },
             behind_mirrors: delta && (state.broad || state.behind_mirrors),
             by_target: state.by_target,
             // No photons are kept in fog: light that it scatters comes by paths.

@@ -48,18 +48,18 @@ impl Path<'_> {
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
-        let (weight, density) = match light.pdf > 0.0 {
-            true => {
-                let density = light.choice * light.pdf;
-                (self.transport.direct.of_light(density, pdf), density)
-            }
-            // Directions never meet a light without extent.
-            false => (1.0, light.choice),
+        // Directions never meet a light without extent.
+        let (density, pdf) = match light.pdf > 0.0 {
+            true => (light.choice * light.pdf, pdf),
+            false => (light.choice, 0.0),
         };
-        if weight == 0.0 {
+        let weight_of = |pdf| self.transport.direct.of_light(density, pdf);
+        if weight_of(pdf) == 0.0 && !self.world.has_sheets() {
             return Spectrum::ZERO;
         }
-        let visible = self.visible(vertex, &light, sample, tally);
+        let (visible, sheets) = self.visible(vertex, &light, sample, tally);
+        // Each sheet is a bounce of a path, and those that end before the last one meet nothing.
+        let weight = weight_of(if vertex.state.depth + sheets > self.settings.bounces { 0.0 } else { pdf });
         let factor = value * (weight / density) * visible;
         tally.begin(|| TermKind::Direct {
             light: light.light,
@@ -76,21 +76,21 @@ impl Path<'_> {
         factor * radiance
     }
 
-    /// The share of a light that arrives.
+    /// The share of a light that arrives, and through how many sheets.
     fn visible<T: TraceListener>(
         &self,
         vertex: &Vertex,
         light: &LightSample,
         sample: &Sample,
         tally: &mut T,
-    ) -> Spectrum {
+    ) -> (Spectrum, u32) {
         if !self.settings.shadows {
-            return Spectrum::ONE;
+            return (Spectrum::ONE, 0);
         }
         let Vertex { place, state, .. } = vertex;
         let media = place.media(state, light.wi);
         let mut ray = place.shadow_ray(light);
-        let mut share = Spectrum::ONE;
+        let (mut share, mut sheets) = (Spectrum::ONE, 0);
         let mut numbers = sample.id.stream(state.depth, 1);
         let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {
             Some(medium) => {
@@ -101,26 +101,28 @@ impl Path<'_> {
         };
         // Light that directions find as well must agree with them, and they meet both sides.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
-        let sheets = self.world.has_sheets() && light.pdf == 0.0;
-        if !self.world.has_cutouts() && !self.world.has_interfaces() && !sheets {
+        if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {
                 true if hides_backs => {}
-                true => return Spectrum::ZERO,
-                false => return pass(media, &ray, ray.rounded.t_max),
+                true => return (Spectrum::ZERO, 0),
+                false => return (pass(media, &ray, ray.rounded.t_max), 0),
             }
         }
         let mut media = media.clone();
         // A thing with many layers is followed only so far.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {
-                return share * pass(&media, &ray, ray.rounded.t_max);
+                return (share * pass(&media, &ray, ray.rounded.t_max), sheets);
             };
             share *= pass(&media, &ray, hit.t);
             let blocker = self.world.interaction(ray, hit);
             match self.passage(&blocker, &media, &sample.lanes) {
                 Some(passage) if self.is_nothing(&blocker, &passage) => media = passage.behind,
                 _ if hides_backs && self.world.is_hidden(-ray.dir(), &blocker) => {}
-                None if sheets => share *= self.straight(&blocker, sample),
+                None if self.world.has_sheets() => {
+                    share *= self.straight(&blocker, sample);
+                    sheets += 1;
+                }
                 _ => share *= 1.0 - self.world.opacity(&blocker),
             }
             if share == Spectrum::ZERO {
@@ -128,18 +130,29 @@ impl Path<'_> {
             }
             ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, None);
         }
-        Spectrum::ZERO
+        (Spectrum::ZERO, 0)
     }
 
     /// The share of light that goes straight through a surface that is no body's: such as a pane.
-    /// Only photons and this bring light of a lamp without extent through; where they come, they do.
+    /// Where photons come, they bring it.
     fn straight(&self, at: &Interaction, sample: &Sample) -> Spectrum {
         let opacity = self.world.opacity(at);
         let around = Spectrum::splat(1.0 - opacity);
-        if self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object)) {
+        if !self.world.may_enter(at) || self.is_target(at) {
             return around;
         }
         around + opacity * self.world.shading(at, 1.0, &sample.lanes).bsdf.straight()
+    }
+
+    /// Whether a lobe, by number, lets light through as [`Path::straight`] has it, so that what is
+    /// behind was found from before too.
+    pub(super) fn is_seen_through(&self, vertex: &Vertex, lobe: usize) -> bool {
+        self.world.has_sheets() && !vertex.state.by_target && vertex.place.goes_straight(lobe)
+    }
+
+    /// Whether photons are sent to what was hit.
+    pub(super) fn is_target(&self, at: &Interaction) -> bool {
+        self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object))
     }
 
     /// What a witness is told of a shadow ray.

@@ -26,6 +26,25 @@ fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     (sum / n, ((squares / n - (sum / n) * (sum / n)).max(0.0) / n).sqrt())
 }
 
+/// Of points of lamps beside directions, of points, and of directions alone: the mean of many
+/// samples along a ray, and its variance, by colour.
+fn by_ways(world: &World, ray: Ray, settings: Settings, color: ColorMode) -> [[(f64, f64); 3]; 3] {
+    [Direct::Both, Direct::Lights, Direct::Bsdf].map(|direct| {
+        let path = Path::new(world, settings, Transport { color, direct, ..Transport::default() });
+        let n = 1 << 14;
+        let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
+        // Numbers apart, so that means are independent: of each way its own pixel.
+        for sample in 0..n {
+            let id = SampleId::new(7, (direct as u32, 5), sample);
+            let value = path.radiance(&ray, id, &mut ()).as_dvec3();
+            (sum, squares) = (sum + value, squares + value * value);
+        }
+        let n = f64::from(n);
+        let mean = sum / n;
+        std::array::from_fn(|c| (mean[c], (squares[c] / n - mean[c] * mean[c]) / n))
+    })
+}
+
 /// Asserts an answer within three standard errors and one part in a thousand.
 fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
     let (mean, error) = light(world, ray, bounces, 1 << 15);
@@ -226,21 +245,7 @@ fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
     let settings = Settings { bounces: 3, ..Job::default().settings };
     for (direction, color) in [(-1.0, ColorMode::Rgb), (-0.7, ColorMode::Rgb), (-1.0, ColorMode::Spectral)] {
         let ray = Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(direction, -1.0, 0.0).normalize());
-        let of = |direct: Direct| -> [(f64, f64); 3] {
-            let path = Path::new(&world, settings, Transport { color, direct, ..Transport::default() });
-            let n = 1 << 14;
-            let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
-            // Numbers apart, so that means are independent: of each way its own pixel.
-            for sample in 0..n {
-                let id = SampleId::new(7, (direct as u32, 5), sample);
-                let value = path.radiance(&ray, id, &mut ()).as_dvec3();
-                (sum, squares) = (sum + value, squares + value * value);
-            }
-            let n = f64::from(n);
-            let mean = sum / n;
-            std::array::from_fn(|c| (mean[c], (squares[c] / n - mean[c] * mean[c]) / n))
-        };
-        let ways = [Direct::Both, Direct::Lights, Direct::Bsdf].map(of);
+        let ways = by_ways(&world, ray, settings, color);
         for other in &ways[1..] {
             for ((a, va), (b, vb)) in ways[0].iter().zip(other) {
                 assert!((a - b).abs() < 3.6 * (va + vb).sqrt(), "{ways:?}");

@@ -116,11 +116,20 @@ impl Place<'_, '_> {
 
     /// Whether a lobe, by number, refracts, so that radiance changes with the index.
     pub(super) fn bends(&self, number: usize) -> bool {
+        self.chosen_lobe(number).is_some_and(|lobe| matches!(lobe, Lobe::Refraction(_)))
+    }
+
+    /// Whether a lobe, by number, lets light through a surface that is no body's as if nothing were
+    /// there.
+    pub(super) fn goes_straight(&self, number: usize) -> bool {
+        let is_sheet = matches!(self, Place::Surface(_, _, None));
+        is_sheet && self.chosen_lobe(number).is_some_and(|lobe| matches!(lobe, Lobe::Through(_)))
+    }
+
+    fn chosen_lobe(&self, number: usize) -> Option<Lobe<'_>> {
         match self {
-            Place::Surface(_, shading, _) => {
-                shading.bsdf.lobes().nth(number).is_some_and(|part| matches!(part.lobe, Lobe::Refraction(_)))
-            }
-            Place::Medium(..) => false,
+            Place::Surface(_, shading, _) => shading.bsdf.lobes().nth(number).map(|part| part.lobe),
+            Place::Medium(..) => None,
         }
     }
 

@@ -1,4 +1,4 @@
-//! Light of lamps without extent through sheets.
+//! Light of lamps and of the surroundings through sheets.
 
 use super::caustics::by_photons;
 use super::*;
@@ -67,4 +67,72 @@ fn photons_bring_no_light_through_a_pane_twice() {
     let (a, _) = light(&world, below(), 12, 256);
     let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);
     assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
+}
+
+/// A floor below a pane as wide as the sky, below a disc of radiance 3.
+fn below_disc(pane: &str) -> World {
+    let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
+    scene(
+        &format!("{MATTE} PrincipledMaterial {{ {pane} }} {shining}"),
+        "",
+        "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Plane { normal 0 1 0 offset 1 }
+         MaterialIndex 2 Disc { center 0 2 0 normal 0 -1 0 radius 0.2 }",
+    )
+}
+
+#[test]
+fn a_pane_lets_the_light_of_a_small_disc_through() {
+    // A disc seen over an angle t around the normal makes an irradiance of pi L sin(t)^2; what the
+    // pane lets through is the same over so small an angle to 1e-6.
+    let irradiance = 3.0 * std::f64::consts::PI * 0.04 / 4.04;
+    for (pane, share) in [
+        ("transmissionWeight 1 specularRoughness 0 walls thin", 0.96 / 1.04),
+        ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * 0.96 / 1.04),
+        ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * 0.96 / 1.04),
+    ] {
+        // Paths without bounces end at the pane; with one they are weighed beside points of the lamp.
+        for bounces in [0, 1] {
+            let (world, expected) = (below_disc(pane), shown(share * irradiance));
+            let (mean, error) = light(&world, below(), bounces, 1 << 13);
+            assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, not {expected}");
+            // By chance a direction finds the lamp once in a hundred times: an error of 0.11.
+            assert!(error < 0.02 * expected, "{pane}, {bounces} bounces: {mean} ± {error}");
+        }
+    }
+}
+
+#[test]
+fn points_of_lamps_and_directions_find_the_same_light_through_panes() {
+    let settings = Settings { bounces: 4, ..Job::default().settings };
+    let glossy = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.3 }";
+    let glass =
+        "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.9 0.8 0.7 walls thin }";
+    let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
+    let panes =
+        "MaterialIndex 1 Rectangle { corner -2 1 -2 edge0 4 0 0 edge1 0 0 4 } Sphere { center 0.8 0.5 0 radius 0.4 }";
+    let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }";
+    let lamps = "MaterialIndex 2 Sphere { center 0 2 0.5 radius 0.5 } Rectangle { corner 0.6 0.4 -0.2 edge0 0.3 0 0 edge1 0 0.3 0 }";
+    for (background, lamps) in [("color 0.1 0.1 0.1", lamps), ("sun 0.3 0.9 0.2 turbidity 4", "")] {
+        let world = read(&format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ {background} }}
+             Materials {{ {glossy} {glass} {shining} }} Group {{ {floor} {panes} {lamps} }}"
+        ));
+        for color in [ColorMode::Rgb, ColorMode::Spectral] {
+            let ways = by_ways(&world, below(), settings, color);
+            for other in &ways[1..] {
+                for ((a, va), (b, vb)) in ways[0].iter().zip(other) {
+                    assert!((a - b).abs() < 3.6 * (va + vb).sqrt(), "{background}, {color:?}: {ways:?}");
+                }
+            }
+            assert!(ways[2][1].1 > ways[0][1].1, "{background}, {color:?}: {ways:?}");
+        }
+    }
+}
+
+#[test]
+fn photons_bring_the_light_of_a_disc_through_a_pane_once() {
+    let world = below_disc("transmissionWeight 1 specularRoughness 0 walls thin");
+    let (a, _) = light(&world, below(), 12, 1 << 13);
+    let (b, error) = by_photons(&world, below(), (20_000, 0.3), 24);
+    assert!((a - b).abs() < 3.5 * error + 0.01 * a, "{a}, {b} ± {error}");
 }
