@@ -28,7 +28,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("threemf", &["3mf"]),
     ("xml", &["xml"]),
     ("curve", &["csv"]),
-    ("ies", &["ies"]),
+    ("ies", &["ies", "ldt"]),
     ("part", &[]),
     ("ways", &[]),
 ];

@@ -11,7 +11,7 @@ use crate::dialect::Dialect;
 use crate::format::course::{ReadOptions, guess, random::Random, read, write};
 use crate::format::json::{self, Document};
 use crate::format::scene::{Input, find_scene_format, read_model};
-use crate::format::{curve, ies, read_mesh};
+use crate::format::{curve, photometry, read_mesh};
 use crate::image::{Encoded, ImageError, decode_linear};
 use crate::integrator::{Method, Settings};
 use crate::math::Vec3;
@@ -79,12 +79,12 @@ pub fn mesh(data: &[u8], name: &str) {
     }
 }
 
-/// Bytes as an IES file: what is read shines with finite light everywhere.
+/// Bytes as a file of measured light: what is read shines with finite light everywhere.
 pub fn profile(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.ies", data.into());
     let mut diagnostics = Diagnostics::default();
-    if let Some(profile) = ies::read(data, file, &mut diagnostics) {
+    if let Some(profile) = photometry::read(data, file, &mut diagnostics) {
         for dir in [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_Z, Vec3::new(-0.6, 0.0, 0.8), Vec3::new(0.48, -0.6, 0.64)] {
             assert!(!profile.at(dir).is_nan());
         }

@@ -877,11 +877,11 @@ class SpotLight(Light):
 
 
 class PhotometricLight(Light):
-    """A lamp whose light was measured: a point that shines as an IES file says, in candela.
+    """A lamp whose light was measured: a point that shines as an IES or EULUMDAT file says, in candela.
 
     position: three numbers; must be given. Where it is.
 
-    file: path; must be given. The measurement: an IES file (LM-63-1986 to 2019).
+    file: path; must be given. The measurement: an IES file (LM-63-1986 to 2019), or EULUMDAT (`.ldt`).
 
     direction: three numbers, not 0 0 0; 0 -1 0 where it is not given. Where its lower side points.
 

@@ -240,7 +240,7 @@ impl<'r> Loader<'r> {
         let name = light.profile()?;
         match self.assets.profiles.get(&name.path) {
             Some(profile) => Some(Arc::clone(profile)),
-            None => self.parsed(name, "photometric file", diagnostics, format::ies::read).map(Arc::new),
+            None => self.parsed(name, "photometric file", diagnostics, format::photometry::read).map(Arc::new),
         }
     }
 

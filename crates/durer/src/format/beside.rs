@@ -2,7 +2,7 @@
 //! pictures as they are.
 
 use super::ply::write_whole;
-use super::{extension, ies};
+use super::{extension, photometry};
 use crate::describe::{DescribedList, FileName, Value};
 use crate::image;
 use crate::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
@@ -134,7 +134,7 @@ impl Put<'_> {
         }
         let scene = self.scene;
         if let Some(profile) = scene.assets.profiles.get(name) {
-            return self.once("lamp", name, |put| put.file(name, "ies", ies::write(profile)));
+            return self.once("lamp", name, |put| put.file(name, "ies", photometry::write(profile)));
         }
         let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // `lamp.csv:red` and `picture.png:g` are a column and a channel of a file.

@@ -1,5 +1,6 @@
 //! What a ray runs in: air, or one thing of glass in another.
 
+use crate::math::Vec3;
 use crate::world::{Interaction, World};
 use smallvec::SmallVec;
 
@@ -40,6 +41,10 @@ pub struct Body {
 }
 
 impl Body {
+    fn new(world: &World, object: u32, ior: f32) -> Self {
+        Body { object, ior, size: world.objects()[object as usize].extent() }
+    }
+
     /// Whether it fills the space that it shares with another one. Of two closed things that is the
     /// smaller one, so that ice displaces water wherever they overlap, from whatever side a ray
     /// comes. Of others it is the one met last.
@@ -68,6 +73,12 @@ impl Clone for Media {
 }
 
 impl Media {
+    /// What is around a point.
+    pub fn around(world: &World, point: Vec3) -> Self {
+        let around = world.bodies_around(point).map(|(object, ior)| Body::new(world, object, ior));
+        around.fold(Media::default(), |media, medium| media.entered(medium))
+    }
+
     /// Nothing but this.
     pub fn only(medium: Body) -> Self {
         Media(SmallVec::from_slice(&[medium]))
@@ -119,8 +130,7 @@ impl Media {
     /// Ours: things of glass may be inside each other and overlap.
     pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
         let (object, start) = (at.hit.object, at.ray.rounded.origin);
-        let medium = |object: u32, ior: f32| Body { object, ior, size: world.objects()[object as usize].extent() };
-        let own = medium(object, ior);
+        let own = Body::new(world, object, ior);
         if !leaving {
             let behind = self.entered(own);
             let hidden = !self.is_air() && behind.object() == self.object() && self.object() != Some(object);
@@ -133,7 +143,7 @@ impl Media {
         } else if world.objects()[object as usize].contains(start) {
             // A ray that leaves what it never entered began inside.
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
-            let all = others.map(|(other, ior)| medium(other, ior)).chain([own]);
+            let all = others.map(|(other, ior)| Body::new(world, other, ior)).chain([own]);
             all.fold(Media::default(), |media, medium| media.entered(medium))
         } else {
             // Turned inside out, it is the wall of a cavity in what is around.

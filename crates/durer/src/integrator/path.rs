@@ -19,7 +19,7 @@ use crate::spectrum::{Lanes, Spectrum};
 use crate::world::{Interaction, Shading, World};
 use glam::DVec3;
 pub use parameters::{Direct, PhotonParameters, Transport};
-pub use photons::{PhotonMap, Photons};
+pub use photons::{Gathered, PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use vertex::{Place, Scattered, Vertex};
@@ -93,8 +93,7 @@ struct State {
     behind_mirrors: bool,
     /// Whether the thing that it was last scattered by is one that photons are sent to.
     by_target: bool,
-    /// Whether a surface scattered it into many directions, and nothing but single directions came
-    /// after.
+    /// Whether it was scattered into many directions, and nothing but single directions came after.
     broad: bool,
     /// Whether only the first lane still counts, since others would go other ways.
     alone: bool,
@@ -139,7 +138,8 @@ impl Integrate for Path<'_> {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let (sum, scale) = self.trace(&ray.into(), State::default(), &sample, tally);
+        let ray = Ray64::from(ray);
+        let (sum, scale) = self.trace(&ray, self.start(ray.origin()), &sample, tally);
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
@@ -187,11 +187,19 @@ impl<'w> Path<'w> {
         let n_geo = if surface.n_geo.dot(normal) < 0.0 { -surface.n_geo } else { surface.n_geo };
         let shading = Shading { frame: Frame::around(normal), n_geo, wo: Vec3::Z, bsdf };
         let sample = self.sample(id);
-        let state = State { from_camera: None, ..State::default() };
+        let state = State { from_camera: None, ..self.start(surface.point()) };
         let vertex = self.vertex(Place::Surface(surface, &shading, None), &state, &sample);
         let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
         let light = near + self.indirect(&vertex, &sample, tally);
         std::f32::consts::PI * sample.lanes.color(light)
+    }
+
+    /// What a ray carries from a point where it is given no other.
+    fn start(&self, point: DVec3) -> State {
+        match self.world.has_media() {
+            true => State { media: Media::around(self.world, point.as_vec3()), ..State::default() },
+            false => State::default(),
+        }
     }
 
     fn vertex<'a>(&self, place: Place<'a, 'w>, state: &'a State, sample: &Sample) -> Vertex<'a, 'w> {
@@ -384,15 +392,18 @@ impl<'w> Path<'w> {
         sum + self.indirect(vertex, sample, tally)
     }
 
-    /// The light of lamps that mirrors and glass throw on a surface.
+    /// The light of lamps that mirrors and glass throw on a surface, or into a medium.
     fn caustic<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
-        let (Some(map), Place::Surface(surface, shading, _)) = (&sample.photons, &vertex.place) else {
-            return Spectrum::ZERO;
-        };
+        let Some(map) = &sample.photons else { return Spectrum::ZERO };
         let most = self.settings.bounces - vertex.state.depth;
-        let (light, photons) = map.light(surface, shading, most);
+        let Gathered { light, photons, radius } = match &vertex.place {
+            Place::Surface(surface, shading, _) => map.on_surface(surface, shading, most),
+            Place::Medium(point, dir, phase) => {
+                map.in_medium((point.as_vec3(), *dir), vertex.state.media.object(), phase, most)
+            }
+        };
         if photons > 0 {
-            tally.begin(|| TermKind::Photons { radius: map.radius(), photons });
+            tally.begin(|| TermKind::Photons { radius, photons });
             tally.end(sample.told(Spectrum::ONE), sample.told(Spectrum::ONE), sample.told(light));
         }
         light
@@ -426,8 +437,7 @@ impl<'w> Path<'w> {
             },
             behind_mirrors: delta && (state.broad || state.behind_mirrors),
             by_target: state.by_target,
-            // No photons are kept in fog: light that it scatters comes by paths.
-            broad: if delta { state.broad } else { matches!(place, Place::Surface(..)) },
+            broad: !delta || state.broad,
             alone: state.alone,
             from_camera: state.from_camera.filter(|_| delta),
         };

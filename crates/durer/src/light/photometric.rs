@@ -9,11 +9,11 @@ use glam::DVec3;
 use std::f32::consts::PI;
 
 described! {
-    /// A lamp whose light was measured: a point that shines as an IES file says, in candela.
+    /// A lamp whose light was measured: a point that shines as an IES or EULUMDAT file says, in candela.
     PhotometricLight ["PhotometricLight" in set::DURER] {
         /// Where it is.
         position: Vec3 = Vec3::ZERO, required, Rule::Any, ["position" in set::DURER];
-        /// The measurement: an IES file (LM-63-1986 to 2019).
+        /// The measurement: an IES file (LM-63-1986 to 2019), or EULUMDAT (`.ldt`).
         file: FileName = FileName::default(), required, Rule::Any, ["file" in set::DURER];
         /// Where its lower side points.
         direction: Vec3 = Vec3::NEG_Y, optional, Rule::NonZero, ["direction" in set::DURER];

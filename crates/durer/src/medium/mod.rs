@@ -87,6 +87,12 @@ impl Medium {
         Some((place.density.as_deref()?, &place.bounds))
     }
 
+    /// How much light is scattered at a point, per unit of the world.
+    pub fn scattering(&self, point: DVec3, lanes: &Lanes) -> Spectrum {
+        let density = self.density().map_or(1.0, |(grid, bounds)| grid.at(bounds, point.as_vec3()));
+        lanes.coefficient(self.extinction) * lanes.reflectance(self.albedo) * density
+    }
+
     /// The share of light that gets through a way.
     ///
     /// Source of ratio tracking: Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.

@@ -2,6 +2,7 @@
 
 use crate::bsdf::Tables;
 use crate::bsdf::microfacet::Ggx;
+use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Parameters, PrincipledMaterial, Solid};
 use crate::math::Color;
 use crate::medium::Medium;
@@ -131,6 +132,19 @@ pub struct Phong {
     pub principled: Option<Arc<Principled>>,
     /// The light of its own, which path tracers see.
     pub emission: Option<Emission>,
+}
+
+impl Phong {
+    /// Whether paths go into bodies of it.
+    pub fn is_entered(&self) -> bool {
+        match &self.principled {
+            Some(own) => {
+                let m = &own.written;
+                m.walls == Walls::Solid && (m.transmission_weight > 0.0 || m.subsurface_weight > 0.0)
+            }
+            None => self.transparent != Color::ZERO,
+        }
+    }
 }
 
 /// One of the materials that make up a surface point.

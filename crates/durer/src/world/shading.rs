@@ -190,13 +190,9 @@ impl World {
     /// The index of refraction of the body that a surface bounds, if light may go into it: that of
     /// the part that weighs most.
     pub fn refracts(&self, at: &Interaction, lanes: &Lanes) -> Option<f32> {
-        let of = |phong: &Phong| match &phong.principled {
-            Some(own) => {
-                let m = &own.written;
-                let enters = m.transmission_weight > 0.0 || m.subsurface_weight > 0.0;
-                (enters && m.walls == Walls::Solid).then(|| m.ior_at(lanes.hero()))
-            }
-            None => (phong.transparent != Color::ZERO).then_some(phong.ior),
+        let of = |phong: &Phong| {
+            let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
+            phong.is_entered().then(ior)
         };
         if !self.may_enter(at) {
             return None;
@@ -265,6 +261,12 @@ impl World {
     /// Whether some body has no skin.
     pub(crate) fn finds_interfaces(&self) -> bool {
         (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
+    }
+
+    /// Whether something fills some body.
+    pub(crate) fn finds_media(&self) -> bool {
+        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.medium.is_some());
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
     }
 
     /// Whether some material is a sheet through which light may go straight.

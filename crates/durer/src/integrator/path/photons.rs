@@ -2,18 +2,21 @@
 //!
 //! Paths from the eye find such light by chance, or not at all. So photons are sent from the lamps
 //! to all that mirrors or refracts, followed over single directions, and kept on the first thing
-//! that scatters broadly. There the light is estimated from the photons nearby. Each sample of a
+//! that scatters broadly, or where they are scattered in the air. There the light is estimated from
+//! the photons nearby. Each sample of a
 //! pixel has photons of its own, and looks less far than the one before, so that the mean over
 //! samples comes to the truth.
 //!
 //! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
 //! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,
-//! 2011.
+//! 2011; in media: Jensen and Christensen, *Efficient Simulation of Light Transport in Scenes with
+//! Participating Media using Photon Maps*, 1998.
 
 use super::{End, Path, Place, State};
 use super::{Sample, USES};
 use crate::integrator::media::Passage;
 use crate::math::{Color, Vec3};
+use crate::medium::HenyeyGreenstein;
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
@@ -55,17 +58,49 @@ struct Photon {
     position: Vec3,
     /// Whence it came: a unit vector.
     wi: Vec3,
+    /// Its power; in a medium over how much that scatters.
     power: Spectrum,
     /// How often it was mirrored or refracted.
     bounces: u32,
+    rest: Rest,
 }
 
-/// The photons of one sample, sorted by the cell that they are in.
+/// In what it came to rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Rest {
+    Surface,
+    /// The medium of an object, by number; `None`: the air's.
+    Medium(Option<u32>),
+}
+
+/// The photons of one sample.
 #[derive(Debug)]
 pub struct PhotonMap {
+    lanes: Lanes,
+    on_surfaces: Cells,
+    in_media: Cells,
+}
+
+/// What photons nearby tell of the light at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathered {
+    /// The light that is scattered there.
+    pub light: Spectrum,
+    /// How many photons it is made of.
+    pub photons: usize,
+    /// How far away they may be.
+    pub radius: f32,
+}
+
+/// In media, where photons are sparser, a sample looks so many times as far as on surfaces.
+const FARTHER: f32 = 3.0;
+
+/// Photons, sorted by the cell that they are in.
+#[derive(Debug)]
+struct Cells {
+    /// How far is looked.
     radius: f32,
     corrected: bool,
-    lanes: Lanes,
     /// Of each photon its cell; in order.
     cells: Vec<u64>,
     photons: Vec<Photon>,
@@ -137,7 +172,13 @@ impl Photons {
             true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
             false => (0..self.count).flat_map(one).collect(),
         };
-        PhotonMap { corrected: self.corrected, ..PhotonMap::new(self.radius(sample), lanes, found) }
+        let (surfaces, media): (Vec<_>, Vec<_>) = found.into_iter().partition(|photon| photon.rest == Rest::Surface);
+        let radius = self.radius(sample);
+        PhotonMap {
+            lanes,
+            on_surfaces: Cells::new(&surfaces, radius, self.corrected),
+            in_media: Cells::new(&media, FARTHER * radius, self.corrected),
+        }
     }
 
     /// Sends one photon out, and says where it came to rest.
@@ -148,11 +189,21 @@ impl Photons {
         let emitted = self.beams.emit(path.world, choices, place, direction)?;
         let power = emitted.power / self.count as f32;
         let sample = Sample { id: id.at(3), lanes, photons: None };
-        let mut state = State::default();
         let mut ray = emitted.ray;
+        let mut state = path.start(ray.origin());
         let mut first = true;
         loop {
             let (end, _) = path.fly(&ray, &mut state, &sample, &mut ());
+            // What fog scatters before anything throws it on, paths look for.
+            if let End::Medium(point, dir, _) = end
+                && !first
+            {
+                let object = state.media.object();
+                let scattering = path.world.medium(object)?.scattering(point, &lanes);
+                let power =
+                    Spectrum::select(scattering.cmpgt(Spectrum::ZERO), state.throughput / scattering, Spectrum::ZERO);
+                return Photon::new(point.as_vec3(), -dir, power, state.depth, Rest::Medium(object));
+            }
             let End::Surface(met, passage) = end else { return None };
             if first {
                 // What photons meet on their way to something else, paths look for.
@@ -176,10 +227,8 @@ impl Photons {
             path.kept(&met, &mut state, &sample);
             // What arrives on black is not seen, but measured.
             if !first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
-                let bounces = state.depth;
                 let wi = -ray.dir().normalize();
-                let photon = Photon { position: met.surface.position, wi, power: state.throughput, bounces };
-                return state.throughput.is_finite().then_some(photon);
+                return Photon::new(met.surface.position, wi, state.throughput, state.depth, Rest::Surface);
             }
             let surface = &met.surface;
             let at = Place::Surface(surface, &shading, passage.as_ref());
@@ -217,79 +266,106 @@ fn cell_of(place: glam::I64Vec3) -> u64 {
     part(place.x) | part(place.y) << 21 | part(place.z) << 42
 }
 
-impl PhotonMap {
-    fn new(radius: f32, lanes: Lanes, found: Vec<Photon>) -> Self {
+impl Photon {
+    /// `None` if its power is no number.
+    fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Rest) -> Option<Self> {
+        power.is_finite().then_some(Photon { position, wi, power, bounces, rest })
+    }
+}
+
+impl Cells {
+    fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
         // Photons of a cell stay in the order in which they were sent, so that sums have the same
         // bits.
-        let mut order: Vec<(u64, u32)> = found
-            .iter()
-            .enumerate()
-            .map(|(i, photon)| (cell_of(place(photon.position, radius, 0.0)), i as u32))
-            .collect();
+        let cell = |photon: &Photon| cell_of(place(photon.position, radius, 0.0));
+        let mut order: Vec<(u64, u32)> = (0..).zip(photons).map(|(i, photon)| (cell(photon), i)).collect();
         order.sort_unstable();
-        let photons = order.iter().map(|&(_, i)| found[i as usize]).collect();
-        let cells = order.into_iter().map(|(cell, _)| cell).collect();
-        PhotonMap { radius, corrected: false, lanes, cells, photons }
+        let photons = order.iter().map(|&(_, i)| photons[i as usize]).collect();
+        Cells { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
     }
 
-    /// How far it looks.
-    pub fn radius(&self) -> f32 {
-        self.radius
-    }
-
-    /// What its light is made of.
-    pub fn lanes(&self) -> &Lanes {
-        &self.lanes
-    }
-
-    /// The light that a surface scatters of the photons nearby, and how many those are. Photons
-    /// that were mirrored more often than `most` do not count.
-    pub fn light(&self, surface: &Surface, shading: &Shading, most: u32) -> (Spectrum, usize) {
-        let (mut sum, mut count) = (Spectrum::ZERO, 0);
-        let square = self.radius * self.radius;
+    /// The light of the photons around a point that were mirrored no more often than `most`: each
+    /// counts as `value` says, by the way to it and the square of that.
+    fn gathered(&self, point: Vec3, most: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> Gathered {
+        let mut gathered = Gathered { light: Spectrum::ZERO, photons: 0, radius: self.radius };
         // Cells are two radii wide: those half a cell around the point hold all that is within a
         // radius.
-        let low = place(surface.position, self.radius, -0.5);
+        let low = place(point, self.radius, -0.5);
         for corner in 0..8 {
             let cell = cell_of(low + glam::I64Vec3::new(corner & 1, corner >> 1 & 1, corner >> 2));
             let start = self.cells.partition_point(|&other| other < cell);
             for (photon, _) in self.photons[start..].iter().zip(&self.cells[start..]).take_while(|pair| *pair.1 == cell)
             {
-                let way = photon.position - surface.position;
-                let beside = way.dot(surface.n_geo);
+                let way = photon.position - point;
                 let distance = way.length_squared();
-                // What lies on another surface does not count.
-                if distance >= square || beside * beside > FLATNESS * square || photon.bounces > most {
+                if distance >= self.radius * self.radius || photon.bounces > most {
                     continue;
                 }
-                let cosine = shading.frame.normal.dot(photon.wi).abs();
-                let (value, _) = shading.eval(photon.wi);
-                if value == Spectrum::ZERO || cosine <= 1e-4 {
-                    continue;
+                let value = value(photon, way, distance);
+                if value != Spectrum::ZERO {
+                    gathered.photons += 1;
+                    gathered.light += value;
                 }
-                count += 1;
-                sum += value * photon.power * (self.kernel(distance, beside * beside) / cosine);
             }
         }
-        (sum, count)
+        gathered
     }
-}
 
-impl PhotonMap {
     /// How much a photon counts, by the squares of its distance and of how far it lies beside the
-    /// surface.
+    /// surface; nothing if it is on another one.
     ///
     /// The mean of light over a kernel of radius r is off by r^2 times something, to second order:
     /// half as much with a kernel of half the square. Twice that one less the whole one is
     /// corrected (Richardson's extrapolation).
-    fn kernel(&self, distance: f32, beside: f32) -> f32 {
+    fn kernel(&self, distance: f32, beside: f32, kernel: fn(f32, f32) -> f32) -> f32 {
         let square = self.radius * self.radius;
-        let (whole, half) = (epanechnikov(square, distance), 0.5 * square);
+        if beside > FLATNESS * square {
+            return 0.0;
+        }
+        let (whole, half) = (kernel(square, distance), 0.5 * square);
         match self.corrected {
             false => whole,
-            true if distance < half && beside <= FLATNESS * half => 2.0 * epanechnikov(half, distance) - whole,
+            true if distance < half && beside <= FLATNESS * half => 2.0 * kernel(half, distance) - whole,
             true => -whole,
         }
+    }
+}
+
+impl PhotonMap {
+    /// What its light is made of.
+    pub fn lanes(&self) -> &Lanes {
+        &self.lanes
+    }
+
+    /// The light that a surface scatters of the photons nearby. Photons that were mirrored more
+    /// often than `most` do not count.
+    pub fn on_surface(&self, surface: &Surface, shading: &Shading, most: u32) -> Gathered {
+        let cells = &self.on_surfaces;
+        cells.gathered(surface.position, most, |photon, way, distance| {
+            let beside = way.dot(surface.n_geo);
+            let kernel = cells.kernel(distance, beside * beside, disc);
+            let cosine = shading.frame.normal.dot(photon.wi).abs();
+            if kernel == 0.0 || cosine <= 1e-4 {
+                return Spectrum::ZERO;
+            }
+            let (value, _) = shading.eval(photon.wi);
+            value * photon.power * (kernel / cosine)
+        })
+    }
+
+    /// The same at a point of the medium of an object (`None`: of the air), along a unit direction.
+    pub fn in_medium(
+        &self,
+        (point, dir): (Vec3, Vec3),
+        object: Option<u32>,
+        phase: &HenyeyGreenstein,
+        most: u32,
+    ) -> Gathered {
+        let cells = &self.in_media;
+        cells.gathered(point, most, |photon, _, distance| match photon.rest == Rest::Medium(object) {
+            true => photon.power * (phase.value(dir, photon.wi) * cells.kernel(distance, 0.0, ball)),
+            false => Spectrum::ZERO,
+        })
     }
 }
 
@@ -298,8 +374,13 @@ impl PhotonMap {
 const FLATNESS: f32 = 0.1;
 
 /// Epanechnikov's kernel in the plane, by the squares of radius and distance.
-fn epanechnikov(square: f32, distance: f32) -> f32 {
+fn disc(square: f32, distance: f32) -> f32 {
     2.0 / (PI * square) * (1.0 - distance / square)
+}
+
+/// The same in space.
+fn ball(square: f32, distance: f32) -> f32 {
+    15.0 / (8.0 * PI * square * square.sqrt()) * (1.0 - distance / square)
 }
 
 fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {

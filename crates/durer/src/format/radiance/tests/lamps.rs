@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::format::beside::put_beside;
-use crate::format::ies;
+use crate::format::photometry;
 use crate::light::{Emitter, Light};
 use crate::math::fp;
 use crate::source::Source;
@@ -150,7 +150,7 @@ fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
     assert!(made.assets.is_empty());
     let Light::Photometric(first) = &made.lights.as_ref().unwrap()[0].value else { panic!("no lamp") };
     assert_eq!(first.file.path, "kept/lamp-1.ies");
-    let read = ies::read(&beside[0].1, 0, &mut crate::diag::Diagnostics::default());
+    let read = photometry::read(&beside[0].1, 0, &mut crate::diag::Diagnostics::default());
     assert_eq!(read.as_ref(), Some(&*scene.assets.profiles["lamp-1.ies"]));
 }
 

@@ -67,20 +67,69 @@ fn fog_and_rough_glass_bring_the_same_light_with_photons_and_without() {
     // To the floor, below the ball, and through the air.
     let floor = (Vec3::new(3.0, 0.5, 3.0), Vec3::new(0.7, 0.0, 0.2));
     let above = (Vec3::new(1.2, 0.6, 4.0), Vec3::new(1.2, 0.6, -4.0));
-    for (air, more, (from, to)) in [(fog, "", floor), (fog, "", above), ("", ball, floor), (fog, ball, floor)] {
+    let (few, many) = (((100, 0.2), 1 << 13), ((8_000, 0.1), 1 << 10));
+    for (air, more, (from, to), (photons, samples)) in
+        [(fog, "", floor, few), (fog, "", above, many), ("", ball, floor, few), (fog, ball, floor, few)]
+    {
         let world = read(&format!(
             "{air} PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
              Materials {{ {MATTE} {GLASS} {lamp} {rough} }} Group {{ {things} {more} }}"
         ));
         let ray = Ray::new(from, (to - from).normalize());
         let (a, ea) = light(&world, ray, 12, 1 << 15);
-        let (b, eb) = by_photons(&world, ray, (100, 0.2), 1 << 13);
+        let (b, eb) = by_photons(&world, ray, photons, samples);
         let error = (ea * ea + eb * eb).sqrt();
         // One part in a hundred is allowed for the kernel's radius; the errors are small enough to
         // see light that is lost or counted twice.
         let near = (a - b).abs() < 3.5 * error + 0.01 * a && error < 0.15 * a;
         assert!(near, "{air} {more}: {a} ± {ea}, {b} ± {eb}");
     }
+}
+
+#[test]
+fn photons_in_fog_make_beams_as_their_integral_says() {
+    // Light from straight above through a slab, then down through fog: what is scattered once from
+    // there along a level ray to a black thing is (1 - F)^2 E / (4 pi) e^(-s h) a (1 - e^(-s l)).
+    let fog = "Fog { extinction 1 color 0.8 0.8 0.8 min -1 -2 -1 max 1 0.9 1 }";
+    let black = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 }";
+    let things = "MaterialIndex 0 Box { min -1.5 1 -1.5 max 1.5 1.2 1.5 }
+        MaterialIndex 1 Rectangle { corner 0.5 -0.1 -0.1 edge0 0 0.2 0 edge1 0 0 0.2 }";
+    let world = read(&format!(
+        "{fog} PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
+         Lights {{ DirectionalLight {{ direction 0 -1 0 color 2 2 2 }} }} Materials {{ {GLASS} {black} }} Group {{ {things} }}"
+    ));
+    let ray = Ray::new(Vec3::new(-0.5, 0.0, 0.0), Vec3::X);
+    // Two refractions are allowed, and no more after another scattering.
+    let settings = Settings { bounces: 2, ..Job::default().settings };
+    let photons = Some(Arc::new(Photons::new(&world, 3, 1_000, Some(0.2))));
+    let path = Path { photons, ..Path::new(&world, settings, Transport::default()) };
+    let n = 1 << 12;
+    let values: Vec<f64> =
+        (0..n).map(|i| f64::from(path.radiance(&ray, SampleId::new(7, (3, 5), i), &mut ()).x)).collect();
+    let mean = values.iter().sum::<f64>() / f64::from(n);
+    let error = (values.iter().map(|x| (x - mean).powi(2)).sum::<f64>()).sqrt() / f64::from(n);
+    let expected = 0.96 * 0.96 * 2.0 / 4.0 * libm::exp(-0.9) * 0.8 * (1.0 - libm::exp(-1.0));
+    assert!((mean - expected).abs() < 3.0 * error + 0.005 * expected, "{mean} ± {error}, not {expected}");
+    assert!(error < 0.03 * expected, "{mean} ± {error}, not {expected}");
+}
+
+#[test]
+fn photons_and_paths_begin_in_what_is_around_them() {
+    // A lamp, a ball of glass and the floor below it in a box of fog without a skin.
+    let fog = "PrincipledMaterial { transmissionWeight 1 specularIor 1 specularWeight 0 transmissionDepth 1 transmissionColor 0.6 0.6 0.6 specularRoughness 0 }";
+    let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 6 }";
+    let things = "MaterialIndex 0 Rectangle { corner -2 0 2 edge0 4 0 0 edge1 0 0 -4 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.7 }
+        MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 2 0 0 edge1 0 0 2 } MaterialIndex 3 Box { min -4 -1 -4 max 4 5 4 }";
+    let world = scene(&format!("{MATTE} {GLASS} {lamp} {fog}"), "", things);
+    let ray = Ray::new(Vec3::new(3.0, 0.4, 0.0), Vec3::new(-3.0, -0.4, 0.0).normalize());
+    let (a, ea) = light(&world, ray, 12, 1 << 15);
+    let (b, eb) = by_photons(&world, ray, (20_000, 0.1), 48);
+    assert!((a - b).abs() < 3.5 * (ea * ea + eb * eb).sqrt() + 0.01 * a, "{a} ± {ea}, {b} ± {eb}");
+    // Seen from inside, a lamp is dimmed by its way through the fog.
+    let lamp = Ray::new(Vec3::new(-0.9, 0.5, 0.9), Vec3::Y);
+    let (seen, _) = light(&world, lamp, 12, 64);
+    let expected = 6.0 * libm::pow(0.6, 2.5);
+    assert!((seen - expected).abs() < 1e-3 * expected, "{seen}, not {expected}");
 }
 
 #[test]

@@ -73,11 +73,8 @@ impl Numbers<'_> {
     }
 }
 
-/// Reads a profile; what is wrong is said at its place.
-pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
-    // Names of makers may be in any encoding; all else is ASCII, and places stay the same.
-    let text: String = bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect();
-    let (profile, odd) = parse(&text, file).map_err(|error| diagnostics.push(*error)).ok()?;
+pub(super) fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+    let (profile, odd) = parse(text, file).map_err(|error| diagnostics.push(*error)).ok()?;
     odd.into_iter().for_each(|warning| diagnostics.push(warning));
     Some(profile)
 }
@@ -208,7 +205,7 @@ mod tests {
         let mut files = Files::default();
         let file = files.add("lamp.ies", text.as_bytes().into());
         let mut diagnostics = Diagnostics::default();
-        read(text.as_bytes(), file, &mut diagnostics).ok_or_else(|| {
+        read(text, file, &mut diagnostics).ok_or_else(|| {
             let error = diagnostics.iter().next().unwrap();
             let (line, column) = files.position(error.span.unwrap()).unwrap();
             format!("{line}:{column} {}", error.message)
@@ -264,7 +261,7 @@ mod tests {
             let mut files = Files::default();
             let file = files.add("lamp.ies", text.as_bytes().into());
             let mut diagnostics = Diagnostics::default();
-            let profile = read(text.as_bytes(), file, &mut diagnostics).unwrap();
+            let profile = read(text, file, &mut diagnostics).unwrap();
             let [warning] = &diagnostics.iter().collect::<Vec<_>>()[..] else { panic!("{text}: {diagnostics:?}") };
             let (line, column) = files.position(warning.span.unwrap()).unwrap();
             assert!(
