@@ -95,7 +95,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         return Err(numbers.error(
             0,
             text.lines().next().unwrap_or("").len(),
-            "no line `TILT=`: this is no IES file, or broken",
+            "no line `TILT=`: this is no IES file, nor EULUMDAT, or broken",
         ));
     };
     match tilt.as_str() {
@@ -301,7 +301,7 @@ mod tests {
     #[test]
     fn broken_files_are_refused_at_their_place() {
         for (text, error) in [
-            ("IESNA:LM-63-2002\n1 2 3\n", "1:1 no line `TILT=`: this is no IES file, or broken"),
+            ("IESNA:LM-63-2002\n1 2 3\n", "1:1 no line `TILT=`: this is no IES file, nor EULUMDAT, or broken"),
             ("TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 90 45\n0\n1 2 3", "4:6 the vertical angles must rise"),
             (
                 "TILT=NONE\n1 1 1 3 1 1 2 0 0 0\n1 1 60\n0 45 90\n0\n1 2",

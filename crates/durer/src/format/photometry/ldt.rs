@@ -102,11 +102,11 @@ impl<'t> Lines<'t> {
 }
 
 /// Whether a text begins as such a file does: the kind of lamp and its symmetry stand in the second
-/// and the third line.
+/// and the third line, as whole numbers.
 pub(super) fn recognise(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).skip(1);
-    let mut digit = |most: u32| lines.next().and_then(|line| line.parse::<u32>().ok()).is_some_and(|n| n <= most);
-    digit(3) && digit(4)
+    let mut is_whole = || lines.next().is_some_and(|line| line.parse::<u32>().is_ok());
+    is_whole() && is_whole()
 }
 
 pub(super) fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
@@ -297,6 +297,7 @@ mod tests {
         };
         assert!(parsed(&good).is_ok());
         for (text, told) in [
+            (line(3, "5"), "3:1 the symmetry must be a whole number from 0 to 4"),
             (line(4, "four"), "4:1 `four` is no number: the number of C planes should be here"),
             (line(4, "1e9"), "4:1 the number of C planes must be a whole number from 1 to 721"),
             (line(24, "-1"), "24:1 the conversion factor must not be less than 0"),
