@@ -109,7 +109,7 @@ impl Reader<'_> {
     }
 
     fn opacity(&mut self, params: &Params) -> Opacity {
-        match self.changed(params, "alpha", |share| share) {
+        match self.changed(params, "alpha", false, |share| share) {
             Some(picture) => Opacity { share: 1.0, picture: Some(picture) },
             None => Opacity { share: self.value(params, "alpha", 1.0), picture: None },
         }

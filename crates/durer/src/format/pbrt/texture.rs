@@ -1,5 +1,6 @@
 //! Textures: one value everywhere, or a picture.
 
+use super::language::Language;
 use super::made::Texture;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, TEXTURE};
@@ -21,7 +22,7 @@ impl Texture {
         }
     }
 
-    fn even(&self) -> Option<Color> {
+    pub fn even(&self) -> Option<Color> {
         if let Texture::Even(color) = self { Some(*color) } else { None }
     }
 }
@@ -34,12 +35,13 @@ impl Reader<'_> {
         (class, at): (&str, Span),
         list: Vec<Rc<Param>>,
     ) {
-        if kind != "float" && kind != "spectrum" {
+        let third = self.language == Language::Third;
+        if kind != "float" && kind != "spectrum" && !(third && kind == "color") {
             let help = meant(kind, ["float", "spectrum"]);
             return self.said.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
         }
         let params = self.params(list, Some(TEXTURE), at);
-        let (is_color, said) = (kind == "spectrum", self.said);
+        let (is_color, said) = (kind != "float", self.said);
         let instead = |what: &str| said.once(at, format!("the texture `{class}` has no counterpart: {what}"));
         let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
         let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
@@ -48,6 +50,17 @@ impl Reader<'_> {
         };
         let made = match class {
             "constant" => of("value", 1.0),
+            "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
+                (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
+                (texture, _) => {
+                    instead("of two pictures the first is shown");
+                    texture
+                }
+            },
+            "uv" if third => {
+                instead("a middle value is taken");
+                Texture::Even(Vec3::new(0.5, 0.5, 0.0))
+            }
             "scale" => {
                 let scale = self.pattern(&params, "scale", false, Vec3::ONE);
                 match (of("tex", 1.0), scale) {
@@ -113,6 +126,9 @@ impl Reader<'_> {
                 return self.said.bad_with(at, format!("there is no texture `{other}`"), meant(other, known));
             }
         };
+        if third {
+            params.known(&["aamode", "dimension"]);
+        }
         params.known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
         params.finish("this texture");
         self.textures.insert((is_color, name), made);
@@ -142,17 +158,27 @@ impl Reader<'_> {
         match self.pattern(params, name, false, Vec3::splat(usual)) {
             Texture::Even(color) => color.x,
             Texture::Picture(picture, scale) => {
-                let at = params.place(name);
-                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
-                let mean = self.pictures().mean(&picture, at);
-                mean.map_or(usual, |mean| mean * scale.x)
+                self.mean_of(params, name, &picture).map_or(usual, |mean| mean * scale.x)
             }
         }
     }
 
+    /// The mean of the picture that a parameter is, where only a number has a counterpart.
+    pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
+        let at = params.place(name);
+        self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+        self.pictures().mean(picture, at)
+    }
+
     /// A picture that a number is, with its values made others; `None` where it is no picture.
-    pub fn changed(&mut self, params: &Params, name: &'static str, change: impl Fn(f32) -> f32) -> Option<FileName> {
-        let Texture::Picture(picture, scale) = self.pattern(params, name, false, Vec3::ZERO) else { return None };
+    pub fn changed(
+        &mut self,
+        params: &Params,
+        name: &'static str,
+        is_color: bool,
+        change: impl Fn(f32) -> f32,
+    ) -> Option<FileName> {
+        let Texture::Picture(picture, scale) = self.pattern(params, name, is_color, Vec3::ZERO) else { return None };
         let at = params.place(name);
         let picture = self.pictures().changed(&picture, at, decode_srgb, |x| change(scale.x * x))?;
         Some(self.asset(picture, at))
@@ -202,6 +228,16 @@ impl Reader<'_> {
         }
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
+        if self.language == Language::Third {
+            // Its own default are smaller versions of the picture, which sampling does not need.
+            params.known(&["trilinear", "maxanisotropy"]);
+            let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
+            let plain = params.truth("gamma") == Some(false);
+            let bytes = self.eight_bits(name, at)?;
+            let picture = Picture { bytes, mapping };
+            let curved = if plain { self.pictures().curved(&picture, at) } else { None };
+            return Some(Texture::Picture(curved.unwrap_or(picture), scale));
+        }
         if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
             self.said
                 .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");
