@@ -5,6 +5,7 @@
 //! a light) takes the state as it is.
 
 mod camera;
+mod curve;
 mod directives;
 mod environment;
 mod given;
@@ -16,11 +17,14 @@ mod material;
 pub(super) mod medium;
 pub(super) mod mesh;
 mod named;
+mod net;
 mod params;
 mod pictured;
+mod round;
 pub(super) mod shape;
 pub(super) mod spectrum;
 mod state;
+mod subdivision;
 mod texture;
 mod transform;
 
