@@ -88,7 +88,8 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// The light from a direction of the world: of the nearest texel, as pbrt has it.
+    /// The light from a direction of the world: of the nearest texel, as pbrt-v4 has it, and
+    /// between texels, as pbrt-v3 has it.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
@@ -100,10 +101,28 @@ impl Source {
             }
         };
         let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
-        let light = self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default();
+        let light = match self.map {
+            Map::EqualArea => self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default(),
+            Map::Longitude => between(&self.image, place),
+        };
         let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
         self.scale * light
     }
+}
+
+/// The value at a place of a picture, in its widths and heights from the upper left corner: linear
+/// between texels, and beyond its border it begins again.
+pub(super) fn between(image: &Image, place: Vec2) -> Color {
+    let (width, height) = (image.width as i64, image.height as i64);
+    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let (low_x, low_y) = (x.floor(), y.floor());
+    let texel = |dx: i64, dy: i64| {
+        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
+        let value = image.get(i as u32, j as u32).unwrap_or_default();
+        if value.is_finite() { value } else { Color::ZERO }
+    };
+    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
+    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
 /// The place of a unit vector in the square onto which the sphere is laid with all areas in

@@ -4,7 +4,7 @@
 //! Source of meanings: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th
 //! edition, sections 12.2.2 and 12.2.3.
 
-use super::environment::equal_area;
+use super::environment::{between, equal_area};
 use super::language::Language;
 use super::params::Params;
 use super::state::Reader;
@@ -191,19 +191,4 @@ fn of_areas(image: &Image, dir: Vec3) -> Color {
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
     let value = image.get(texel(place.x, image.width), texel(place.y, image.height)).unwrap_or_default();
     Color::splat(value.element_sum() / 3.0)
-}
-
-/// The value at a place of a picture, in its widths and heights from the upper left corner: linear
-/// between texels, and beyond its border it begins again.
-pub(super) fn between(image: &Image, place: Vec2) -> Color {
-    let (width, height) = (image.width as i64, image.height as i64);
-    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
-    let (low_x, low_y) = (x.floor(), y.floor());
-    let texel = |dx: i64, dy: i64| {
-        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
-        let value = image.get(i as u32, j as u32).unwrap_or_default();
-        if value.is_finite() { value } else { Color::ZERO }
-    };
-    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
-    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }

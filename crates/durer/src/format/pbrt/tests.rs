@@ -2,6 +2,8 @@
 
 mod conventions;
 mod language;
+mod shapes;
+mod third;
 
 use crate::diag::{Diagnostics, Files};
 use crate::format::testing::{self, folder};

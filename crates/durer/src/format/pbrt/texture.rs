@@ -52,15 +52,12 @@ impl Reader<'_> {
             "constant" => of("value", 1.0),
             "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
                 (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
-                (texture, _) => {
-                    instead("of two pictures the first is shown");
+                (texture, other) => self.together([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
+                    instead("of two pictures that lie otherwise the first is shown");
                     texture
-                }
+                }),
             },
-            "uv" if third => {
-                instead("a middle value is taken");
-                Texture::Even(Vec3::new(0.5, 0.5, 0.0))
-            }
+            "uv" if third => self.corners([Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)], &params),
             "scale" => {
                 let scale = self.pattern(&params, "scale", false, Vec3::ONE);
                 match (of("tex", 1.0), scale) {
@@ -76,8 +73,13 @@ impl Reader<'_> {
                 let (first, second) = (of("tex1", 0.0), of("tex2", 1.0));
                 let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
                 params.known(&["dir"]);
-                both(&first, &second, amount.unwrap_or(0.5)).unwrap_or_else(|| {
-                    instead("pictures are not mixed, the first is shown");
+                let share = amount.unwrap_or_else(|| {
+                    instead("its amount is no picture, one half is taken");
+                    0.5
+                });
+                let mixed = || self.together([&first, &second], at, |a, b| a.lerp(b, share));
+                both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
+                    instead("pictures that lie otherwise are not mixed, the first is shown");
                     if first.even().is_some() { second } else { first }
                 })
             }
@@ -93,9 +95,14 @@ impl Reader<'_> {
                 }
             }
             "bilerp" => {
-                instead("the mean of its corners is taken");
                 let corners = [of("v00", 0.0), of("v01", 1.0), of("v10", 0.0), of("v11", 1.0)];
-                Texture::Even(corners.iter().filter_map(Texture::even).sum::<Color>() / 4.0)
+                match corners.each_ref().map(Texture::even) {
+                    [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
+                    all => {
+                        instead("the mean of its corners is taken");
+                        Texture::Even(all.into_iter().flatten().sum::<Color>() / 4.0)
+                    }
+                }
             }
             "dots" => {
                 instead("its outside is taken");
@@ -168,6 +175,11 @@ impl Reader<'_> {
         let at = params.place(name);
         self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
         self.pictures().mean(picture, at)
+    }
+
+    /// The mean of a picture of numbers that the scene has.
+    pub fn mean_of_asset(&self, name: &FileName, at: Span) -> Option<f32> {
+        self.pictures().mean(self.scene.assets.pictures.get(&name.path)?, at)
     }
 
     /// A picture that a number is, with its values made others; `None` where it is no picture.
@@ -261,6 +273,33 @@ impl Reader<'_> {
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
         // Both have v upwards; a picture's rows go down.
         Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
+    }
+
+    /// What lies between the values at (0, 0), (0, 1), (1, 0) and (1, 1), as a picture of four texels.
+    fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
+        let mut mapping = self.mapping(params);
+        // From the middle of a texel to that of the next; rows go down.
+        let [[su, _, du], [_, sv, dv]] = mapping.transform;
+        mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
+        mapping.wrap = [Wrap::Clamp; 2];
+        match pictures::four([v01, v11, v00, v10]) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.25 * (v00 + v01 + v10 + v11)),
+        }
+    }
+
+    /// One picture of two textures, texel by texel; `None` where both are pictures that lie otherwise.
+    fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
+        let pictures = self.pictures();
+        let (picture, most) = match textures {
+            [Texture::Picture(a, by), Texture::Even(b)] => pictures.remade([a, a], at, |a, _| join(*by * a, *b)),
+            [Texture::Even(a), Texture::Picture(b, by)] => pictures.remade([b, b], at, |b, _| join(*a, *by * b)),
+            [Texture::Picture(a, by), Texture::Picture(b, other)] => {
+                pictures.remade([a, b], at, |a, b| join(*by * a, *other * b))
+            }
+            _ => None,
+        }?;
+        Some(Texture::Picture(picture, Vec3::splat(most)))
     }
 
     /// Two fields and two more, as a picture of four texels.

@@ -182,10 +182,10 @@ impl Reader<'_> {
             other => {
                 let old = OLD.iter().find(|row| row.0 == other);
                 let help = match old {
-                    Some((_, now)) => Some(format!("this is of pbrt-v3, and the file of pbrt-v4; `{now}` is nearest")),
+                    Some((_, now)) => Some(format!("this is of pbrt-v3; `{now}` is nearest")),
                     None => meant(other, KNOWN),
                 };
-                self.said.bad_with(at, format!("there is no material `{other}`"), help);
+                self.no_material(other, at, help, old.is_some());
                 return Made::Nothing;
             }
         }

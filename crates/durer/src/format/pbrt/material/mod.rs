@@ -2,13 +2,17 @@
 
 mod disney;
 mod fourth;
+mod substrate;
 mod third;
+
+#[cfg(test)]
+pub(super) use third::alpha_of_roughness;
 
 use super::language::Language;
 use super::made::{AreaLight, Made, Opacity, Texture};
 use super::params::{Kind, Param, Params};
 use super::state::{MATERIAL, Reader};
-use crate::diag::Span;
+use crate::diag::{Diagnostic, Span};
 use crate::format::said::meant;
 use crate::material::mix::Mix;
 use crate::material::principled::Walls;
@@ -79,6 +83,18 @@ impl Reader<'_> {
                 self.said.bad_with(at, format!("there is no material `{name}`"), help);
             }
         }
+    }
+
+    /// Complains of a material that is not there; where the file's language has another word for it,
+    /// with the word that tells the language.
+    fn no_material(&self, name: &str, at: Span, help: Option<String>, other: bool) {
+        let language = if self.language == Language::Third { "pbrt-v3" } else { "pbrt-v4" };
+        let error = Diagnostic::error(format!("there is no material `{name}` in {language}")).code("bad-value").at(at);
+        let error = match self.decided_by.filter(|_| other) {
+            Some(by) => error.related(by, &format!("by this word the file is one of {language}")),
+            None => error,
+        };
+        self.said.push(Diagnostic { help, ..error });
     }
 
     /// Two materials, by number, in a proportion; nothing where they are mixed too deep.

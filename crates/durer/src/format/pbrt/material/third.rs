@@ -10,7 +10,6 @@ use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
 use super::matte;
 use crate::bsdf::albedo;
-use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
@@ -35,6 +34,18 @@ const KNOWN: [&str; 15] = [
     "subsurface",
     "translucent",
     "uber",
+];
+
+/// Materials of pbrt-v4 alone.
+const NEW: [&str; 8] = [
+    "coatedconductor",
+    "coateddiffuse",
+    "conductor",
+    "dielectric",
+    "diffuse",
+    "diffusetransmission",
+    "interface",
+    "thindielectric",
 ];
 
 /// Indices of copper for red, green and blue: what its spectra come to in pbrt-v3.
@@ -66,7 +77,7 @@ impl Rough {
         let roughness = (alphas[0] * alphas[1]).sqrt().min(1.0).sqrt();
         // Over all directions, by their cosine.
         let given = |i: u16| albedo::ggx(((f32::from(i) + 0.5) / f32::from(STEPS)).sqrt(), roughness);
-        let kept = if picture.is_some() { 1.0 } else { (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS) };
+        let kept = (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS);
         Rough { picture, alphas, kept }
     }
 
@@ -79,13 +90,13 @@ impl Rough {
 /// GGX's alpha of a roughness from 0 to 1.
 ///
 /// Source: *Physically Based Rendering*, 3rd edition, section 8.4.2.
-pub(in super::super) fn alpha_of_roughness(roughness: f32) -> f32 {
+pub(in crate::format::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
     let x = fp::ln(roughness.max(1e-3));
     1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)))
 }
 
 /// A rough boundary that reflects, with nothing below it.
-fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
+pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
     (m.specular_color, m.specular_color_texture) = (rough.kept * color, picture);
@@ -132,8 +143,11 @@ impl Reader<'_> {
             (false, both) => both,
         };
         let picture = pictured.and_then(|name| self.changed(params, name, false, |x| alpha(x).max(0.0).sqrt()));
-        if picture.is_some() {
-            return Rough::new(picture, [1.0; 2]);
+        if let Some(picture) = picture {
+            // What is left out is that of its mean.
+            let mean = self.mean_of_asset(&picture, params.at).unwrap_or(0.5);
+            let Rough { kept, .. } = Rough::new(None, [mean * mean; 2]);
+            return Rough { picture: Some(picture), alphas: [1.0; 2], kept };
         }
         let usual = both.map_or(usual, |name| self.value(params, name, usual));
         let alphas = EACH.map(|name| {
@@ -141,6 +155,16 @@ impl Reader<'_> {
             alpha(written).max(1e-3)
         });
         Rough::new(None, alphas)
+    }
+
+    /// The same as the mean of both directions: what lies on a matte base has but one here.
+    pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
+        let rough = self.rough(params, both, each, usual);
+        let [u, v] = rough.alphas;
+        if u != v {
+            self.said.once(params.at, "what is reflected on a matte base is as rough in both directions: their mean is taken");
+        }
+        Rough { alphas: [(u * v).sqrt(); 2], ..rough }
     }
 
     /// An index of refraction, `eta` or `index`.
@@ -197,13 +221,13 @@ impl Reader<'_> {
                 vec![Part { layers, most: 1.0 }]
             }
             "plastic" => {
-                let rough = self.rough(params, Some("roughness"), false, 0.1);
+                let rough = self.even_rough(params, Some("roughness"), false, 0.1);
                 // Its index is 1.5 outside and 1 inside: it reflects as from within.
                 vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
             }
             "uber" => self.uber(params),
             "translucent" => self.translucent(params),
-            "substrate" => vec![self.substrate(params)],
+            "substrate" => self.substrate(params),
             "metal" => {
                 let rough = self.rough(params, Some("roughness"), true, 0.01);
                 let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.plain()));
@@ -241,7 +265,7 @@ impl Reader<'_> {
                 let rough = if smooth { None } else { Some(self.rough(params, None, true, 0.0)) };
                 vec![Part { layers: glass(reflected, through, index, rough.as_ref()), most: 1.0 }]
             }
-            "disney" => vec![self.disney(params)],
+            "disney" => return self.disney(params, at),
             "subsurface" | "kdsubsurface" => vec![self.below(kind, params)],
             "mix" => return self.mix_of_two(params, at),
             "" | "none" => return Made::Nothing,
@@ -256,11 +280,11 @@ impl Reader<'_> {
                 vec![Part { layers: matte(Vec3::new(0.2, 0.12, 0.07)), most: 1.0 }]
             }
             other => {
-                let help = match self.decided_by {
-                    Some(_) => meant(other, KNOWN),
-                    None => meant(other, KNOWN),
+                let help = match NEW.contains(&other) {
+                    true => Some("this is of pbrt-v4".into()),
+                    false => meant(other, KNOWN),
                 };
-                self.said.bad_with(at, format!("there is no material `{other}` in pbrt-v3"), help);
+                self.no_material(other, at, help, NEW.contains(&other));
                 return Made::Nothing;
             }
         };
@@ -286,7 +310,7 @@ impl Reader<'_> {
     }
 
     fn uber(&mut self, params: &Params) -> Vec<Part> {
-        let rough = self.rough(params, Some("roughness"), true, 0.1);
+        let rough = self.even_rough(params, Some("roughness"), true, 0.1);
         let index = self.old_index(params, 1.5);
         let smooth = Rough { picture: None, alphas: [0.0; 2], kept: 1.0 };
         let mut parts = vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, index), &rough)];
@@ -338,35 +362,6 @@ impl Reader<'_> {
             self.said.once(params.at, what);
         }
         vec![matte, Part { most: (up * shine).max_element(), layers: PrincipledMaterial { walls: Walls::Thin, ..gloss } }]
-    }
-
-    /// A matte base below a coat that reflects more at grazing angles.
-    ///
-    /// Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools
-    /// 5(2), 2000.
-    fn substrate(&mut self, params: &Params) -> Part {
-        let rough = self.rough(params, None, true, 0.1);
-        let (color, picture) = self.colored(params, "Kd", 0.5);
-        let (shine, shine_picture) = self.colored(params, "Ks", 0.5);
-        let most = shine.max_element();
-        if most <= 0.0 {
-            let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
-            return Part { layers, most: 1.0 };
-        }
-        // Of light from above as much comes back as there.
-        let (f0, hue) = (most.min(0.98), shine / most);
-        let passing = Vec3::ONE - shine.min(Vec3::ONE);
-        let mut m = PrincipledMaterial {
-            base_color: color * passing * (31.0 / 32.0) / (Vec3::ONE - f0 * hue),
-            base_color_texture: picture,
-            specular_weight: 1.0,
-            specular_ior: fresnel::ior_of_reflectance(f0),
-            specular_color: hue,
-            specular_color_texture: shine_picture,
-            ..PrincipledMaterial::default()
-        };
-        rough.put(&mut m);
-        Part { layers: m, most: 1.0 }
     }
 
     /// What scatters light below a skin that refracts.

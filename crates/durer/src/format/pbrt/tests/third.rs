@@ -1,0 +1,342 @@
+//! pbrt-v3: which files are of it, and what its words mean.
+
+use super::super::material::alpha_of_roughness;
+use super::*;
+use crate::image::{Image, Layer, WriteOptions, format_for};
+use crate::light::{Fade, Light};
+use crate::material::Solid;
+use crate::math::{Color, Vec3};
+use crate::scene::PictureBytes;
+
+const HEAD: &str = "Film \"image\" Camera \"perspective\" WorldBegin ";
+
+fn third(text: &str) -> Scene {
+    clean(&format!("{HEAD}{text}"))
+}
+
+fn close(a: Vec3, b: Vec3) {
+    assert!((a - b).length() < 1e-4 * (1.0 + b.length()), "{a} is not {b}");
+}
+
+fn lights(text: &str) -> Vec<Light> {
+    third(&format!("{text} Shape \"sphere\"")).lights.unwrap().into_iter().map(|light| light.value).collect()
+}
+
+/// The layers of a sphere's material, of a mix each of its parts, with their shares.
+fn parts(text: &str) -> Vec<(f32, PrincipledMaterial)> {
+    let (scene, told) = read(&format!("{HEAD}{text} Shape \"sphere\""));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+    let first = scene.root.as_ref().unwrap().objects[0].material.unwrap();
+    let (mut open, mut found) = (vec![(1.0, first)], Vec::new());
+    while let Some((share, number)) = open.pop() {
+        match &scene.materials[number as usize].value {
+            Material::Principled(layers) => found.push((share, (**layers).clone())),
+            Material::Solid(Solid::Mix(mix), _) => {
+                open.push((share * (1.0 - mix.share), mix.material2));
+                open.push((share * mix.share, mix.material1));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    found
+}
+
+/// A picture as a file of PFM.
+fn pfm(width: u32, height: u32, pixel: impl Fn(u32, u32) -> Color) -> Vec<u8> {
+    let pixels = (0..width * height).map(|i| pixel(i % width, i / width)).collect();
+    let image = Image::from_pixels(width, height, pixels).unwrap();
+    let mut bytes = Vec::new();
+    let format = format_for("a.pfm").unwrap();
+    format.write(&[Layer::data("", image)], &WriteOptions::default(), &mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn the_first_word_that_one_language_alone_has_decides() {
+    // In pbrt-v3 a light is as strong as its numbers; in pbrt-v4 a spectrum has luminance 1.
+    let light = "LightSource \"point\" \"spectrum I\" [ 300 5 900 5 ] Shape \"sphere\"";
+    let is_third = |text: &str| {
+        let (scene, told) = read(&format!("{text} {light}"));
+        let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+        let Light::Point(point) = &scene.lights.unwrap()[0].value else { panic!() };
+        point.color.y > 1.0
+    };
+    let camera = "Camera \"perspective\" WorldBegin ";
+    for text in [
+        &format!("Film \"image\" {camera}")[..],
+        &format!("Sampler \"lowdiscrepancy\" {camera}"),
+        &format!("SurfaceIntegrator \"path\" {camera}"),
+        &format!("{camera} Material \"matte\""),
+        &format!("{camera} Material \"none\" MakeNamedMaterial \"diffuse\" \"string type\" \"uber\""),
+        &format!("{camera} Texture \"t\" \"color\" \"constant\""),
+        &format!("{camera} Shape \"cone\""),
+        &format!("{camera} LightSource \"distant\" \"rgb scale\" [ 1 1 1 ]"),
+        &format!("{camera} AreaLightSource \"diffuse\" \"integer nsamples\" 4"),
+        &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\""),
+        // What comes first counts.
+        &format!("{camera} Material \"matte\" Option \"seed\" 1"),
+    ] {
+        assert!(is_third(text), "{text}");
+    }
+    for text in [
+        &format!("Film \"rgb\" {camera}")[..],
+        camera,
+        &format!("{camera} MakeNamedMaterial \"matte\" \"string type\" \"diffuse\""),
+        &format!("{camera} LightSource \"distant\" \"float scale\" 1"),
+        &format!("Film \"rgb\" {camera} LightSource \"point\" \"rgb I\" [ 1 1 1 ]"),
+        &format!(
+            "{camera} Texture \"mirror\" \"spectrum\" \"constant\" MakeNamedMaterial \"a\" \"string type\" \"diffuse\" \
+             \"texture reflectance\" \"mirror\""
+        ),
+    ] {
+        assert!(!is_third(text), "{text}");
+    }
+    // A file that is included may say so first.
+    let folder = folder(&[("a.pbrt", b"Material \"matte\"")]);
+    let text = format!("{camera} {light} Include \"a.pbrt\"");
+    let (scene, told) = read_in(folder.path(), &text);
+    let Light::Point(point) = &scene.unwrap_or_else(|| panic!("{told:?}")).lights.unwrap()[0].value else { panic!() };
+    assert!(point.color.y > 1.0);
+}
+
+#[test]
+fn lights_are_as_strong_as_their_numbers() {
+    let pi = std::f32::consts::PI;
+    let point = |text: &str| match &lights(&format!("LightSource \"point\" {text}"))[0] {
+        Light::Point(point) => (point.position, point.color),
+        other => panic!("{other:?}"),
+    };
+    let (place, color) = point("\"color I\" [ 2 4 6 ] \"rgb scale\" [ 0.5 1 2 ] \"point from\" [ 1 2 3 ]");
+    close(color, Vec3::new(1.0, 4.0, 12.0) / pi);
+    assert_eq!(place, Vec3::new(1.0, 2.0, 3.0));
+    // Red, green and blue of a spectrum of 1 are those of X = Y = Z = 1.
+    let white = Vec3::new(1.2048, 0.9483, 0.9087);
+    assert!((point("\"spectrum I\" [ 500 3 600 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.01);
+    assert!((point("\"xyz I\" [ 3 3 3 ]").1 * pi / 3.0 - white).abs().max_element() < 0.001);
+    // A black body is 1 where it is strongest, here at 500 nm; of red light less than of white.
+    let body = |text: &str| point(&format!("\"blackbody I\" [ {text} ]")).1;
+    let warm = body("5795.5 1");
+    assert!(warm.y * pi > 0.9 && warm.y * pi < 1.0, "{warm}");
+    close(body("5795.5 4"), 4.0 * warm);
+    let head = "Film \"image\" \"float scale\" 3 Camera \"perspective\" \"float shutterclose\" 7 WorldBegin ";
+    let scene = clean(&format!("{head} LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] Shape \"sphere\""));
+    // The film's scale counts, and how long the shutter is open does not.
+    assert_eq!(scene.background.color, Vec3::new(3.0, 6.0, 9.0));
+    let Light::Spot(spot) = lights("LightSource \"spot\" \"float coneangle\" 40")[0].clone() else { panic!() };
+    assert_eq!((spot.angle, spot.inner_angle, spot.fade), (40.0, 35.0, Fade::Fourth));
+    let text = "AreaLightSource \"area\" \"rgb L\" [ 1 2 3 ] \"rgb scale\" [ 2 2 2 ] \"integer nsamples\" 8";
+    let (_, shining) = parts(text)[0].clone();
+    close(shining.emission_luminance * shining.emission_color, Vec3::new(2.0, 4.0, 6.0));
+}
+
+#[test]
+fn pictures_of_all_directions_have_z_above_and_x_at_their_left_edge() {
+    // Rows go from z down, columns from x over y.
+    let bytes = pfm(8, 4, |x, y| Vec3::new(x as f32, y as f32, 1.0));
+    let folder = folder(&[("sky.pfm", &bytes)]);
+    let text = format!("{HEAD} LightSource \"infinite\" \"string mapname\" \"sky.pfm\" \"rgb L\" [ 2 1 1 ] Shape \"sphere\"");
+    let (scene, told) = read_in(folder.path(), &text);
+    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+    let PictureBytes::Here(name, bytes) = &scene.assets.pictures["sky.pfm#environment.pfm"].bytes else { panic!() };
+    let encoded = crate::image::Encoded::open(bytes, name).unwrap();
+    let sky = encoded.read(u64::MAX, crate::image::decode_linear).unwrap();
+    let at = |dir: [f64; 3]| crate::format::panorama::looked_up(&sky, dir.into());
+    // Between the texels of 45 and of 135 degrees lies y, between 22.5 and 67.5 down the pole.
+    let y = at([0.0, 1.0, 0.001]);
+    assert!((y.x / 2.0 - 1.5).abs() < 0.6 && (y.y - 1.5).abs() < 0.6, "{y}");
+    let west = at([-1.0, 0.0, 0.001]);
+    assert!((west.x / 2.0 - 3.5).abs() < 0.6, "{west}");
+    assert!(at([0.0, 0.1, 1.0]).y < 0.6 && at([0.0, 0.1, -1.0]).y > 2.4);
+}
+
+#[test]
+fn lights_by_pictures_shine_as_those_say() {
+    let gonio = pfm(8, 4, |x, y| Vec3::splat(if y == 0 { 5.0 } else { (x + 1) as f32 }));
+    let slide = pfm(4, 2, |x, y| Vec3::new(x as f32, y as f32, 0.0));
+    let folder = folder(&[("gonio.pfm", &gonio), ("slide.pfm", &slide)]);
+    let lamps = |text: &str| {
+        let (scene, told) = read_in(folder.path(), &format!("{HEAD}{text} Shape \"sphere\""));
+        let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+        assert_eq!(told, [""; 0]);
+        let shining = move |dir: [f32; 3]| -> Color {
+            let each = scene.lights.iter().flatten().map(|light| {
+                use crate::light::Emitter;
+                let profile = &scene.assets.profiles[&light.value.profile().unwrap().path];
+                light.value.color() * profile.at(light.value.in_profile(Vec3::from_array(dir).normalize()))
+            });
+            each.sum()
+        };
+        shining
+    };
+    let gonio = "LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"string mapname\" \"gonio.pfm\"";
+    let shining = lamps(gonio);
+    // Its pole is y; columns go from x over z.
+    close(shining([0.0, 1.0, 0.0]), 5.0 * Vec3::new(1.0, 2.0, 3.0));
+    close(shining([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
+    close(shining([-1.0, 0.0, 0.0]), 4.5 * Vec3::new(1.0, 2.0, 3.0));
+    close(shining([0.0, 0.0, -1.0]), 6.5 * Vec3::new(1.0, 2.0, 3.0));
+    // Turned: its pole is x, and its z stays.
+    let turned = lamps(&format!("Rotate -90 0 0 1 {gonio}"));
+    close(turned([1.0, 0.0, 0.0]), 5.0 * Vec3::new(1.0, 2.0, 3.0));
+    close(turned([0.0, 0.0, 1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
+    // A mirrored one.
+    let mirrored = lamps(&format!("Scale 1 1 -1 {gonio}"));
+    close(mirrored([0.0, 0.0, -1.0]), 2.5 * Vec3::new(1.0, 2.0, 3.0));
+    // 90 degrees across the shorter side: the picture reaches from -2 to 2 and from -1 to 1.
+    let slide = lamps("LightSource \"projection\" \"float fov\" 90 \"string mapname\" \"slide.pfm\"");
+    let at = |x: f32, y: f32| slide([x, y, 1.0]);
+    for (place, wanted) in [((0.5, 0.5), [2.0, 1.0, 0.0]), ((-1.5, -0.5), [0.0; 3]), ((1.5, 0.0), [3.0, 0.5, 0.0])] {
+        assert!((at(place.0, place.1) - Vec3::from_array(wanted)).length() < 0.05, "{place:?} {}", at(place.0, place.1));
+    }
+    assert_eq!((at(2.1, 0.0), at(0.0, 1.1), slide([0.0, 0.0, -1.0])), (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO));
+}
+
+#[test]
+fn roughness_is_told_by_pbrt_v3_s_polynomial() {
+    // At 1 the logarithm is 0; at 0.001 it is as small as it gets.
+    assert_eq!(alpha_of_roughness(1.0), 1.62142);
+    let x = 0.001_f32.ln();
+    let least = 1.62142 + 0.819955 * x + 0.1734 * x * x + 0.0171201 * x * x * x + 0.000640711 * x * x * x * x;
+    assert!((alpha_of_roughness(0.0) - least).abs() < 1e-4 && (least - 0.0477).abs() < 0.001, "{least}");
+    let metal = |text: &str| parts(&format!("Material \"metal\" {text}"))[0].1.specular_roughness;
+    assert!((metal("\"float roughness\" 0.1") - alpha_of_roughness(0.1).sqrt()).abs() < 1e-5);
+    assert!((metal("\"float roughness\" 0.09 \"bool remaproughness\" \"false\"") - 0.3).abs() < 1e-5);
+    assert_eq!(parts("Material \"glass\"")[0].1.specular_roughness, 0.0);
+}
+
+#[test]
+fn sums_give_back_what_their_parts_do() {
+    let whole = |parts: &[(f32, PrincipledMaterial)], of: fn(&PrincipledMaterial) -> Vec3| -> Vec3 {
+        parts.iter().map(|(share, layers)| *share * of(layers)).sum()
+    };
+    let plastic = parts(
+        "Material \"plastic\" \"rgb Kd\" [ 0.4 0.2 0.1 ] \"rgb Ks\" [ 0.1 0.2 0.3 ] \"float roughness\" 0.001 \"bool remaproughness\" \"false\"",
+    );
+    assert_eq!(plastic.len(), 2);
+    close(whole(&plastic, |layers| layers.base_color), Vec3::new(0.4, 0.2, 0.1));
+    let shine = |layers: &PrincipledMaterial| if layers.specular_weight > 0.0 { layers.specular_color } else { Vec3::ZERO };
+    assert!((whole(&plastic, shine) - Vec3::new(0.1, 0.2, 0.3)).abs().max_element() < 2e-3);
+    assert!(plastic.iter().any(|(_, layers)| (layers.specular_ior - 1.0 / 1.5).abs() < 1e-6));
+    // Black parts are no parts.
+    assert_eq!(parts("Material \"plastic\" \"rgb Ks\" [ 0 0 0 ]").len(), 1);
+    let uber = parts(
+        "Material \"uber\" \"rgb Kd\" [ 0.3 0.3 0.3 ] \"rgb Ks\" [ 0 0 0 ] \"rgb Kr\" [ 0.2 0.4 0.6 ] \"rgb Kt\" [ 0.5 0.5 0.5 ]\n\
+         \"rgb opacity\" [ 0.25 0.25 0.25 ] \"float index\" 1.3",
+    );
+    close(whole(&uber, |layers| layers.base_color * (1.0 - layers.transmission_weight)), Vec3::splat(0.3));
+    close(whole(&uber, |layers| layers.transmission_color * layers.transmission_weight), Vec3::splat(0.5));
+    close(whole(&uber, |layers| layers.specular_color * layers.transmission_weight), Vec3::new(0.2, 0.4, 0.6));
+    assert!(uber.iter().all(|(_, layers)| layers.opacity == 0.25));
+    // What shines shines as much as is written, whatever it is made of.
+    let shining = parts("AreaLightSource \"diffuse\" \"rgb L\" [ 2 4 6 ] Material \"plastic\"");
+    close(whole(&shining, |layers| layers.emission_luminance * layers.emission_color), Vec3::new(2.0, 4.0, 6.0));
+}
+
+#[test]
+fn the_other_materials_have_their_own_words() {
+    let only = |text: &str| {
+        let mut parts = parts(text);
+        assert_eq!(parts.len(), 1, "{text}");
+        parts.remove(0).1
+    };
+    let glass = only("Material \"glass\" \"float eta\" 1.3 \"rgb Kr\" [ 0.5 0.5 0.5 ] \"rgb Kt\" [ 0.1 0.2 0.3 ]");
+    assert_eq!((glass.transmission_weight, glass.specular_ior), (1.0, 1.3));
+    assert_eq!((glass.specular_color, glass.transmission_color), (Vec3::splat(0.5), Vec3::new(0.1, 0.2, 0.3)));
+    assert_eq!(only("Material \"glass\" \"float index\" 2").specular_ior, 2.0);
+    let mirror = only("Material \"mirror\" \"rgb Kr\" [ 0.4 0.8 0.2 ]");
+    close(mirror.specular_weight * mirror.base_color, Vec3::new(0.4, 0.8, 0.2));
+    assert_eq!((mirror.base_metalness, mirror.specular_roughness), (1.0, 0.0));
+    // Copper, at right angles: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
+    let copper = only("Material \"metal\"").base_color;
+    close(copper, Vec3::new(0.9546, 0.6196, 0.5104));
+    let rough = only("Material \"matte\" \"rgb Kd\" [ 0.5 0.5 0.5 ] \"float sigma\" 30");
+    assert!(rough.base_diffuse_roughness > 0.3 && rough.base_color.x < 0.5);
+    // Of light from above a substrate gives back Ks, and 31/32 of (1 - Ks) Kd.
+    let coated = only("Material \"substrate\" \"rgb Kd\" [ 0.2 0.4 0.8 ] \"rgb Ks\" [ 0.04 0.04 0.04 ]");
+    let f0 = (coated.specular_ior - 1.0) / (coated.specular_ior + 1.0);
+    assert!((f0 * f0 - 0.04).abs() < 1e-5);
+    close(coated.base_color * 0.96, 0.96 * 31.0 / 32.0 * Vec3::new(0.2, 0.4, 0.8));
+    // The amount is the share of the first.
+    let mixed = parts(
+        "MakeNamedMaterial \"a\" \"string type\" \"matte\" \"rgb Kd\" [ 1 0 0 ]\n\
+         MakeNamedMaterial \"b\" \"string type\" \"matte\" \"rgb Kd\" [ 0 0 1 ]\n\
+         Material \"mix\" \"string namedmaterial1\" \"a\" \"string namedmaterial2\" \"b\" \"rgb amount\" [ 0.3 0.3 0.3 ]",
+    );
+    let all: Vec3 = mixed.iter().map(|(share, layers)| *share * layers.base_color).sum();
+    close(all, Vec3::new(0.3, 0.0, 0.7));
+    let disney = only("Material \"disney\" \"rgb color\" [ 0.1 0.2 0.3 ] \"float metallic\" 0.5 \"float roughness\" 0.4");
+    assert_eq!((disney.base_color, disney.base_metalness), (Vec3::new(0.1, 0.2, 0.3), 0.5));
+    assert!((disney.specular_roughness - 0.4).abs() < 1e-5);
+}
+
+#[test]
+fn textures_have_pbrt_v3_s_parameters() {
+    let color = |text: &str| {
+        let text = format!("{text} Material \"matte\" \"texture Kd\" \"t\"");
+        parts(&text)[0].1.base_color
+    };
+    close(
+        color("Texture \"t\" \"color\" \"scale\" \"rgb tex1\" [ 0.2 0.4 0.6 ] \"color tex2\" [ 0.5 0.5 0.5 ]"),
+        Vec3::new(0.1, 0.2, 0.3),
+    );
+    close(
+        color("Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float amount\" 0.25"),
+        Vec3::new(0.75, 0.0, 0.25),
+    );
+}
+
+#[test]
+fn errors_and_warnings_of_pbrt_v3() {
+    for (text, wanted) in [
+        ("\nMaterial \"mattte\"", "scene.pbrt:2:11 error there is no material `mattte` in pbrt-v3 (did you mean `matte`?)"),
+        ("Material \"conductor\"", "error there is no material `conductor` in pbrt-v3 (this is of pbrt-v4"),
+        ("Material \"mix\" \"string namedmaterial1\" \"a\"", "error there is no material `a` before this"),
+        ("Material \"mix\"", "error a mix needs `\"string namedmaterial1\"`"),
+        ("Shape \"bilinearmesh\"", "error there is no shape `bilinearmesh`"),
+        ("LightSource \"infinite\" \"string mapname\" \"no.exr\"", "error there is no file `no.exr`"),
+        ("LightSource \"projection\" \"float fov\" 180", "error a field of view must be more than 0 and less than 180"),
+        ("Texture \"t\" \"colour\" \"constant\"", "error textures are `float` or `spectrum`, not `colour`"),
+        ("Material \"matte\" \"spectrum Kd\" \"no.spd\"", "error the spectrum cannot be had: there is no file `no.spd`"),
+        ("Shape \"curve\"", "error a curve needs points"),
+        ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 ]", "error 2 points make no curve of degree 3"),
+        (
+            "Shape \"curve\" \"string type\" \"ribbon\" \"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]",
+            "error a ribbon of 1 pieces needs 2 normals `N`, found 0",
+        ),
+        ("Shape \"sphere\" \"float zmin\" 0.5 \"float zmax\" 0.5", "error nothing of this sphere is between"),
+        ("Shape \"cone\" \"float height\" 0", "error `height` must be more than 0"),
+        ("Shape \"paraboloid\" \"float zmin\" -1", "error a paraboloid goes from `zmin`"),
+        ("Shape \"hyperboloid\" \"point p2\" [ 0 0 1 ]", "error a hyperboloid needs two points"),
+        ("Shape \"disk\" \"float phimax\" 0", "error `phimax` must be more than 0 degrees"),
+        ("Shape \"heightfield\" \"integer nu\" 2 \"integer nv\" 2 \"float Pz\" [ 1 2 3 ]", "error `Pz` has 3 values for 2 x 2"),
+        ("Shape \"heightfield\" \"integer nu\" 1", "error `nu` and `nv` must be 2 or more"),
+        ("Shape \"nurbs\" \"integer nu\" 2 \"integer nv\" 2", "error `uorder` must be from 2"),
+        (
+            "Shape \"loopsubdiv\" \"integer levels\" 99 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]",
+            "error `levels` must be from 0 to 16",
+        ),
+    ] {
+        let (scene, told) = read(&format!("{HEAD}{text}"));
+        assert!(scene.is_none(), "{text}");
+        assert!(told.iter().any(|told| told.contains(wanted)), "{text}\n{wanted}\n{told:#?}");
+    }
+    for (text, wanted) in [
+        (
+            "Material \"plastic\" \"float uroughness\" 1",
+            "warning the material `plastic` has no parameter `uroughness`: it is left out (did you mean `roughness`?)",
+        ),
+        ("LightSource \"point\" \"float scale\" 3", "warning `scale` of a light is a colour in pbrt-v3, which passes over"),
+        ("LightSource \"point\" \"float power\" 3", "warning this light has no parameter `power`"),
+        ("Material \"fourier\" \"string bsdffile\" \"a.bsdf\"", "warning measured materials have no counterpart"),
+        ("Material \"disney\" \"float flatness\" 1", "warning `flatness` has no counterpart"),
+        ("Material \"uber\" \"rgb opacity\" [ 1 0 0 ]", "warning an `opacity` of a colour has no counterpart"),
+        ("Material \"translucent\"", "warning light that facets of `translucent` let through has no counterpart"),
+        ("Shape \"curve\" \"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]", "warning flat curves turn to where they are seen from"),
+        ("Material \"substrate\" \"float uroughness\" 0.3", "warning what is reflected on a matte base is as rough in both"),
+        ("MakeNamedMedium \"a\" \"string type\" \"homogeneous\" \"string preset\" \"Skin7\"", "warning the medium `Skin7` is not known"),
+    ] {
+        let (scene, told) = read(&format!("{HEAD}{text} Shape \"sphere\""));
+        assert!(scene.is_some() && told.len() == 1, "{text}\n{told:#?}");
+        assert!(told[0].contains(wanted), "{text}\n{wanted}\n{told:#?}");
+    }
+}
