@@ -49,8 +49,12 @@ pub(super) fn mesh(params: &Params, reversed: bool) -> Option<MeshData> {
     }
     let normals = params.triples("N").unwrap_or_default();
     if kind == "ribbon" && normals.len() != pieces.len() + 1 {
-        let message =
-            format!("a ribbon of {} pieces needs {} normals `N`, found {}", pieces.len(), pieces.len() + 1, normals.len());
+        let message = format!(
+            "a ribbon of {} pieces needs {} normals `N`, found {}",
+            pieces.len(),
+            pieces.len() + 1,
+            normals.len()
+        );
         said.bad(params.place("N"), message);
         return None;
     }
@@ -146,7 +150,9 @@ fn pieces(params: &Params) -> Option<Vec<Piece>> {
     };
     if points.len() <= degree || (points.len() - 1 - degree) % step != 0 {
         let message = match basis {
-            "bezier" => format!("{} points make no curve of degree {degree}: 1 and a multiple of {degree} do", points.len()),
+            "bezier" => {
+                format!("{} points make no curve of degree {degree}: 1 and a multiple of {degree} do", points.len())
+            }
             _ => format!("{} points make no curve of degree {degree}: more than {degree} do", points.len()),
         };
         said.bad(params.place("P"), message);

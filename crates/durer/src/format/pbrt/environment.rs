@@ -45,7 +45,9 @@ impl Reader<'_> {
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MAX_ROWS);
+        // What is fine about a pole lies elsewhere in the picture that is made.
+        let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
+        let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
         let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
         if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {

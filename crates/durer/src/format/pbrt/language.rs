@@ -77,8 +77,7 @@ const NEW_MATERIALS: [&str; 9] = [
 ];
 
 /// Names of parameters, and types, that only the third has.
-const OLD_PARAMETERS: [&str; 8] =
-    ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
+const OLD_PARAMETERS: [&str; 8] = ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
 const OLD_TYPES: [&str; 2] = ["color", "xyz"];
 
 /// Files that are looked into, and how deep they include each other.

@@ -5,8 +5,8 @@
 //! a spectrum has luminance 1 times `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition,
 //! chapter 12) a light is as strong as is written, and `scale` is a colour.
 
-use super::made::{AreaLight, Infinite, Map};
 use super::language::Language;
+use super::made::{AreaLight, Infinite, Map};
 use super::params::{Kind, Param, Params};
 use super::state::{LIGHT, Reader};
 use crate::diag::Span;
@@ -31,7 +31,9 @@ fn color(params: &Params, name: &'static str) -> Color {
 fn colored_scale(params: &Params) -> Color {
     match params.get("scale") {
         Some(param) if param.kind == Kind::Float => {
-            params.said.once(param.at, "`scale` of a light is a colour in pbrt-v3, which passes over a number: so do we");
+            params
+                .said
+                .once(param.at, "`scale` of a light is a colour in pbrt-v3, which passes over a number: so do we");
             Vec3::ONE
         }
         _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),

@@ -56,10 +56,7 @@ impl Medium {
             let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
             scale * given.unwrap_or(Vec3::from_array(usual))
         };
-        params.left_out(
-            &["Le", "Lescale", "Le_scale"],
-            "the medium does not shine",
-        );
+        params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
         Medium {
             absorption: coefficient("sigma_a", [0.0011, 0.0024, 0.014]),
             scattering: coefficient("sigma_s", [2.55, 3.21, 3.77]),

@@ -97,7 +97,8 @@ fn knots<'a>(params: &'a Params, names: [&'static str; 4], count: u32) -> Option
     let order = params.whole(names[0]).unwrap_or(0);
     let all = params.floats(names[1]).unwrap_or_default();
     let rising = all.windows(2).all(|pair| pair[0] <= pair[1]);
-    if !(2..=HIGHEST.min(i64::from(count))).contains(&order) || all.len() != count as usize + order as usize || !rising {
+    if !(2..=HIGHEST.min(i64::from(count))).contains(&order) || all.len() != count as usize + order as usize || !rising
+    {
         let message = format!(
             "`{}` must be from 2 to the number of points, and `{}` as many rising numbers as both together",
             names[0], names[1]

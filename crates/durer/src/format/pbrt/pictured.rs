@@ -138,7 +138,10 @@ impl Reader<'_> {
             }
         };
         if !third && kind == "goniometric" && image.width != image.height {
-            let message = format!("{} x {} pixels are no picture of all directions: it must be square", image.width, image.height);
+            let message = format!(
+                "{} x {} pixels are no picture of all directions: it must be square",
+                image.width, image.height
+            );
             self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
             return None;
         }

@@ -99,8 +99,9 @@ pub(super) fn disk(params: &Params, [inner, outer]: [f32; 2], height: f32, flipp
 pub(super) fn cone(params: &Params, flipped: bool) -> MeshData {
     let radius = f64::from(params.positive("radius").unwrap_or(1.0));
     let height = f64::from(params.positive("height").unwrap_or(1.0));
-    let line =
-        |v: f64| (DVec3::new((1.0 - v) * radius, 0.0, v * height), DVec3::new(-radius, 0.0, height).normalize_or(DVec3::Z));
+    let line = |v: f64| {
+        (DVec3::new((1.0 - v) * radius, 0.0, v * height), DVec3::new(-radius, 0.0, height).normalize_or(DVec3::Z))
+    };
     oriented(turned(f64::from(turn(params)), 1, line), flipped)
 }
 

@@ -78,8 +78,16 @@ impl Reader<'_> {
                 data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
             }
             other => {
-                let mut known =
-                    vec!["sphere", "disk", "cylinder", "trianglemesh", "plymesh", "bilinearmesh", "loopsubdiv", "curve"];
+                let mut known = vec![
+                    "sphere",
+                    "disk",
+                    "cylinder",
+                    "trianglemesh",
+                    "plymesh",
+                    "bilinearmesh",
+                    "loopsubdiv",
+                    "curve",
+                ];
                 if third {
                     known.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
                 }

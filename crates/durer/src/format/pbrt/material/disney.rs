@@ -38,7 +38,7 @@ impl Reader<'_> {
             transmission_color: color.map(|c| c.max(0.0).sqrt()),
             ..PrincipledMaterial::default()
         };
-        Rough::new(None, alphas).put(&mut m);
+        Rough::new(alphas).put(&mut m);
         if sheen > 0.0 {
             let hue = color / color.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-6);
             let fuzz = Vec3::ONE.lerp(hue, tint);

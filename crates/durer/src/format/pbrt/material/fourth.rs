@@ -269,7 +269,9 @@ impl Reader<'_> {
             self.said.bad(param.values_at, format!("a mix is of two materials, not of {}", names.len()));
             return Made::Nothing;
         };
-        let (Some(a), Some(b)) = (self.known_material(first, param.values_at), self.known_material(second, param.values_at)) else {
+        let (Some(a), Some(b)) =
+            (self.known_material(first, param.values_at), self.known_material(second, param.values_at))
+        else {
             return Made::Nothing;
         };
         self.mix([a, b], share, at)

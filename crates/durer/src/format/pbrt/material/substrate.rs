@@ -5,10 +5,9 @@
 
 use super::super::params::Params;
 use super::super::state::Reader;
-use super::third::{Part, glossy};
 use super::matte;
-use crate::bsdf::fresnel;
-use crate::bsdf::microfacet::Ggx;
+use super::third::{Part, glossy};
+use crate::bsdf::{albedo, fresnel};
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec3, fp};
 use std::f32::consts::TAU;
@@ -49,16 +48,13 @@ impl Reader<'_> {
     }
 }
 
-/// What the coat reflects on the mean over what facets of a dielectric do, by as much at right angles.
-///
-/// Both are sums over the same facets, seen from directions by their cosine.
+/// What the coat reflects on the mean over what facets of a dielectric do here, by as much at right
+/// angles.
 pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
     const POINTS: u16 = 4096;
     // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
     const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);
-    let ggx = Ggx::new(alpha.clamp(1e-3, 1.0).sqrt(), 0.0).clamped();
-    let eta = fresnel::ior_of_reflectance(f0);
-    let (mut blend, mut facets) = (0.0, 0.0);
+    let mut blend = 0.0;
     for i in 0..POINTS {
         let u = (Vec3::splat(0.5) + f32::from(i) * STEPS).fract();
         let mu = u.x.max(1e-4).sqrt();
@@ -71,12 +67,13 @@ pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
         let h = Vec3::new(across * cos, across * sin, up);
         let cosine = wo.dot(h);
         let wi = 2.0 * cosine * h - wo;
-        if cosine <= 0.0 || wi.z <= 0.0 {
-            continue;
+        if cosine > 0.0 && wi.z > 0.0 {
+            let schlick = f0 + (1.0 - f0) * fp::pow(1.0 - cosine.min(1.0), 5.0);
+            blend += schlick * wi.z / (up * wi.z.max(wo.z));
         }
-        let schlick = f0 + (1.0 - f0) * fp::pow(1.0 - cosine.min(1.0), 5.0);
-        blend += schlick * wi.z / (up * wi.z.max(wo.z));
-        facets += fresnel::dielectric(cosine.min(1.0), eta) * ggx.masking_shadowing(wo, wi) * cosine / (up * wo.z);
     }
-    if facets > 0.0 { blend / facets } else { 1.0 }
+    let eta = fresnel::ior_of_reflectance(f0);
+    let reflected = albedo::single_means(eta, alpha.clamp(0.0, 1.0).sqrt())[0];
+    // What is left out of facets is left out already.
+    if reflected > 0.0 { blend / f32::from(POINTS) / reflected } else { 1.0 }
 }

@@ -66,24 +66,35 @@ pub(super) struct Rough {
     picture: Option<FileName>,
     /// GGX's alpha along u and v.
     pub alphas: [f32; 2],
-    /// The share of light that it gives back at once, where it would reflect all: pbrt-v3 leaves the
-    /// rest out, and we do not.
-    pub kept: f32,
+    /// Our roughness; of a picture its mean.
+    mean: f32,
 }
 
 impl Rough {
-    pub fn new(picture: Option<FileName>, alphas: [f32; 2]) -> Self {
-        const STEPS: u16 = 8;
-        let roughness = (alphas[0] * alphas[1]).sqrt().min(1.0).sqrt();
-        // Over all directions, by their cosine.
-        let given = |i: u16| albedo::ggx(((f32::from(i) + 0.5) / f32::from(STEPS)).sqrt(), roughness);
-        let kept = (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS);
-        Rough { picture, alphas, kept }
+    pub fn new(alphas: [f32; 2]) -> Self {
+        Rough { picture: None, alphas, mean: (alphas[0] * alphas[1]).sqrt().min(1.0).sqrt() }
     }
 
     pub fn put(&self, m: &mut PrincipledMaterial) {
         m.specular_roughness_texture = self.picture.clone();
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(self.alphas);
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.picture.is_none() && self.alphas == [0.0; 2]
+    }
+
+    /// The share of light that it gives back at once, where it reflects all, on the mean over all
+    /// directions: pbrt-v3 leaves the rest out, and we do not.
+    fn kept_by_metal(&self) -> f32 {
+        const STEPS: u16 = 8;
+        let given = |i: u16| albedo::ggx(((f32::from(i) + 0.5) / f32::from(STEPS)).sqrt(), self.mean);
+        (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS)
+    }
+
+    /// The same of a boundary, reflected or refracted.
+    fn kept(&self, index: f32) -> f32 {
+        if self.is_smooth() { 1.0 } else { albedo::single_means(index, self.mean)[1] }
     }
 }
 
@@ -99,26 +110,27 @@ pub(in crate::format::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
 pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
-    (m.specular_color, m.specular_color_texture) = (rough.kept * color, picture);
+    (m.specular_color, m.specular_color_texture) = (rough.kept(ior) * color, picture);
     rough.put(&mut m);
     m
 }
 
-/// The colour of an energy-preserving rough surface that gives back, of light from above, what
-/// Oren's and Nayar's does, and its roughness.
+/// The colour of an energy-preserving rough surface that gives back as much on the mean as Oren's and
+/// Nayar's does, and its roughness.
 ///
 /// Source: Oren and Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994.
 fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
+    // The mean of max(0, cos) sin tan over both directions by their cosines: 2/3 - 64 / (45 pi).
+    const LEANING: f32 = 0.213_954;
     let sigma = degrees.to_radians();
     let variance = sigma * sigma;
     let (a, b) = (1.0 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09));
     let roughness = (b / a).clamp(0.0, 1.0);
-    // As in `bsdf::lobe::diffuse`: what is scattered once from above, on the mean, and again.
-    let once = 1.0 / (1.0 + 0.287_793 * roughness);
-    let mean = once * (1.0 + 0.072_488 * roughness);
-    let whole = |c: f32| c * once + c * c * mean * (1.0 - once) / (1.0 - c * (1.0 - mean));
+    // As in `bsdf::lobe::diffuse`: what is scattered once on the mean, and again.
+    let mean = (1.0 + 0.072_488 * roughness) / (1.0 + 0.287_793 * roughness);
+    let whole = |c: f32| c * mean + c * c * mean * (1.0 - mean) / (1.0 - c * (1.0 - mean));
     let solved = color.map(|wanted| {
-        let wanted = wanted.min(1.0) * a;
+        let wanted = wanted.min(1.0) * (a + LEANING * b);
         let (mut low, mut high) = (0.0, 1.0);
         for _ in 0..24 {
             let middle = 0.5 * (low + high);
@@ -146,15 +158,14 @@ impl Reader<'_> {
         if let Some(picture) = picture {
             // What is left out is that of its mean.
             let mean = self.mean_of_asset(&picture, params.at).unwrap_or(0.5);
-            let Rough { kept, .. } = Rough::new(None, [mean * mean; 2]);
-            return Rough { picture: Some(picture), alphas: [1.0; 2], kept };
+            return Rough { picture: Some(picture), alphas: [1.0; 2], mean };
         }
         let usual = both.map_or(usual, |name| self.value(params, name, usual));
         let alphas = EACH.map(|name| {
             let written = if each { self.value(params, name, usual) } else { usual };
             alpha(written).max(1e-3)
         });
-        Rough::new(None, alphas)
+        Rough::new(alphas)
     }
 
     /// The same as the mean of both directions: what lies on a matte base has but one here.
@@ -162,7 +173,10 @@ impl Reader<'_> {
         let rough = self.rough(params, both, each, usual);
         let [u, v] = rough.alphas;
         if u != v {
-            self.said.once(params.at, "what is reflected on a matte base is as rough in both directions: their mean is taken");
+            self.said.once(
+                params.at,
+                "what is reflected on a matte base is as rough in both directions: their mean is taken",
+            );
         }
         Rough { alphas: [(u * v).sqrt(); 2], ..rough }
     }
@@ -183,15 +197,20 @@ impl Reader<'_> {
 
     /// A material that scatters as several do together.
     pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> Made {
+        // What gives nothing back may still be there in part only.
+        let opacity =
+            parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
+        let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };
         let mut parts: Vec<Part> = parts.into_iter().filter(|part| part.most > 0.0).collect();
         let whole: f32 = parts.iter().map(|part| part.most).sum();
-        let Some(last) = parts.pop() else { return Made::Layers(Box::new(matte(Vec3::ZERO)), at) };
+        let Some(last) = parts.pop() else { return Made::Layers(Box::new(black), at) };
         if parts.is_empty() {
             return Made::Layers(Box::new(last.layers), at);
         }
         let layers = |part: Part| {
             let (mut m, factor) = (part.layers, whole / part.most);
-            for color in [&mut m.base_color, &mut m.specular_color, &mut m.transmission_color, &mut m.subsurface_color] {
+            for color in [&mut m.base_color, &mut m.specular_color, &mut m.transmission_color, &mut m.subsurface_color]
+            {
                 *color *= factor;
             }
             Made::Layers(Box::new(m), at)
@@ -216,8 +235,11 @@ impl Reader<'_> {
                 let (color, picture) = self.colored(params, "Kd", 0.5);
                 let degrees = self.value(params, "sigma", 0.0).clamp(0.0, 90.0);
                 let (color, roughness) = if degrees > 0.0 { oren_nayar(color, degrees) } else { (color, 0.0) };
-                let layers =
-                    PrincipledMaterial { base_color_texture: picture, base_diffuse_roughness: roughness, ..matte(color) };
+                let layers = PrincipledMaterial {
+                    base_color_texture: picture,
+                    base_diffuse_roughness: roughness,
+                    ..matte(color)
+                };
                 vec![Part { layers, most: 1.0 }]
             }
             "plastic" => {
@@ -233,14 +255,7 @@ impl Reader<'_> {
                 let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.plain()));
                 let [eta, k] = [eta.unwrap_or(COPPER[0]), k.unwrap_or(COPPER[1])];
                 let [f0, f82] = metal(&Spectrum::Rgb(eta), &Spectrum::Rgb(k), 1.0);
-                let mut m = PrincipledMaterial { base_metalness: 1.0, base_color: f0, ..PrincipledMaterial::default() };
-                let schlick = f0 + (Vec3::ONE - f0) * fp::pow(6.0 / 7.0, 5.0);
-                m.specular_color = f82 / schlick.max(Vec3::splat(1e-6));
-                // What rough metals give back later is left out.
-                let again = 1.0 + f0.element_sum() / 3.0 * (1.0 - rough.kept) / rough.kept;
-                m.specular_weight = 1.0 / again;
-                rough.put(&mut m);
-                vec![Part { layers: m, most: 1.0 }]
+                vec![Part { layers: metallic(f0, f82, &rough), most: 1.0 }]
             }
             "mirror" => {
                 let (color, picture) = self.colored(params, "Kr", 0.9);
@@ -312,7 +327,7 @@ impl Reader<'_> {
     fn uber(&mut self, params: &Params) -> Vec<Part> {
         let rough = self.even_rough(params, Some("roughness"), true, 0.1);
         let index = self.old_index(params, 1.5);
-        let smooth = Rough { picture: None, alphas: [0.0; 2], kept: 1.0 };
+        let smooth = Rough::new([0.0; 2]);
         let mut parts = vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, index), &rough)];
         let (reflected, through) = (self.colored(params, "Kr", 0.0), self.colored(params, "Kt", 0.0));
         parts.push(match through.0 == Vec3::ZERO {
@@ -356,12 +371,21 @@ impl Reader<'_> {
         };
         let matte = Part { most: (color * (up + down)).max_element(), layers };
         let (shine, picture) = self.colored(params, "Ks", 0.25);
-        let gloss = glossy((up * shine, picture), 1.5, &rough);
+        let gloss = glossy((up * shine, picture.clone()), 1.5, &rough);
+        let mut parts = vec![matte, Part { most: (up * shine).max_element(), layers: gloss }];
+        // Facets let light through too; those of a sheet do not refract.
         if (down * shine).max_element() > 0.0 {
-            let what = "light that facets of `translucent` let through has no counterpart: what they reflect counts";
+            let what = "light that facets of `translucent` let through is not refracted here";
             self.said.once(params.at, what);
+            let kept = 0.5 * (rough.kept(1.5) + rough.kept(1.0 / 1.5));
+            let mut through = super::matte(Vec3::ZERO);
+            (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
+            (through.transmission_weight, through.walls) = (1.0, Walls::Thin);
+            (through.transmission_color, through.transmission_color_texture) = (kept * down * shine, picture);
+            rough.put(&mut through);
+            parts.push(Part { most: (down * shine).max_element(), layers: through });
         }
-        vec![matte, Part { most: (up * shine).max_element(), layers: PrincipledMaterial { walls: Walls::Thin, ..gloss } }]
+        parts
     }
 
     /// What scatters light below a skin that refracts.
@@ -415,6 +439,31 @@ impl Reader<'_> {
     }
 }
 
+/// A metal by what it reflects at right angles and at 82 degrees, without what a rough one gives back
+/// later, on the mean over all directions.
+fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
+    let kept = rough.kept_by_metal();
+    let (lost, strongest) = ((1.0 - kept) / kept, f0.max_element());
+    let weight = 1.0 / (1.0 + strongest * lost);
+    // Ours is x (1 + x lost) times the weight.
+    let ours = f0.map(|f0| match lost > 1e-4 {
+        true => ((1.0 + 4.0 * lost * f0 / weight).sqrt() - 1.0) / (2.0 * lost),
+        false => f0 / weight,
+    });
+    let ours = ours.min(Vec3::ONE);
+    let schlick = ours + (Vec3::ONE - ours) * fp::pow(6.0 / 7.0, 5.0);
+    let wanted = f82 / (weight * (Vec3::ONE + ours * lost));
+    let mut m = PrincipledMaterial {
+        base_metalness: 1.0,
+        base_color: ours,
+        specular_color: wanted / schlick.max(Vec3::splat(1e-6)),
+        specular_weight: weight,
+        ..PrincipledMaterial::default()
+    };
+    rough.put(&mut m);
+    m
+}
+
 /// A body of glass, rough or smooth.
 fn glass(
     (reflected, reflected_picture): (Color, Option<FileName>),
@@ -422,7 +471,8 @@ fn glass(
     index: f32,
     rough: Option<&Rough>,
 ) -> PrincipledMaterial {
-    let kept = rough.map_or(1.0, |rough| rough.kept);
+    // Light goes in and out.
+    let kept = rough.map_or(1.0, |rough| 0.5 * (rough.kept(index) + rough.kept(1.0 / index)));
     let mut m = PrincipledMaterial {
         transmission_weight: 1.0,
         transmission_color: kept * through,
