@@ -148,7 +148,7 @@ fn pieces(params: &Params) -> Option<Vec<Piece>> {
             return None;
         }
     };
-    if points.len() <= degree || (points.len() - 1 - degree) % step != 0 {
+    if points.len() <= degree || !(points.len() - 1 - degree).is_multiple_of(step) {
         let message = match basis {
             "bezier" => {
                 format!("{} points make no curve of degree {degree}: 1 and a multiple of {degree} do", points.len())

@@ -25,6 +25,13 @@ const STEPS: u32 = 720;
 /// Steps of both angles of what a projector lights.
 const PROJECTED: [u32; 2] = [360, 720];
 
+/// What a light throws, and the angles at which that is looked up: vertical and horizontal ones.
+struct Pattern {
+    axes: Axes,
+    angles: [Vec<f32>; 2],
+    light: Box<dyn Fn(Vec3) -> Color>,
+}
+
 /// How a profile lies in the light's own space: the axis from which its vertical angles are told, the
 /// one where its horizontal angles begin, and the one where they are 90 degrees.
 struct Axes {
@@ -52,21 +59,21 @@ impl Reader<'_> {
         // Angles grow from the front towards front x down, which a mirrored light has elsewhere.
         let mirrored = map.matrix3.determinant() < 0.0;
         let side = |axis: Vec3| if mirrored { -axis } else { axis };
-        let (axes, angles, light): (Axes, [Vec<f32>; 2], Box<dyn Fn(Vec3) -> Color>) = match fov {
+        let Pattern { axes, angles: [vertical, horizontal], light } = match fov {
             Some(fov) => {
                 let screen = Screen::new(&image, fov);
                 let axes = Axes { down: Vec3::Z, front: Vec3::X, side: side(Vec3::NEG_Y) };
                 let angles = [steps(screen.widest(), PROJECTED[0]), steps(360.0, PROJECTED[1])];
-                (axes, angles, Box::new(move |dir| screen.at(&image, dir)))
+                Pattern { axes, angles, light: Box::new(move |dir| screen.at(&image, dir)) }
             }
             None => {
                 let axes = Axes { down: Vec3::Y, front: Vec3::X, side: side(Vec3::Z) };
                 let count = |texels: u32| (2 * texels).clamp(90, STEPS);
                 let angles = [steps(180.0, count(image.height)), steps(360.0, count(image.width))];
-                (axes, angles, Box::new(move |dir| if third { of_angles(&image, dir) } else { of_areas(&image, dir) }))
+                let light = move |dir| if third { of_angles(&image, dir) } else { of_areas(&image, dir) };
+                Pattern { axes, angles, light: Box::new(light) }
             }
         };
-        let [vertical, horizontal] = angles;
         let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
         for &across in &horizontal {
             values.extend(vertical.iter().map(|&down| light(axes.direction(down, across)).max(Color::ZERO)));

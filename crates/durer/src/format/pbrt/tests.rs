@@ -4,6 +4,7 @@ mod conventions;
 mod language;
 mod shapes;
 mod third;
+mod third_materials;
 
 use crate::diag::{Diagnostics, Files};
 use crate::format::testing::{self, folder};

@@ -6,7 +6,7 @@
 use super::super::made::Made;
 use super::super::params::Params;
 use super::super::state::Reader;
-use super::third::Rough;
+use super::rough::Rough;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;

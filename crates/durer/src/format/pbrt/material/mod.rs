@@ -2,11 +2,13 @@
 
 mod disney;
 mod fourth;
+mod parts;
+mod rough;
 mod substrate;
 mod third;
 
 #[cfg(test)]
-pub(super) use third::alpha_of_roughness;
+pub(super) use rough::alpha_of_roughness;
 
 use super::language::Language;
 use super::made::{AreaLight, Made, Opacity, Texture};

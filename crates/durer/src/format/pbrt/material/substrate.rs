@@ -6,7 +6,7 @@
 use super::super::params::Params;
 use super::super::state::Reader;
 use super::matte;
-use super::third::{Part, glossy};
+use super::parts::{Part, glossy};
 use crate::bsdf::{albedo, fresnel};
 use crate::material::PrincipledMaterial;
 use crate::math::{Vec3, fp};
