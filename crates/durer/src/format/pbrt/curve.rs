@@ -10,12 +10,13 @@ use crate::shape::MeshData;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Sides of a tube, whose mean width is that of a round one.
-const SIDES: u32 = 12;
+/// Sides of a tube, whose mean width is that of a round one, and of one of very many.
+const SIDES: [u32; 2] = [12, 6];
 
-/// Steps of a piece at least and at most, and segments of one curve.
+/// Steps of a piece at least and at most, of all pieces together, and points of one curve.
 const STEPS: [f64; 2] = [2.0, 64.0];
-const MAX_SEGMENTS: usize = 1 << 16;
+const MAX_STEPS: usize = 1 << 15;
+const MAX_POINTS: usize = 1 << 14;
 
 /// A piece of a curve: four control points of Bézier's.
 type Piece = [DVec3; 4];
@@ -31,7 +32,8 @@ struct Place {
     part: f64,
 }
 
-pub(super) fn mesh(params: &Params, reversed: bool) -> Option<MeshData> {
+/// A curve, which may be one of very many.
+pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
     let said = params.said;
     params.known(&["splitdepth"]);
     let kind = params.text("type").unwrap_or("flat");
@@ -81,8 +83,9 @@ pub(super) fn mesh(params: &Params, reversed: bool) -> Option<MeshData> {
         }
         strip(&mut data, places.len(), 2);
     } else {
+        let sides = SIDES[usize::from(many)];
         // A polygon around the circle and one in it: half way between both.
-        let corner = (PI / f64::from(SIDES)) / fp::sin_cos_f64(PI / f64::from(SIDES)).0;
+        let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
         let mut across = places[0].along.any_orthonormal_vector();
         for place in &places {
             // Carried along the curve without turning about it.
@@ -90,8 +93,8 @@ pub(super) fn mesh(params: &Params, reversed: bool) -> Option<MeshData> {
                 .try_normalize()
                 .unwrap_or(place.along.any_orthonormal_vector());
             let other = place.along.cross(across);
-            for k in 0..=SIDES {
-                let share = f64::from(k) / f64::from(SIDES);
+            for k in 0..=sides {
+                let share = f64::from(k) / f64::from(sides);
                 let (sin, cos) = fp::sin_cos_degrees(360.0 * share);
                 let normal = across * cos + other * sin;
                 data.positions.push((place.point + 0.5 * corner * width(place) * normal).as_vec3());
@@ -99,7 +102,7 @@ pub(super) fn mesh(params: &Params, reversed: bool) -> Option<MeshData> {
                 data.uvs.push(Vec2::new(place.share as f32, share as f32));
             }
         }
-        strip(&mut data, places.len(), SIDES + 1);
+        strip(&mut data, places.len(), sides + 1);
     }
     (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
     Some(super::mesh::oriented(data, reversed))
@@ -158,8 +161,8 @@ fn pieces(params: &Params) -> Option<Vec<Piece>> {
         said.bad(params.place("P"), message);
         return None;
     }
-    if points.len() > MAX_SEGMENTS {
-        said.bad(params.place("P"), format!("more than {MAX_SEGMENTS} points of a curve are too many"));
+    if points.len() > MAX_POINTS {
+        said.bad(params.place("P"), format!("more than {MAX_POINTS} points of a curve are too many"));
         return None;
     }
     let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
@@ -185,10 +188,11 @@ fn raised([a, b, c]: [DVec3; 3]) -> Piece {
 /// Places so near each other that straight lines between them lie within a share of the width.
 fn places(pieces: &[Piece], width: f64) -> Vec<Place> {
     let mut all: Vec<Place> = Vec::new();
+    let most = ((MAX_STEPS / pieces.len().max(1)) as f64).clamp(STEPS[0], STEPS[1]);
     for (i, piece) in pieces.iter().enumerate() {
         let bend = [0, 1].map(|k| (piece[k] - 2.0 * piece[k + 1] + piece[k + 2]).length());
         let steps = (6.0 * bend[0].max(bend[1]) / (8.0 * 0.02 * width.max(1e-9))).sqrt().ceil();
-        let steps = if steps.is_finite() { steps.clamp(STEPS[0], STEPS[1]) as u32 } else { STEPS[1] as u32 };
+        let steps = if steps.is_finite() { steps.clamp(STEPS[0], most) as u32 } else { most as u32 };
         let first = if i == 0 { 0 } else { 1 };
         for k in first..=steps {
             let part = f64::from(k) / f64::from(steps);

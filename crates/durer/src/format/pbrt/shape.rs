@@ -15,6 +15,11 @@ use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
 
+/// Triangles that all shapes together become which are written by few numbers, and from how many on
+/// curves have fewer sides. Tests make them all.
+const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
+const MANY: usize = 1 << 20;
+
 /// A shape where it is written, before it has a place and a material.
 struct Made {
     node: Node,
@@ -48,7 +53,7 @@ impl Reader<'_> {
             "disk" => self.disk(&params, map, flipped),
             "cylinder" => {
                 let data = mesh::cylinder(&params, flipped);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.grown(data, map, at))
             }
             "trianglemesh" => {
                 let data = mesh::triangles(&params, self.state.reversed);
@@ -56,16 +61,16 @@ impl Reader<'_> {
             }
             "bilinearmesh" => {
                 let data = mesh::bilinear(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.grown(data, map, at))
             }
             "loopsubdiv" => {
-                let data = subdivision::smooth(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                let data = subdivision::smooth(&params, self.state.reversed, MAX_GROWN - self.grown);
+                data.and_then(|data| self.grown(data, map, at))
             }
             "plymesh" => self.ply(&params, map, at),
             "curve" => {
-                let data = curve::mesh(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                let data = curve::mesh(&params, self.state.reversed, self.grown > MANY);
+                data.and_then(|data| self.grown(data, map, at))
             }
             "cone" | "paraboloid" | "hyperboloid" | "heightfield" | "nurbs" if third => {
                 let data = match kind {
@@ -75,7 +80,7 @@ impl Reader<'_> {
                     "heightfield" => net::heights(&params, self.state.reversed),
                     _ => net::nurbs(&params, self.state.reversed),
                 };
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.grown(data, map, at))
             }
             other => {
                 let mut known = vec![
@@ -144,7 +149,7 @@ impl Reader<'_> {
         let ends = round::ends(params, [-radius, radius]);
         if round::turn(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
             let data = round::sphere(params, radius, ends, flipped)?;
-            return self.mesh(None, Arc::new(data), map, params.at);
+            return self.grown(data, map, params.at);
         }
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
             self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards");
@@ -173,13 +178,26 @@ impl Reader<'_> {
         }
         if round::turn(params) < 360.0 {
             let data = round::disk(params, [inner_radius, radius], height, flipped);
-            return self.mesh(None, Arc::new(data), map, params.at);
+            return self.grown(data, map, params.at);
         }
         let normal = if flipped { Vec3::NEG_Z } else { Vec3::Z };
         let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
         Some(Made { node, area, lights: 1, map })
+    }
+
+    /// A mesh that is made of few numbers. All of a file may have so many triangles and no more.
+    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<Made> {
+        self.grown = self.grown.saturating_add(data.triangles.len());
+        if self.grown > MAX_GROWN {
+            self.grown = MAX_GROWN;
+            let what =
+                format!("round shapes, curves and smooth surfaces of more than {MAX_GROWN} triangles are left out");
+            self.said.once(at, what);
+            return None;
+        }
+        self.mesh(None, Arc::new(data), map, at)
     }
 
     /// A mesh with a name of its own, or one that it shares.

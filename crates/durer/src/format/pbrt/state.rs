@@ -95,6 +95,8 @@ pub(super) struct Reader<'a> {
     /// The object that is being defined.
     pub defining: Option<(String, Group)>,
     pub count: usize,
+    /// Triangles that were made of few numbers.
+    pub grown: usize,
     /// Files that were included.
     pub included: usize,
     pub camera: Option<Asked>,
@@ -129,6 +131,7 @@ impl<'a> Reader<'a> {
             objects: BTreeMap::new(),
             defining: None,
             count: 0,
+            grown: 0,
             included: 0,
             camera: None,
             film: None,

@@ -10,8 +10,8 @@ use crate::shape::MeshData;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Triangles that one surface becomes at most.
-const MAX_TRIANGLES: usize = 1 << 22;
+/// Triangles that one surface becomes at most. Tests make them all.
+const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
 
 /// Triangles that grow.
 struct Net {
@@ -26,7 +26,8 @@ struct Ring {
 }
 
 /// A surface, its points moved to where endless subdivision has them.
-pub(super) fn smooth(params: &Params, reversed: bool) -> Option<MeshData> {
+/// So many triangles are left.
+pub(super) fn smooth(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.known(&["scheme"]);
     let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
     if !(0..=16).contains(&levels) {
@@ -39,8 +40,9 @@ pub(super) fn smooth(params: &Params, reversed: bool) -> Option<MeshData> {
     let sound = |face: &&[u32; 3]| face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
     let mut net = Net { points, faces: control.triangles.iter().filter(sound).copied().collect() };
     for level in 0..levels {
-        if net.faces.len() > MAX_TRIANGLES / 4 {
-            let what = format!("more than {MAX_TRIANGLES} triangles are too many: it is subdivided {level} times");
+        let most = left.min(MAX_TRIANGLES);
+        if net.faces.len() > most / 4 {
+            let what = format!("more than {most} triangles are too many: it is subdivided {level} times");
             params.said.once(params.place("levels"), what);
             break;
         }

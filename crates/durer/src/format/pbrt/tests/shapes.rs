@@ -42,10 +42,10 @@ fn parts_of_round_shapes_have_their_areas() {
         ("\"disk\" \"float radius\" 2 \"float innerradius\" 1 \"float phimax\" 300", turn(300.0) / 2.0 * 3.0),
         ("\"cone\" \"float radius\" 3 \"float height\" 4", PI * 3.0 * 5.0),
         // Of z = r^2: pi / 6 ((1 + 4 z)^(3/2) - 1).
-        ("\"paraboloid\" \"float radius\" 2 \"float zmax\" 4", PI / 6.0 * (17_f64.powf(1.5) - 1.0)),
+        ("\"paraboloid\" \"float radius\" 2 \"float zmax\" 4", PI / 6.0 * (17.0 * 17_f64.sqrt() - 1.0)),
         (
             "\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
-            PI / 6.0 * (17_f64.powf(1.5) - 5_f64.powf(1.5)),
+            PI / 6.0 * (17.0 * 17_f64.sqrt() - 5.0 * 5_f64.sqrt()),
         ),
         // A line that meets the axis at its level makes a ring, one along it a cylinder.
         ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 2 0 0 ]", 3.0 * PI),
@@ -194,4 +194,18 @@ fn nets_are_surfaces() {
         let across = Vec3::new(place.x, place.y, 0.0);
         assert!((across.length() - 1.0).abs() < 1e-5 && (across - *normal).length() < 1e-4, "{place} {normal}");
     }
+}
+
+#[test]
+fn few_numbers_do_not_become_any_number_of_triangles() {
+    // A ball in part has 128 x 64 x 2 triangles at most: of 20 some are left out, with the limit of tests.
+    let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
+    let (scene, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
+    assert!(told.len() == 1 && told[0].contains("triangles are left out"), "{told:?}");
+    let triangles: usize = scene.unwrap().assets.meshes.values().map(|mesh| mesh.triangles.len()).sum();
+    assert!(triangles <= 1 << 18 && triangles > 1 << 17, "{triangles}");
+    let surface =
+        "Shape \"loopsubdiv\" \"integer levels\" 16 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]";
+    let (_, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
+    assert!(told.len() == 1 && told[0].contains("triangles are too many: it is subdivided 7 times"), "{told:?}");
 }

@@ -160,15 +160,14 @@ fn lights_by_pictures_shine_as_those_say() {
         let (scene, told) = read_in(folder.path(), &format!("{HEAD}{text} Shape \"sphere\""));
         let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
         assert_eq!(told, [""; 0]);
-        let shining = move |dir: [f32; 3]| -> Color {
+        move |dir: [f32; 3]| -> Color {
             let each = scene.lights.iter().flatten().map(|light| {
                 use crate::light::Emitter;
                 let profile = &scene.assets.profiles[&light.value.profile().unwrap().path];
                 light.value.color() * profile.at(light.value.in_profile(Vec3::from_array(dir).normalize()))
             });
             each.sum()
-        };
-        shining
+        }
     };
     let gonio = "LightSource \"goniometric\" \"rgb I\" [ 1 2 3 ] \"string mapname\" \"gonio.pfm\"";
     let shining = lamps(gonio);
