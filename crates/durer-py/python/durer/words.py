@@ -841,7 +841,7 @@ class SpotLight(Light):
 
     inner_angle: number, 0 or more; 0 where it is not given. Degrees from the middle to where it begins to fade; not more than `angle`.
 
-    fade: `squared`, `smooth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s).
+    fade: `squared`, `smooth`, `fourth`; squared where it is not given. How it fades between the two, by the share s of the cosine's way: `squared` is s^2, `smooth` s^2 (3 - 2 s), `fourth` s^4.
 
     candela: number, 0 or more. Luminous intensity in candela in its middle: how strong it is, of which `color` is the hue.
 
@@ -858,7 +858,7 @@ class SpotLight(Light):
         color: npt.ArrayLike,
         angle: Optional[float] = None,
         inner_angle: Optional[float] = None,
-        fade: Optional[Literal["squared", "smooth"]] = None,
+        fade: Optional[Literal["squared", "smooth", "fourth"]] = None,
         candela: Optional[float] = None,
         lumens: Optional[float] = None,
         spectrum: Optional[str] = None,

@@ -217,6 +217,19 @@ pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum)
     if all > 0.0 { sum / all } else { value(cosine) }
 }
 
+/// What one reflection off a boundary gives back on the mean over all directions by their cosine, and
+/// what reflection and refraction do together: by few points, where tables are not worth it.
+pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
+    const COSINES: usize = 16;
+    const FEW: usize = 64;
+    let ggx = isotropic(roughness);
+    [false, true].map(|all| {
+        let at = |i: usize| ((i as f32 + 0.5) / COSINES as f32).sqrt();
+        let one = |i: usize| points().take(FEW).map(|u| single(ggx, direction(at(i)), eta, u, all)).sum::<f32>();
+        (0..COSINES).map(one).sum::<f32>() / (COSINES * FEW) as f32
+    })
+}
+
 /// One facet's part in what is reflected, or in all that goes on.
 fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
     let h = ggx.sample_visible(wo, u);

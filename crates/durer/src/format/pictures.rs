@@ -112,6 +112,40 @@ impl Pictures<'_> {
         Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
+    /// A picture of colours, made of two that lie alike (or of one twice) texel by texel, and what its
+    /// values are to be multiplied by. `None` where they lie otherwise.
+    pub fn remade(
+        &self,
+        [one, other]: [&Picture; 2],
+        at: Span,
+        join: impl Fn(Color, Color) -> Color,
+    ) -> Option<(Picture, f32)> {
+        if one.mapping != other.mapping {
+            return None;
+        }
+        let image = |picture: &Picture| match &picture.bytes {
+            PictureBytes::File(path) => self.image(path, at),
+            PictureBytes::Here(path, bytes) => self.read(path, bytes, image::decode_srgb).ok(),
+        };
+        let (a, b) = (image(one)?, image(other)?);
+        let (width, height) = (a.width.max(b.width), a.height.max(b.height));
+        // Of the smaller one the nearest texel.
+        let place = |i: u32, of: u32, count: u32| (u64::from(i) * u64::from(count) / u64::from(of)) as u32;
+        let from = |picture: &Image, x: u32, y: u32| {
+            picture.get(place(x, width, picture.width), place(y, height, picture.height)).unwrap_or_default()
+        };
+        let mut pixels = Vec::with_capacity(width as usize * height as usize);
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            pixels.push(join(from(&a, x, y), from(&b, x, y)).max(Color::ZERO));
+        }
+        let most = pixels.iter().fold(1.0, |most: f32, p| most.max(p.max_element()));
+        let most = if most.is_finite() { most } else { 1.0 };
+        pixels.iter_mut().for_each(|p| *p /= most);
+        let bytes = as_png(Image::from_pixels(width, height, pixels).ok()?, Transfer::Srgb)?;
+        let path = format!("{}#{}.png", one.bytes.path(), &Digest::of(&bytes).to_string()[..12]);
+        Some((Picture { bytes: PictureBytes::Here(path, bytes), mapping: one.mapping }, most))
+    }
+
     fn complain(&self, name: &str, at: Span, error: &ImageError) {
         self.said.push(unusable(name, error).at(at));
     }
@@ -138,10 +172,18 @@ pub(super) fn asset(scene: &mut Scene, picture: Picture, span: Span) -> FileName
 /// A picture of four texels: one colour at the upper left and the lower right, another at the other
 /// two. Also what its values are to be multiplied by.
 pub(super) fn checkerboard(one: Color, other: Color) -> Option<(PictureBytes, f32)> {
-    let most = one.max(other).max_element().max(1.0);
-    let pixels = [one, other, other, one].map(|color| color / most);
-    let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;
+    let (bytes, most) = four([one, other, other, one])?;
+    let PictureBytes::Here(_, bytes) = bytes else { return None };
     Some((PictureBytes::Here(format!("checkerboard-{other}-{one}.png"), bytes), most))
+}
+
+/// A picture of four texels, the upper row first, and what its values are to be multiplied by.
+pub(super) fn four(colors: [Color; 4]) -> Option<(PictureBytes, f32)> {
+    let most = colors.iter().fold(1.0, |most: f32, color| most.max(color.max_element()));
+    let pixels = colors.map(|color| color / most);
+    let bytes = as_png(Image::from_pixels(2, 2, pixels.to_vec()).ok()?, Transfer::Srgb)?;
+    let name = format!("corners-{}.png", &Digest::of(format!("{colors:?}").as_bytes()).to_string()[..12]);
+    Some((PictureBytes::Here(name, bytes), most))
 }
 
 /// A picture as the bytes of a PNG of eight bits.

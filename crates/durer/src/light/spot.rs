@@ -9,8 +9,8 @@ use std::f32::consts::PI;
 
 described_words! {
     /// How a cone fades between `innerAngle` and `angle`, by the share s of the cosine's way: s^2,
-    /// as glTF has it, or s^2 (3 - 2 s), as pbrt has it.
-    Fade { Squared = "squared", Smooth = "smooth" }
+    /// as glTF has it, s^2 (3 - 2 s), as pbrt-v4 has it, or s^4, as pbrt-v3 has it.
+    Fade { Squared = "squared", Smooth = "smooth", Fourth = "fourth" }
 }
 
 described! {
@@ -27,7 +27,7 @@ described! {
         /// Degrees from the middle to where it begins to fade; not more than `angle`.
         inner_angle: f32 = 0.0, optional, Rule::NonNegative, ["innerAngle" in set::DURER];
         /// How it fades between the two, by the share s of the cosine's way: `squared` is s^2,
-        /// `smooth` s^2 (3 - 2 s).
+        /// `smooth` s^2 (3 - 2 s), `fourth` s^4.
         fade: Fade = Fade::Squared, optional, Rule::Any, ["fade" in set::DURER];
         /// Luminous intensity in candela in its middle: how strong it is, of which `color` is the
         /// hue.
@@ -50,10 +50,11 @@ impl SpotLight {
     /// The solid angle that has as much light when it is as strong all over as in the middle.
     fn fills(&self) -> f32 {
         let [outer, inner] = self.cosines();
-        // The means of s² and of s² (3 - 2 s).
+        // The means of s², of s² (3 - 2 s) and of s⁴.
         let fading = match self.fade {
             Fade::Squared => 1.0 / 3.0,
             Fade::Smooth => 0.5,
+            Fade::Fourth => 0.2,
         };
         2.0 * PI * (1.0 - inner + fading * (inner - outer)).max(1e-6)
     }
@@ -71,12 +72,14 @@ impl Emitter for SpotLight {
             true => ((seen - outer) / (inner - outer)).clamp(0.0, 1.0),
             false => f32::from(seen >= outer),
         };
-        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1.
+        // Sources: KHR_lights_punctual; *Physically Based Rendering*, 4th edition, section 12.2.1, and
+        // 3rd edition, section 12.3.1.
         let share = share
             * share
             * match self.fade {
                 Fade::Squared => 1.0,
                 Fade::Smooth => 3.0 - 2.0 * share,
+                Fade::Fourth => share * share,
             };
         Illumination { to_light, distance, color: self.color * (share / (distance * distance)) }
     }

@@ -1,5 +1,6 @@
 //! Film, camera, sampler and integrator: what the picture is.
 
+use super::language::Language;
 use super::params::Params;
 use super::state::{Asked, Reader};
 use crate::camera::{Camera, EquirectangularCamera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
@@ -8,8 +9,9 @@ use crate::image::MAX_PIXELS;
 use crate::math::fp;
 use glam::{DAffine3, DVec2, DVec3};
 
-/// The size of a film that does not say it.
+/// The size of a film that does not say it, in pbrt-v4 and in pbrt-v3.
 const SIZE: (u32, u32) = (1280, 720);
+const OLD_SIZE: (u32, u32) = (640, 480);
 
 /// A camera in the world: its place and axes, to the right, upwards and forwards, as long as a unit
 /// of its own.
@@ -55,6 +57,7 @@ impl Reader<'_> {
             "perspective" => Some(self.perspective(&placed, &params, (width, height), None)),
             "orthographic" => self.orthographic(&placed, &params, (width, height)),
             "spherical" => Some(self.spherical(&placed, &params)),
+            "environment" if self.language == Language::Third => Some(self.spherical(&placed, &params)),
             "realistic" => {
                 let what = "a camera of lenses has no counterpart: one with a field of view of 38 degrees across the film's \
                             diagonal is taken";
@@ -77,10 +80,13 @@ impl Reader<'_> {
     }
 
     fn film_size(&self) -> (u32, u32) {
-        let Some(film) = &self.film else { return SIZE };
+        let third = self.language == Language::Third;
+        let usual = if third { OLD_SIZE } else { SIZE };
+        let Some(film) = &self.film else { return usual };
         let params = self.params_of(film);
-        if !["rgb", "gbuffer", "spectral"].contains(&film.kind.as_str()) {
-            let help = meant(&film.kind, ["rgb", "gbuffer", "spectral"]);
+        let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
+        if !kinds.contains(&film.kind.as_str()) {
+            let help = meant(&film.kind, kinds.iter().copied());
             self.said.bad_with(film.at, format!("there is no film `{}`", film.kind), help);
         }
         let side = |name: &'static str, usual: u32| match params.whole(name) {
@@ -91,7 +97,7 @@ impl Reader<'_> {
             }
             None => usual,
         };
-        let (width, height) = (side("xresolution", SIZE.0), side("yresolution", SIZE.1));
+        let (width, height) = (side("xresolution", usual.0), side("yresolution", usual.1));
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
             params.said.bad(film.at, format!("{width} x {height} pixels are too many"));
         }
@@ -104,14 +110,23 @@ impl Reader<'_> {
         let unseen = ["filename", "diagonal", "iso", "maxcomponentvalue", "savefp16", "coordinatesystem"];
         params.known(&unseen);
         params.known(&["nbuckets", "lambdamin", "lambdamax"]);
+        if third {
+            params.known(&["scale", "maxsampleluminance"]);
+        }
         params.finish("this film");
         (width, height)
     }
 
     /// What the film makes of radiance 1: how long the shutter is open, times ISO over 100.
     ///
-    /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2.
+    /// In pbrt-v3 its `scale`.
+    ///
+    /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section 7.9.
     pub fn exposure(&self) -> f32 {
+        if self.language == Language::Third {
+            let scale = self.film.as_ref().and_then(|film| self.params_of(film).float("scale"));
+            return scale.unwrap_or(1.0).max(0.0);
+        }
         let film = self.film.as_ref().and_then(|film| self.params_of(film).float("iso"));
         let open = self.camera.as_ref().map(|camera| {
             let params = self.params_of(camera);
@@ -210,7 +225,9 @@ impl Reader<'_> {
     /// The middle of the picture is where -x points.
     fn spherical(&self, placed: &Placed, params: &Params) -> Camera {
         let [a, b, c] = placed.axes;
-        if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
+        if self.language == Language::Third {
+            params.known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
+        } else if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
             params.said.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is taken");
         }
         EquirectangularCamera {
@@ -225,6 +242,8 @@ impl Reader<'_> {
 
     /// Light scattered `maxdepth` times is scattered once less after the first time.
     pub fn integrator(&mut self, asked: &Asked) {
+        const OLD: [&str; 9] =
+            ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
         const KNOWN: [&str; 11] = [
             "path",
             "volpath",
@@ -239,8 +258,9 @@ impl Reader<'_> {
             "function",
         ];
         let params = self.params_of(asked);
-        if !KNOWN.contains(&asked.kind.as_str()) {
-            let help = meant(&asked.kind, KNOWN);
+        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        if !known.contains(&asked.kind.as_str()) {
+            let help = meant(&asked.kind, known.iter().copied());
             self.said.bad_with(asked.at, format!("there is no integrator `{}`", asked.kind), help);
         } else if !asked.kind.ends_with("path") {
             let what =
@@ -260,15 +280,22 @@ impl Reader<'_> {
         params.known(&["maxdistance", "cossample", "samplelights", "samplebsdf", "skipbad", "function", "filename"]);
         params.known(&["photonsperiteration", "iterations", "radius", "seed", "bootstrapsamples", "chains"]);
         params.known(&["mutationsperpixel", "largestepprobability", "sigma"]);
+        if self.language == Language::Third {
+            params.known(&["pixelbounds", "rrthreshold", "lightsamplestrategy", "strategy", "nsamples"]);
+            params.known(&["numiterations", "imagewritefrequency", "lightsamplethreshold"]);
+        }
         params.finish("this integrator");
     }
 
     pub fn sampler(&mut self, asked: &Asked) {
         const KNOWN: [&str; 8] =
             ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol", "mlt"];
+        const OLD: [&str; 7] =
+            ["02sequence", "halton", "lowdiscrepancy", "maxmindist", "random", "sobol", "stratified"];
         let params = self.params_of(asked);
-        if !KNOWN.contains(&asked.kind.as_str()) {
-            let help = meant(&asked.kind, KNOWN);
+        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        if !known.contains(&asked.kind.as_str()) {
+            let help = meant(&asked.kind, known.iter().copied());
             self.said.bad_with(asked.at, format!("there is no sampler `{}`", asked.kind), help);
         }
         let samples = match (params.whole("xsamples"), params.whole("ysamples")) {
@@ -281,6 +308,9 @@ impl Reader<'_> {
             Some(_) => self.said.bad(asked.at, "a pixel needs 1 to 1048576 samples"),
         }
         params.known(&["pixelsamples", "randomization", "seed", "jitter"]);
+        if self.language == Language::Third {
+            params.known(&["dimensions", "samplepixelcenter"]);
+        }
         params.finish("this sampler");
     }
 }

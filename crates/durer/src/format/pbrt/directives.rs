@@ -1,5 +1,6 @@
 //! The directives, one after the other.
 
+use super::language::Language;
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
 use super::spectrum::Space;
@@ -13,7 +14,7 @@ use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
 /// All directives, and whether a string follows them.
-pub(super) const DIRECTIVES: [(&str, bool); 42] = [
+pub(super) const DIRECTIVES: [(&str, bool); 44] = [
     ("Accelerator", true),
     ("ActiveTransform", false),
     ("AreaLightSource", true),
@@ -54,9 +55,11 @@ pub(super) const DIRECTIVES: [(&str, bool); 42] = [
     ("TransformTimes", false),
     ("Translate", false),
     ("WorldBegin", false),
-    // Of pbrt-v3.
+    // Of pbrt-v3 and before.
     ("WorldEnd", false),
     ("SurfaceIntegrator", true),
+    ("VolumeIntegrator", true),
+    ("Renderer", true),
 ];
 
 /// Directives of the world, and of what comes before it.
@@ -205,6 +208,7 @@ impl Reader<'_> {
             "TransformTimes" => _ = self.numbers::<2>(at)?,
             "ReverseOrientation" => self.state.reversed = !self.state.reversed,
             "WorldBegin" => self.world_begin(at),
+            "WorldEnd" if self.language == Language::Third => {}
             "WorldEnd" => said.once(at, "`WorldEnd` is of pbrt-v3 and means nothing"),
             "ObjectEnd" => self.close(Scope::Object, at),
             _ => return self.named(word, at),
@@ -214,7 +218,7 @@ impl Reader<'_> {
 
     /// A directive after which a string stands.
     fn named(&mut self, word: &str, at: Span) -> Option<()> {
-        let said = self.said;
+        let (said, language) = (self.said, self.language);
         let (name, name_at) = self.name(at)?;
         match word {
             "CoordinateSystem" => _ = self.systems.insert(name, self.state.transforms.maps),
@@ -245,11 +249,11 @@ impl Reader<'_> {
             "Texture" => {
                 let (kind, kind_at) = self.name(at)?;
                 let (class, class_at) = self.name(at)?;
-                let list = read_params(self.text(), said);
+                let list = read_params(self.text(), language, said);
                 self.texture(name, (&kind, kind_at), (&class, class_at), list);
             }
             _ => {
-                let list = read_params(self.text(), said);
+                let list = read_params(self.text(), language, said);
                 self.with_params(word, name, name_at, list);
             }
         }

@@ -1,7 +1,7 @@
 //! Light from infinitely far away: even, or pictures of all directions, which become one picture of
 //! longitude and latitude.
 
-use super::made::Infinite;
+use super::made::{Infinite, Map};
 use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
 use crate::format::panorama;
@@ -18,7 +18,8 @@ const MAX_ROWS: u32 = 2048;
 struct Source {
     image: Image,
     to_light: DAffine3,
-    scale: f32,
+    scale: Color,
+    map: Map,
 }
 
 impl Reader<'_> {
@@ -30,19 +31,23 @@ impl Reader<'_> {
         for infinite in std::mem::take(&mut self.infinite) {
             match infinite {
                 Infinite::Even(color) => even += color,
-                Infinite::Picture { name, at, scale, to_light, illuminance } => {
+                Infinite::Picture { name, at, scale, map, to_light, illuminance } => {
                     let memory =
                         panorama::beside(sources.iter().map(|source: &Source| &source.image), self.input.memory);
-                    let Some(image) = self.environment(&name, at, memory) else { continue };
-                    let scale = scale * illuminance.map_or(1.0, |wanted| wanted / upper_illuminance(&image));
+                    let Some((image, map)) = self.environment(&name, at, map, memory) else { continue };
+                    let bright = |wanted: f32| wanted / upper_illuminance(&image, map);
+                    let scale = scale * illuminance.map_or(1.0, bright);
                     first.get_or_insert((name, at));
-                    sources.push(Source { image, to_light, scale: if scale.is_finite() { scale } else { 0.0 } });
+                    let scale = if scale.is_finite() { scale } else { Color::ZERO };
+                    sources.push(Source { image, to_light, scale, map });
                 }
             }
         }
         (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
         let Some((name, at)) = first else { return };
-        let rows = sources.iter().map(|source| source.image.height).max().unwrap_or(1).min(MAX_ROWS);
+        // What is fine about a pole lies elsewhere in the picture that is made.
+        let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
+        let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
         let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
         let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
         if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
@@ -50,8 +55,8 @@ impl Reader<'_> {
         }
     }
 
-    /// A square picture of equal areas.
-    fn environment(&self, name: &str, at: Span, memory: u64) -> Option<Image> {
+    /// A picture of all directions, and how they lie in it.
+    fn environment(&self, name: &str, at: Span, map: Map, memory: u64) -> Option<(Image, Map)> {
         let bytes = match self.input.source.read(name) {
             Ok(bytes) => bytes,
             Err(error) => {
@@ -59,14 +64,17 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
+        // pbrt-v3 takes the bytes of a light's picture for light itself.
+        let decode = if map == Map::Longitude { image::decode_linear } else { image::decode_srgb };
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
         match read {
-            Ok(picture) if picture.width == picture.height => Some(picture),
+            Ok(picture) if map == Map::Longitude => Some((picture, map)),
+            Ok(picture) if picture.width == picture.height => Some((picture, map)),
             Ok(picture) if picture.width == 2 * picture.height => {
                 let what = "this picture is twice as wide as high: it is taken for longitude and latitude, as pbrt-v3 has them, \
                             z upwards";
                 self.said.other(at, what);
-                Some(picture)
+                Some((picture, Map::Longitude))
             }
             Ok(Image { width, height, .. }) => {
                 let message = format!("{width} x {height} pixels are no picture of all directions: it must be square");
@@ -82,22 +90,41 @@ impl Reader<'_> {
 }
 
 impl Source {
-    /// The light from a direction of the world: of the nearest texel, as pbrt has it.
+    /// The light from a direction of the world: of the nearest texel, as pbrt-v4 has it, and
+    /// between texels, as pbrt-v3 has it.
     fn at(&self, dir: DVec3) -> Color {
         let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
         let (width, height) = (self.image.width, self.image.height);
-        let place = match width == height {
-            true => equal_area(dir),
-            false => {
+        let place = match self.map {
+            Map::EqualArea => equal_area(dir),
+            Map::Longitude => {
                 let u = fp::atan2(dir.y, dir.x) / TAU;
                 Vec2::new(u - u.floor(), fp::atan2((dir.x * dir.x + dir.y * dir.y).sqrt(), dir.z) / PI)
             }
         };
         let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
-        let light = self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default();
+        let light = match self.map {
+            Map::EqualArea => self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default(),
+            Map::Longitude => between(&self.image, place),
+        };
         let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
         self.scale * light
     }
+}
+
+/// The value at a place of a picture, in its widths and heights from the upper left corner: linear
+/// between texels, and beyond its border it begins again.
+pub(super) fn between(image: &Image, place: Vec2) -> Color {
+    let (width, height) = (image.width as i64, image.height as i64);
+    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let (low_x, low_y) = (x.floor(), y.floor());
+    let texel = |dx: i64, dy: i64| {
+        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
+        let value = image.get(i as u32, j as u32).unwrap_or_default();
+        if value.is_finite() { value } else { Color::ZERO }
+    };
+    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
+    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
 /// The place of a unit vector in the square onto which the sphere is laid with all areas in
@@ -128,15 +155,15 @@ pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
 }
 
 /// The illuminance that the upper half of a picture (z > 0) makes from above.
-fn upper_illuminance(image: &Image) -> f32 {
+fn upper_illuminance(image: &Image, map: Map) -> f32 {
     let mut sum = 0.0_f64;
     let (width, height) = (image.width, image.height);
     for (i, light) in image.pixels.iter().enumerate() {
         let (x, y) = ((i as u32 % width) as f32 + 0.5, (i as u32 / width) as f32 + 0.5);
         let place = Vec2::new(x / width as f32, y / height as f32);
-        let (cosine, size) = match width == height {
-            true => (of_equal_area(place).z, 4.0 * PI),
-            false => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
+        let (cosine, size) = match map {
+            Map::EqualArea => (of_equal_area(place).z, 4.0 * PI),
+            Map::Longitude => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
         };
         let luminance = light.dot(Vec3::new(0.2126, 0.7152, 0.0722));
         sum += f64::from(luminance * cosine.max(0.0) * size);

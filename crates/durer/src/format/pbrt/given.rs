@@ -1,18 +1,36 @@
 //! The spectrum of a parameter: a colour, a black body, numbers, a name or a file.
 
+use super::language::Language;
 use super::named;
 use super::params::{Kind, Param, Params, Values};
-use super::spectrum::Spectrum;
+use super::spectrum::{Spectrum, of_xyz};
 use crate::diag::{Diagnostic, Span};
 use crate::format::number::parse_f32;
 use crate::format::said::meant;
 use crate::math::Vec3;
 
 impl Spectrum {
-    /// The spectrum of a parameter.
+    /// The spectrum of a parameter. Those of pbrt-v3 are three numbers from the beginning on.
     pub(super) fn of(param: &Param, params: &Params) -> Option<Spectrum> {
+        let found = Self::written(param, params)?;
+        if params.language == Language::Fourth {
+            return Some(found);
+        }
+        // What is not 1 by its unit, but by a number behind the temperature.
+        let factor = match (&found, param.numbers()) {
+            (Spectrum::Blackbody(_), [_, factor, ..]) => *factor as f32,
+            _ => 1.0,
+        };
+        Some(Spectrum::Rgb(factor.max(0.0) * found.plain()))
+    }
+
+    fn written(param: &Param, params: &Params) -> Option<Spectrum> {
         let said = params.said;
         match (param.kind, &param.values) {
+            (Kind::Xyz, _) => {
+                let xyz = *param.triples().first()?;
+                Some(Spectrum::Rgb(of_xyz(xyz.as_dvec3()).max(Vec3::ZERO)))
+            }
             (Kind::Rgb, _) => Some(Spectrum::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
             (Kind::Blackbody, _) => {
                 let kelvin = param.number();
@@ -31,7 +49,11 @@ impl Spectrum {
     }
 }
 
-fn rising(curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
+fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
+    if params.language == Language::Third {
+        curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        curve.dedup_by_key(|row| row[0]);
+    }
     if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
         let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
         params.said.bad(at, message);
@@ -42,7 +64,9 @@ fn rising(curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
 
 /// A spectrum by name: one that pbrt knows, or a file of wavelengths and values.
 fn named(name: &str, at: Span, params: &Params) -> Option<Spectrum> {
-    if let Some(known) = named::spectrum(name) {
+    if params.language == Language::Fourth
+        && let Some(known) = named::spectrum(name)
+    {
         return Some(known);
     }
     let bytes = match params.input.source.read_unpacked(name) {
@@ -52,8 +76,12 @@ fn named(name: &str, at: Span, params: &Params) -> Option<Spectrum> {
             return None;
         }
         Err(error) => {
-            let help = meant(name, named::names());
-            let message = format!("pbrt has no spectrum of that name, and {error}");
+            let (help, message) = match params.language {
+                Language::Third => (error.help(), format!("the spectrum cannot be had: {error}")),
+                Language::Fourth => {
+                    (meant(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
+                }
+            };
             params.said.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });
             return None;
         }

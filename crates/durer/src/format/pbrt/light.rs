@@ -2,10 +2,12 @@
 //! value 1 shows radiance 1.
 //!
 //! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
-//! a spectrum has luminance 1 times `scale`; `power` is luminous flux.
+//! a spectrum has luminance 1 times `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition,
+//! chapter 12) a light is as strong as is written, and `scale` is a colour.
 
-use super::made::{AreaLight, Infinite};
-use super::params::{Param, Params};
+use super::language::Language;
+use super::made::{AreaLight, Infinite, Map};
+use super::params::{Kind, Param, Params};
 use super::state::{LIGHT, Reader};
 use crate::diag::Span;
 use crate::format::said::meant;
@@ -18,8 +20,24 @@ use std::rc::Rc;
 
 /// The colour of a light by one of its parameters, with `scale`.
 fn color(params: &Params, name: &'static str) -> Color {
+    if params.language == Language::Third {
+        return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.plain()) * colored_scale(params);
+    }
     let color = params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.light());
     color * params.float("scale").unwrap_or(1.0).max(0.0)
+}
+
+/// The `scale` of pbrt-v3, which is a colour. It passes over a number, and so do we.
+fn colored_scale(params: &Params) -> Color {
+    match params.get("scale") {
+        Some(param) if param.kind == Kind::Float => {
+            params
+                .said
+                .once(param.at, "`scale` of a light is a colour in pbrt-v3, which passes over a number: so do we");
+            Vec3::ONE
+        }
+        _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
+    }
 }
 
 impl Reader<'_> {
@@ -37,27 +55,24 @@ impl Reader<'_> {
             }
             direction.unwrap_or(DVec3::Z).as_vec3()
         };
-        let power = params.float("power").filter(|power| *power > 0.0);
+        let third = self.language == Language::Third;
+        let flux = || params.float("power").filter(|power| *power > 0.0);
+        let power = if third { None } else { flux() };
         // A light's colour is what a white matte surface shows: illuminance over pi.
         let value: Light = match kind {
-            "point" | "goniometric" => {
-                if kind == "goniometric" {
-                    self.said.other(at, "a light by a picture of directions has no counterpart: it shines evenly");
-                    params.known(&["filename"]);
-                }
+            "goniometric" | "projection" => {
+                let color = color(&params, "I") * exposure;
+                self.pictured_light(kind, &params, map, (color, power));
+                params.known(&["scale", "power"]);
+                return params.finish("this light");
+            }
+            "point" => {
                 let strength = power.map_or(1.0, |power| power / (4.0 * PI));
                 let color = color(&params, "I") * (strength * exposure / PI);
                 PointLight { position: place, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into()
             }
-            "spot" | "projection" => {
-                let mut cone =
-                    [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
-                if kind == "projection" {
-                    self.said
-                        .other(at, "a projector has no counterpart: a spot as wide as its picture is high is taken");
-                    params.known(&["filename"]);
-                    cone = [0.5 * params.float("fov").unwrap_or(90.0), 0.0];
-                }
+            "spot" => {
+                let cone = [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
                 if !(cone[0] > 0.0 && cone[0] <= 180.0) {
                     self.said.bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
                 }
@@ -73,17 +88,17 @@ impl Reader<'_> {
                     color,
                     angle: outer.clamp(1e-3, 180.0),
                     inner_angle: inner,
-                    fade: Fade::Smooth,
+                    fade: if third { Fade::Fourth } else { Fade::Smooth },
                     ..SpotLight::default()
                 }
                 .into()
             }
             "distant" => {
-                let strength = params.float("illuminance").filter(|e| *e > 0.0).unwrap_or(1.0);
-                let color = color(&params, "L") * (strength * exposure / PI);
+                let strength = if third { None } else { params.float("illuminance").filter(|e| *e > 0.0) };
+                let color = color(&params, "L") * (strength.unwrap_or(1.0) * exposure / PI);
                 DirectionalLight { direction: aimed(), color, ..DirectionalLight::default() }.into()
             }
-            "infinite" => {
+            "infinite" | "exinfinite" => {
                 self.infinite_light(&params, exposure);
                 return params.finish("this light");
             }
@@ -92,12 +107,29 @@ impl Reader<'_> {
                 return self.said.bad_with(at, format!("there is no light `{other}`"), meant(other, known));
             }
         };
-        params.known(&["from", "to", "scale", "power"]);
+        params.known(&["from", "to", "scale"]);
+        if !third {
+            params.known(&["power"]);
+        }
         params.finish("this light");
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: at });
     }
 
     fn infinite_light(&mut self, params: &Params, exposure: f32) {
+        if self.language == Language::Third {
+            let color = color(params, "L") * exposure;
+            params.known(&["samples", "nsamples"]);
+            let infinite = match params.text("mapname").filter(|name| !name.is_empty()) {
+                Some(name) => {
+                    let at = params.get("mapname").map_or(params.at, |param| param.values_at);
+                    let to_light = self.map(params.at).inverse();
+                    let map = Map::Longitude;
+                    Infinite::Picture { name: name.to_string(), at, scale: color, map, to_light, illuminance: None }
+                }
+                None => Infinite::Even(color),
+            };
+            return self.infinite.push(infinite);
+        }
         let illuminance = params.float("illuminance").filter(|e| *e > 0.0);
         params.left_out(&["portal"], "light is looked for all around");
         let infinite = match params.text("filename") {
@@ -105,7 +137,8 @@ impl Reader<'_> {
                 let at = params.get("filename").map_or(params.at, |param| param.values_at);
                 let scale = params.float("scale").unwrap_or(1.0).max(0.0) * exposure;
                 let to_light = self.map(params.at).inverse();
-                Infinite::Picture { name: name.to_string(), at, scale, to_light, illuminance }
+                let (scale, map) = (Vec3::splat(scale), Map::EqualArea);
+                Infinite::Picture { name: name.to_string(), at, scale, map, to_light, illuminance }
             }
             None => Infinite::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
         };
@@ -114,7 +147,8 @@ impl Reader<'_> {
     }
 
     pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
-        if kind != "diffuse" {
+        let third = self.language == Language::Third;
+        if kind != "diffuse" && !(third && kind == "area") {
             return self.said.bad_with(
                 at,
                 format!("there is no light of surfaces `{kind}`"),
@@ -122,17 +156,20 @@ impl Reader<'_> {
             );
         }
         let params = self.params(list, Some(LIGHT), at);
-        let picture = params.text("filename").map(str::to_string);
+        let picture = if third { None } else { params.text("filename").map(str::to_string) };
         if picture.is_some() && params.get("L").is_some() {
             self.said.bad(params.place("filename"), "a light has either `L` or `filename`");
         }
         let light = AreaLight {
             radiance: color(&params, "L") * self.exposure(),
-            power: params.float("power").filter(|power| *power > 0.0),
+            power: if third { None } else { params.float("power").filter(|power| *power > 0.0) },
             two_sided: params.truth("twosided").unwrap_or(false),
             picture,
             at,
         };
+        if third {
+            params.known(&["samples", "nsamples"]);
+        }
         params.finish("this light");
         if light.radiance == Vec3::ZERO {
             self.said.push(crate::diag::Diagnostic::note("this light is black").code("black-light").at(at));

@@ -59,6 +59,15 @@ pub(super) struct AreaLight {
     pub at: Span,
 }
 
+/// How directions lie in a picture of all of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Map {
+    /// In a square, all areas in proportion: pbrt-v4's.
+    EqualArea,
+    /// By longitude and latitude, z upwards: pbrt-v3's.
+    Longitude,
+}
+
 /// A light that is infinitely far away.
 pub(super) enum Infinite {
     /// The same from everywhere.
@@ -66,7 +75,9 @@ pub(super) enum Infinite {
     Picture {
         name: String,
         at: Span,
-        scale: f32,
+        /// What multiplies it.
+        scale: Color,
+        map: Map,
         /// From the world's directions to the picture's.
         to_light: DAffine3,
         /// The illuminance that its upper half is to have.

@@ -15,18 +15,48 @@ use crate::medium::Fog;
 use crate::scene::Spanned;
 use std::rc::Rc;
 
+/// What is scattered, as if evenly, and absorbed in a millimetre, for red, green and blue.
+///
+/// Source: Jensen, Marschner, Levoy and Hanrahan, *A Practical Model for Subsurface Light Transport*,
+/// SIGGRAPH 2001, table 5.
+const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
+    ("Apple", [2.29, 2.39, 1.97], [0.003, 0.0034, 0.046]),
+    ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
+    ("Chicken2", [0.19, 0.25, 0.32], [0.018, 0.088, 0.2]),
+    ("Cream", [7.38, 5.47, 3.15], [0.0002, 0.0028, 0.0163]),
+    ("Ketchup", [0.18, 0.07, 0.03], [0.061, 0.97, 1.45]),
+    ("Marble", [2.19, 2.62, 3.0], [0.0021, 0.0041, 0.0071]),
+    ("Potato", [0.68, 0.7, 0.55], [0.0024, 0.009, 0.12]),
+    ("Skimmilk", [0.7, 1.22, 1.9], [0.0014, 0.0025, 0.0142]),
+    ("Skin1", [0.74, 0.88, 1.01], [0.032, 0.17, 0.48]),
+    ("Skin2", [1.09, 1.59, 1.79], [0.013, 0.07, 0.145]),
+    ("Spectralon", [11.6, 20.4, 14.9], [0.0, 0.0, 0.0]),
+    ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
+];
+
 impl Medium {
-    /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`.
-    pub(super) fn of(params: &Params) -> Medium {
+    /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
+    /// which a parameter has.
+    pub(super) fn of(params: &Params, preset: &'static str) -> Medium {
         let scale = params.float("scale").unwrap_or(1.0).max(0.0);
+        if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
+            match MEASURED.iter().find(|row| row.0 == name) {
+                Some((_, scattering, absorption)) => {
+                    params.known(&["sigma_a", "sigma_s", "g"]);
+                    let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
+                    return Medium { absorption, scattering, anisotropy: 0.0 };
+                }
+                None => {
+                    let message = format!("the medium `{name}` is not known here: its coefficients count");
+                    params.said.once(params.place(preset), message);
+                }
+            }
+        }
         let coefficient = |name, usual: [f32; 3]| {
             let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
             scale * given.unwrap_or(Vec3::from_array(usual))
         };
-        params.left_out(
-            &["preset", "Le", "Lescale", "Le_scale"],
-            "the medium is as its coefficients say, and does not shine",
-        );
+        params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
         Medium {
             absorption: coefficient("sigma_a", [0.0011, 0.0024, 0.014]),
             scattering: coefficient("sigma_s", [2.55, 3.21, 3.77]),
@@ -72,11 +102,11 @@ impl Reader<'_> {
         let kind = params.text("type").unwrap_or("homogeneous").to_string();
         let medium = match kind.as_str() {
             "homogeneous" => {
-                let medium = Medium::of(&params);
+                let medium = Medium::of(&params, "preset");
                 params.finish(&format!("the medium `{name}`"));
                 Some(medium)
             }
-            "uniformgrid" | "rgbgrid" | "cloud" | "nanovdb" => {
+            "uniformgrid" | "rgbgrid" | "cloud" | "nanovdb" | "heterogeneous" => {
                 let what = "media that are not the same everywhere have no counterpart: light goes through them as if they were not there";
                 self.said.once(at, what);
                 None

@@ -1,13 +1,15 @@
-//! Scenes of pbrt-v4: the whole language, and what of it has a counterpart here.
+//! Scenes of pbrt-v4 and of pbrt-v3: the whole language, and what of it has a counterpart here.
 //!
-//! Sources: *Input File Format*, pbrt.org/fileformat-v4; Pharr, Jakob and Humphreys, *Physically
-//! Based Rendering*, 4th edition, 2023. A text changes a state, and what is written then (a shape,
+//! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob and
+//! Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016. A text changes a state, and what is written then (a shape,
 //! a light) takes the state as it is.
 
 mod camera;
+mod curve;
 mod directives;
 mod environment;
 mod given;
+mod language;
 mod lexer;
 mod light;
 pub(super) mod made;
@@ -15,10 +17,14 @@ mod material;
 pub(super) mod medium;
 pub(super) mod mesh;
 mod named;
+mod net;
 mod params;
+mod pictured;
+mod round;
 pub(super) mod shape;
 pub(super) mod spectrum;
 mod state;
+mod subdivision;
 mod texture;
 mod transform;
 
@@ -60,7 +66,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         return None;
     }
     let said = Said::default();
-    let scene = Reader::new(input, &said).read();
+    let scene = Reader::new(input, language::decide(input), &said).read();
     let sound = !said.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(said.finish());
     sound.then_some(scene)

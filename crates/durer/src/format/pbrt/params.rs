@@ -1,5 +1,6 @@
 //! Lists of parameters: `"float radius" [ 2 ]`.
 
+use super::language::Language;
 use super::lexer::{Found, Lexer, Token};
 use super::spectrum::{Space, Spectrum};
 use crate::diag::{Diagnostic, Span};
@@ -23,6 +24,7 @@ pub(super) enum Kind {
     /// Three numbers each.
     Triple,
     Rgb,
+    Xyz,
     Blackbody,
     Spectrum,
 }
@@ -46,7 +48,7 @@ const KINDS: [(&str, Kind); 18] = [
     ("blackbody", Kind::Blackbody),
     ("spectrum", Kind::Spectrum),
     ("color", Kind::Rgb),
-    ("xyz", Kind::Spectrum),
+    ("xyz", Kind::Xyz),
 ];
 
 /// What stands behind a name.
@@ -129,17 +131,18 @@ pub(super) struct Params<'s> {
     pub input: &'s Input<'s>,
     /// What red, green and blue are.
     pub space: Space,
+    pub language: Language,
     asked: RefCell<Vec<&'static str>>,
 }
 
 /// Reads parameters as long as strings follow.
-pub(super) fn read(text: &mut Lexer, said: &Said) -> Vec<Rc<Param>> {
+pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<Param>> {
     let mut list: Vec<Rc<Param>> = Vec::new();
     while !said.is_full() {
         let Some(Found { token: Token::Text(_), .. }) = text.peek(said) else { break };
         let Some(Found { token: Token::Text(head), at }) = text.next(said) else { break };
         let Some((values, values_at)) = values(text, at, said) else { continue };
-        let Some((kind, name)) = declared(&head, at, said) else { continue };
+        let Some((kind, name)) = declared(&head, at, language, said) else { continue };
         if let Some(first) = list.iter().find(|param| param.name == name) {
             let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
             said.push(error.related(first.at, "first here"));
@@ -153,7 +156,7 @@ pub(super) fn read(text: &mut Lexer, said: &Said) -> Vec<Rc<Param>> {
 }
 
 /// The type and name of `"float radius"`.
-fn declared(head: &str, at: Span, said: &Said) -> Option<(Kind, String)> {
+fn declared(head: &str, at: Span, language: Language, said: &Said) -> Option<(Kind, String)> {
     let mut words = head.split_ascii_whitespace();
     let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
         said.bad_with(
@@ -168,7 +171,7 @@ fn declared(head: &str, at: Span, said: &Said) -> Option<(Kind, String)> {
         let help = meant(kind, KINDS.iter().map(|row| row.0));
         said.bad_with(at, format!("`{kind}` is no type of a parameter"), help);
     }
-    if kind == "xyz" {
+    if kind == "xyz" && language == Language::Fourth {
         said.bad_with(at, "colours by XYZ are of pbrt-v3", Some("write `rgb`".into()));
         return None;
     }
@@ -293,7 +296,7 @@ fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool 
         (Kind::Spectrum, _) => complain("pairs of wavelength and value, or a name"),
         (Kind::Pair, _) if !rows(2) => complain("a multiple of two numbers"),
         (Kind::Triple, _) if !rows(3) => complain("a multiple of three numbers"),
-        (Kind::Rgb, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
+        (Kind::Rgb | Kind::Xyz, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
         (Kind::Integer, Values::Numbers(all)) => {
             let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
             whole || complain("whole numbers of 32 bits")
@@ -310,11 +313,11 @@ impl<'s> Params<'s> {
         others: &[Rc<Param>],
         at: Span,
         (input, said): (&'s Input<'s>, &'s Said),
-        space: Space,
+        (language, space): (Language, Space),
     ) -> Self {
         let count = own.len();
         let list = own.into_iter().chain(others.iter().cloned()).collect();
-        Params { list, own: count, at, said, input, space, asked: RefCell::default() }
+        Params { list, own: count, at, said, input, space, language, asked: RefCell::default() }
     }
 
     /// The parameter of a name.
@@ -397,7 +400,7 @@ impl<'s> Params<'s> {
 
     /// A colour or spectrum that is no texture.
     pub fn spectrum(&self, name: &'static str) -> Option<Spectrum> {
-        let kinds = [Kind::Rgb, Kind::Blackbody, Kind::Spectrum];
+        let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
         Spectrum::of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 

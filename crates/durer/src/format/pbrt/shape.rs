@@ -1,9 +1,10 @@
 //! Shapes.
 
+use super::language::Language;
 use super::made::Opacity;
-use super::mesh;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, SHAPE};
+use super::{curve, mesh, net, round, subdivision};
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::math::{Color, Vec3};
@@ -13,6 +14,11 @@ use glam::{DAffine3, DMat3, DMat4, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
+
+/// Triangles that all shapes together become which are written by few numbers, and from how many on
+/// curves have fewer sides. Tests make them all.
+const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
+const MANY: usize = 1 << 20;
 
 /// A shape where it is written, before it has a place and a material.
 struct Made {
@@ -41,12 +47,13 @@ impl Reader<'_> {
         let map = self.map(at);
         // The sides of a quadric are told in its own space, those of a triangle in the world.
         let flipped = self.state.reversed != (map.matrix3.determinant() < 0.0);
+        let third = self.language == Language::Third;
         let made = match kind {
             "sphere" => self.sphere(&params, map, flipped),
             "disk" => self.disk(&params, map, flipped),
             "cylinder" => {
                 let data = mesh::cylinder(&params, flipped);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.grown(data, map, at))
             }
             "trianglemesh" => {
                 let data = mesh::triangles(&params, self.state.reversed);
@@ -54,22 +61,41 @@ impl Reader<'_> {
             }
             "bilinearmesh" => {
                 let data = mesh::bilinear(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+                data.and_then(|data| self.grown(data, map, at))
             }
             "loopsubdiv" => {
-                self.said.once(at, "surfaces of subdivision have no counterpart: the control mesh is shown, smooth");
-                params.known(&["levels", "scheme"]);
-                let data = mesh::triangles(&params, self.state.reversed);
-                data.and_then(|data| self.mesh(None, Arc::new(MeshData { flat: false, ..data }), map, at))
+                let data = subdivision::smooth(&params, self.state.reversed, MAX_GROWN - self.grown);
+                data.and_then(|data| self.grown(data, map, at))
             }
             "plymesh" => self.ply(&params, map, at),
             "curve" => {
-                self.said.once(at, "curves have no counterpart: they are left out");
-                return;
+                let data = curve::mesh(&params, self.state.reversed, self.grown > MANY);
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            "cone" | "paraboloid" | "hyperboloid" | "heightfield" | "nurbs" if third => {
+                let data = match kind {
+                    "cone" => Some(round::cone(&params, flipped)),
+                    "paraboloid" => round::paraboloid(&params, flipped),
+                    "hyperboloid" => round::hyperboloid(&params, flipped),
+                    "heightfield" => net::heights(&params, self.state.reversed),
+                    _ => net::nurbs(&params, self.state.reversed),
+                };
+                data.and_then(|data| self.grown(data, map, at))
             }
             other => {
-                let known =
-                    ["sphere", "disk", "cylinder", "trianglemesh", "plymesh", "bilinearmesh", "loopsubdiv", "curve"];
+                let mut known = vec![
+                    "sphere",
+                    "disk",
+                    "cylinder",
+                    "trianglemesh",
+                    "plymesh",
+                    "bilinearmesh",
+                    "loopsubdiv",
+                    "curve",
+                ];
+                if third {
+                    known.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
+                }
                 let mut help = meant(other, known);
                 if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
                     help = Some("this is of pbrt-v3: pbrt-v4 has it no more".into());
@@ -78,6 +104,9 @@ impl Reader<'_> {
             }
         };
         params.known(&["alpha"]);
+        if third {
+            params.left_out(&["shadowalpha"], "shadows are as what is seen");
+        }
         params.finish(&format!("the shape `{kind}`"));
         if let Some(made) = made {
             self.show(made, &opacity, at);
@@ -109,23 +138,19 @@ impl Reader<'_> {
     }
 
     fn opacity(&mut self, params: &Params) -> Opacity {
-        match self.changed(params, "alpha", |share| share) {
+        match self.changed(params, "alpha", false, |share| share) {
             Some(picture) => Opacity { share: 1.0, picture: Some(picture) },
             None => Opacity { share: self.value(params, "alpha", 1.0), picture: None },
         }
     }
 
-    /// Says that a part of a round shape is not drawn alone.
-    fn whole(&self, params: &Params, part: bool) {
-        if part || params.float("phimax").is_some_and(|degrees| degrees < 360.0) {
-            self.said.once(params.at, "parts of round shapes have no counterpart: the whole is shown");
-        }
-    }
-
-    fn sphere(&self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+    fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
         let radius = params.positive("radius").unwrap_or(1.0);
-        let ends = [params.float("zmin").unwrap_or(-radius), params.float("zmax").unwrap_or(radius)];
-        self.whole(params, ends[0] > -radius || ends[1] < radius);
+        let ends = round::ends(params, [-radius, radius]);
+        if round::turn(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
+            let data = round::sphere(params, radius, ends, flipped)?;
+            return self.grown(data, map, params.at);
+        }
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
             self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards");
         }
@@ -143,20 +168,36 @@ impl Reader<'_> {
         Some(Made { node, area: 4.0 * PI * world * world, lights: 1, map })
     }
 
-    fn disk(&self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+    fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
         let radius = params.positive("radius").unwrap_or(1.0);
         let inner_radius = params.float("innerradius").unwrap_or(0.0).max(0.0);
         let height = params.float("height").unwrap_or(0.0);
-        self.whole(params, false);
         if inner_radius >= radius {
             self.said.bad(params.place("innerradius"), "`innerradius` must be less than `radius`");
             return None;
+        }
+        if round::turn(params) < 360.0 {
+            let data = round::disk(params, [inner_radius, radius], height, flipped);
+            return self.grown(data, map, params.at);
         }
         let normal = if flipped { Vec3::NEG_Z } else { Vec3::Z };
         let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
         Some(Made { node, area, lights: 1, map })
+    }
+
+    /// A mesh that is made of few numbers. All of a file may have so many triangles and no more.
+    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<Made> {
+        self.grown = self.grown.saturating_add(data.triangles.len());
+        if self.grown > MAX_GROWN {
+            self.grown = MAX_GROWN;
+            let what =
+                format!("round shapes, curves and smooth surfaces of more than {MAX_GROWN} triangles are left out");
+            self.said.once(at, what);
+            return None;
+        }
+        self.mesh(None, Arc::new(data), map, at)
     }
 
     /// A mesh with a name of its own, or one that it shares.

@@ -47,9 +47,14 @@ fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
+/// The colour of X, Y and Z.
+pub(super) fn of_xyz(xyz: DVec3) -> Color {
+    (SRGB * xyz).as_vec3()
+}
+
 /// The colour of luminance 1 of a chromaticity.
 pub(super) fn of_chromaticity(xy: [f64; 2]) -> Color {
-    (SRGB * xyz(xy)).as_vec3().max(Vec3::ZERO)
+    of_xyz(xyz(xy)).max(Vec3::ZERO)
 }
 
 impl Space {
@@ -104,6 +109,24 @@ impl Spectrum {
                 let sum = sum(|nm| f64::from(self.at(nm)));
                 let color = SRGB * (sum / sum.y);
                 if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }
+            }
+        }
+    }
+
+    /// Its numbers as red, green and blue, as pbrt-v3 has them for lights, for what reflects and for
+    /// indices alike: a spectrum of 1 has luminance 1. Beyond its ends it stays what it is there,
+    /// and a black body has 1 where it is strongest.
+    pub fn plain(&self) -> Color {
+        match self {
+            Spectrum::Rgb(color) | Spectrum::Illuminant(color) => *color,
+            Spectrum::Blackbody(kelvin) => {
+                // Source: Wien's law.
+                let strongest = self.at(2.897_772e6 / kelvin);
+                radiance(|nm| self.at(nm) / strongest)
+            }
+            Spectrum::Curve(curve) => {
+                let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return Vec3::ZERO };
+                radiance(|nm| self.at(nm.clamp(first[0], last[0])))
             }
         }
     }

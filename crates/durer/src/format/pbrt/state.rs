@@ -1,5 +1,6 @@
 //! What the directives change, and what comes of them.
 
+use super::language::{Decided, Language};
 use super::lexer::Lexer;
 use super::made::{AreaLight, Infinite, Made, Medium, Texture};
 use super::params::{Param, Params};
@@ -74,6 +75,9 @@ pub(super) struct Open {
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub said: &'a Said,
+    pub language: Language,
+    /// The word that says so.
+    pub decided_by: Option<Span>,
     pub texts: Vec<Open>,
     pub state: State,
     pub stack: Vec<(Scope, State, Span)>,
@@ -91,6 +95,8 @@ pub(super) struct Reader<'a> {
     /// The object that is being defined.
     pub defining: Option<(String, Group)>,
     pub count: usize,
+    /// Triangles that were made of few numbers.
+    pub grown: usize,
     /// Files that were included.
     pub included: usize,
     pub camera: Option<Asked>,
@@ -104,12 +110,14 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub fn new(input: &'a Input<'a>, said: &'a Said) -> Self {
+    pub fn new(input: &'a Input<'a>, decided: Decided, said: &'a Said) -> Self {
         let text = Lexer::new(input.bytes.clone(), input.file);
         let at = Span { file: input.file, start: 0, end: 0 };
         Reader {
             input,
             said,
+            language: decided.language,
+            decided_by: decided.by,
             texts: vec![Open { text, name: input.name.to_string(), at, imported: false }],
             state: State::default(),
             stack: Vec::new(),
@@ -123,6 +131,7 @@ impl<'a> Reader<'a> {
             objects: BTreeMap::new(),
             defining: None,
             count: 0,
+            grown: 0,
             included: 0,
             camera: None,
             film: None,
@@ -137,12 +146,12 @@ impl<'a> Reader<'a> {
     /// The parameters of a directive, with those that `Attribute` gives its kind.
     pub fn params(&self, list: Vec<Rc<Param>>, given: Option<usize>, at: Span) -> Params<'a> {
         let given = given.map_or(&[][..], |kind| &self.state.given[kind]);
-        Params::new(list, given, at, (self.input, self.said), self.state.space)
+        Params::new(list, given, at, (self.input, self.said), (self.language, self.state.space))
     }
 
     /// The parameters of a directive that was kept.
     pub fn params_of(&self, asked: &Asked) -> Params<'a> {
-        Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), asked.space)
+        Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), (self.language, asked.space))
     }
 
     /// From the coordinates of what is written now to the world. What moves stands as when the

@@ -2,6 +2,9 @@
 
 mod conventions;
 mod language;
+mod shapes;
+mod third;
+mod third_materials;
 
 use crate::diag::{Diagnostics, Files};
 use crate::format::testing::{self, folder};

@@ -1,5 +1,6 @@
 //! Textures: one value everywhere, or a picture.
 
+use super::language::Language;
 use super::made::Texture;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, TEXTURE};
@@ -21,7 +22,7 @@ impl Texture {
         }
     }
 
-    fn even(&self) -> Option<Color> {
+    pub fn even(&self) -> Option<Color> {
         if let Texture::Even(color) = self { Some(*color) } else { None }
     }
 }
@@ -34,12 +35,13 @@ impl Reader<'_> {
         (class, at): (&str, Span),
         list: Vec<Rc<Param>>,
     ) {
-        if kind != "float" && kind != "spectrum" {
+        let third = self.language == Language::Third;
+        if kind != "float" && kind != "spectrum" && !(third && kind == "color") {
             let help = meant(kind, ["float", "spectrum"]);
             return self.said.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
         }
         let params = self.params(list, Some(TEXTURE), at);
-        let (is_color, said) = (kind == "spectrum", self.said);
+        let (is_color, said) = (kind != "float", self.said);
         let instead = |what: &str| said.once(at, format!("the texture `{class}` has no counterpart: {what}"));
         let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
         let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
@@ -48,6 +50,14 @@ impl Reader<'_> {
         };
         let made = match class {
             "constant" => of("value", 1.0),
+            "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
+                (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
+                (texture, other) => self.together([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
+                    instead("of two pictures that lie otherwise the first is shown");
+                    texture
+                }),
+            },
+            "uv" if third => self.corners([Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)], &params),
             "scale" => {
                 let scale = self.pattern(&params, "scale", false, Vec3::ONE);
                 match (of("tex", 1.0), scale) {
@@ -63,8 +73,13 @@ impl Reader<'_> {
                 let (first, second) = (of("tex1", 0.0), of("tex2", 1.0));
                 let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
                 params.known(&["dir"]);
-                both(&first, &second, amount.unwrap_or(0.5)).unwrap_or_else(|| {
-                    instead("pictures are not mixed, the first is shown");
+                let share = amount.unwrap_or_else(|| {
+                    instead("its amount is no picture, one half is taken");
+                    0.5
+                });
+                let mixed = || self.together([&first, &second], at, |a, b| a.lerp(b, share));
+                both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
+                    instead("pictures that lie otherwise are not mixed, the first is shown");
                     if first.even().is_some() { second } else { first }
                 })
             }
@@ -80,9 +95,14 @@ impl Reader<'_> {
                 }
             }
             "bilerp" => {
-                instead("the mean of its corners is taken");
                 let corners = [of("v00", 0.0), of("v01", 1.0), of("v10", 0.0), of("v11", 1.0)];
-                Texture::Even(corners.iter().filter_map(Texture::even).sum::<Color>() / 4.0)
+                match corners.each_ref().map(Texture::even) {
+                    [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
+                    all => {
+                        instead("the mean of its corners is taken");
+                        Texture::Even(all.into_iter().flatten().sum::<Color>() / 4.0)
+                    }
+                }
             }
             "dots" => {
                 instead("its outside is taken");
@@ -113,6 +133,9 @@ impl Reader<'_> {
                 return self.said.bad_with(at, format!("there is no texture `{other}`"), meant(other, known));
             }
         };
+        if third {
+            params.known(&["aamode", "dimension"]);
+        }
         params.known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
         params.finish("this texture");
         self.textures.insert((is_color, name), made);
@@ -142,17 +165,32 @@ impl Reader<'_> {
         match self.pattern(params, name, false, Vec3::splat(usual)) {
             Texture::Even(color) => color.x,
             Texture::Picture(picture, scale) => {
-                let at = params.place(name);
-                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
-                let mean = self.pictures().mean(&picture, at);
-                mean.map_or(usual, |mean| mean * scale.x)
+                self.mean_of(params, name, &picture).map_or(usual, |mean| mean * scale.x)
             }
         }
     }
 
+    /// The mean of the picture that a parameter is, where only a number has a counterpart.
+    pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
+        let at = params.place(name);
+        self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+        self.pictures().mean(picture, at)
+    }
+
+    /// The mean of a picture of numbers that the scene has.
+    pub fn mean_of_asset(&self, name: &FileName, at: Span) -> Option<f32> {
+        self.pictures().mean(self.scene.assets.pictures.get(&name.path)?, at)
+    }
+
     /// A picture that a number is, with its values made others; `None` where it is no picture.
-    pub fn changed(&mut self, params: &Params, name: &'static str, change: impl Fn(f32) -> f32) -> Option<FileName> {
-        let Texture::Picture(picture, scale) = self.pattern(params, name, false, Vec3::ZERO) else { return None };
+    pub fn changed(
+        &mut self,
+        params: &Params,
+        name: &'static str,
+        is_color: bool,
+        change: impl Fn(f32) -> f32,
+    ) -> Option<FileName> {
+        let Texture::Picture(picture, scale) = self.pattern(params, name, is_color, Vec3::ZERO) else { return None };
         let at = params.place(name);
         let picture = self.pictures().changed(&picture, at, decode_srgb, |x| change(scale.x * x))?;
         Some(self.asset(picture, at))
@@ -202,6 +240,16 @@ impl Reader<'_> {
         }
         mapping.nearest = params.text("filter") == Some("point");
         mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
+        if self.language == Language::Third {
+            // Its own default are smaller versions of the picture, which sampling does not need.
+            params.known(&["trilinear", "maxanisotropy"]);
+            let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
+            let plain = params.truth("gamma") == Some(false);
+            let bytes = self.eight_bits(name, at)?;
+            let picture = Picture { bytes, mapping };
+            let curved = if plain { self.pictures().curved(&picture, at) } else { None };
+            return Some(Texture::Picture(curved.unwrap_or(picture), scale));
+        }
         if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
             self.said
                 .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");
@@ -225,6 +273,33 @@ impl Reader<'_> {
         let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
         // Both have v upwards; a picture's rows go down.
         Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
+    }
+
+    /// What lies between the values at (0, 0), (0, 1), (1, 0) and (1, 1), as a picture of four texels.
+    fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
+        let mut mapping = self.mapping(params);
+        // From the middle of a texel to that of the next; rows go down.
+        let [[su, _, du], [_, sv, dv]] = mapping.transform;
+        mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
+        mapping.wrap = [Wrap::Clamp; 2];
+        match pictures::four([v01, v11, v00, v10]) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.25 * (v00 + v01 + v10 + v11)),
+        }
+    }
+
+    /// One picture of two textures, texel by texel; `None` where both are pictures that lie otherwise.
+    fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
+        let pictures = self.pictures();
+        let (picture, most) = match textures {
+            [Texture::Picture(a, by), Texture::Even(b)] => pictures.remade([a, a], at, |a, _| join(*by * a, *b)),
+            [Texture::Even(a), Texture::Picture(b, by)] => pictures.remade([b, b], at, |b, _| join(*a, *by * b)),
+            [Texture::Picture(a, by), Texture::Picture(b, other)] => {
+                pictures.remade([a, b], at, |a, b| join(*by * a, *other * b))
+            }
+            _ => None,
+        }?;
+        Some(Texture::Picture(picture, Vec3::splat(most)))
     }
 
     /// Two fields and two more, as a picture of four texels.

@@ -61,8 +61,8 @@ fn errors_name_their_place_and_what_may_be_meant() {
             "error there is no material `glod` (did you mean `gold`?)",
         ),
         (
-            "WorldBegin Material \"matte\"",
-            "error there is no material `matte` (this is of pbrt-v3; `diffuse` is nearest",
+            "WorldBegin Material \"diffuse\" Material \"matte\"",
+            "error there is no material `matte` in pbrt-v4 (this is of pbrt-v3; `diffuse` is nearest",
         ),
         (
             "WorldBegin Material \"diffuse\" \"texture reflectance\" \"wood\"",
@@ -118,7 +118,7 @@ fn errors_name_their_place_and_what_may_be_meant() {
 fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
     let text = "Integrator \"bdpt\" Camera \"perspective\"\nWorldBegin\n\
                 MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\
-                Shape \"curve\" Shape \"curve\" Shape \"sphere\" \"float zmax\" 0.5 \"float radiu\" 2\n\
+                LightSource \"infinite\" \"point3 portal\" [ 0 0 0 ] Shape \"sphere\" \"float radiu\" 2\n\
                 Material \"hair\" Shape \"sphere\"";
     let (scene, told) = read(text);
     assert_eq!(scene.unwrap().root.unwrap().objects.len(), 2);
@@ -127,9 +127,8 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
         [
             "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: paths from the camera are followed",
             "scene.pbrt:3:18 warning media that are not the same everywhere have no counterpart: light goes through them as if they were not there",
-            "scene.pbrt:4:8 warning curves have no counterpart: they are left out",
-            "scene.pbrt:4:36 warning parts of round shapes have no counterpart: the whole is shown",
-            "scene.pbrt:4:62 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",
+            "scene.pbrt:4:25 warning `portal` has no counterpart: light is looked for all around",
+            "scene.pbrt:4:66 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",
             "scene.pbrt:5:11 warning hair has no counterpart: matte brown is taken",
         ]
     );

@@ -1,27 +1,22 @@
-//! Materials, in the words of OpenPBR.
+//! Materials of pbrt-v4.
 //!
 //! Source of all meanings: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat
 //! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
 //! GGX's alpha is the square of our roughness.
 
-use super::made::{AreaLight, Made, Medium, Opacity};
-use super::params::{Kind, Param, Params};
-use super::spectrum::{Spectrum, metal};
-use super::state::{MATERIAL, Reader};
+use super::super::made::{Made, Medium, Texture};
+use super::super::named;
+use super::super::params::{Kind, Params, Values};
+use super::super::spectrum::{Spectrum, metal};
+use super::super::state::Reader;
+use super::matte;
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::said::meant;
-use crate::material::mix::Mix;
+use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::material::{PrincipledMaterial, Solid};
 use crate::math::{Color, Vec3, fp};
-use crate::scene::{Material, Picture, Spanned};
-use crate::texture::Mapping;
-use std::rc::Rc;
-
-/// Mixes in mixes.
-const DEEPEST: u32 = 32;
 
 const KNOWN: [&str; 12] = [
     "diffuse",
@@ -50,31 +45,6 @@ const OLD: [(&str, &str); 8] = [
     ("translucent", "diffusetransmission"),
 ];
 
-impl Made {
-    /// What shapes have that nothing is said of.
-    pub fn usual() -> Made {
-        Made::Layers(Box::new(matte(Vec3::splat(0.5))), Span::default())
-    }
-
-    /// How deep it is mixed of others.
-    fn depth(&self) -> u32 {
-        if let Made::Mix { depth, .. } = self { *depth } else { 0 }
-    }
-
-    fn is_pictured(&self) -> bool {
-        match self {
-            Made::Layers(layers, _) => layers.has_pictures(),
-            Made::Mix { pictured, .. } => *pictured,
-            Made::Nothing => false,
-        }
-    }
-}
-
-/// Matte, without a boundary.
-fn matte(base_color: Color) -> PrincipledMaterial {
-    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
-}
-
 impl Reader<'_> {
     /// GGX's alpha along both directions, by three parameters: of both, and of each.
     fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
@@ -94,7 +64,7 @@ impl Reader<'_> {
         let picture = if each {
             None
         } else {
-            self.changed(params, names[0], |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
+            self.changed(params, names[0], false, |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
         };
         match picture {
             Some(picture) => (Some(picture), [1.0; 2]),
@@ -102,38 +72,7 @@ impl Reader<'_> {
         }
     }
 
-    /// The number of a material.
-    pub fn material(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) -> usize {
-        let params = self.params(list, Some(MATERIAL), at);
-        let made = self.made(kind, &params, at);
-        params.known(&["type", "remaproughness"]);
-        params.finish(&format!("the material `{kind}`"));
-        self.materials.push(made);
-        self.materials.len() - 1
-    }
-
-    pub fn make_named_material(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
-        let kind = list.iter().find(|param| param.name == "type" && param.kind == Kind::Text);
-        let Some(kind) = kind.map(|param| param.text().to_string()) else {
-            return self.said.bad(at, format!("the material `{name}` needs a `\"string type\"`"));
-        };
-        let number = self.material(&kind, at, list);
-        if self.named_materials.insert(name.clone(), number).is_some() {
-            self.said.bad(at, format!("there is a material `{name}` already"));
-        }
-    }
-
-    pub fn named_material(&mut self, name: &str, at: Span) {
-        match self.named_materials.get(name) {
-            Some(number) => self.state.material = *number,
-            None => {
-                let help = meant(name, self.named_materials.keys().map(String::as_str));
-                self.said.bad_with(at, format!("there is no material `{name}`"), help);
-            }
-        }
-    }
-
-    fn made(&mut self, kind: &str, params: &Params, at: Span) -> Made {
+    pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> Made {
         let remapped = params.truth("remaproughness").unwrap_or(true);
         let mut m = PrincipledMaterial::default();
         const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
@@ -203,7 +142,6 @@ impl Reader<'_> {
                 (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
                 [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                 m.specular_ior = self.index(params, "eta", 1.33);
-                params.left_out(&["name"], "the coefficients count");
                 if params.get("reflectance").is_some() {
                     let (color, picture) = self.colored(params, "reflectance", 1.0);
                     m.subsurface_color_texture = picture;
@@ -216,7 +154,7 @@ impl Reader<'_> {
                 } else {
                     // The skin refracts, and what is inside scatters.
                     m.transmission_weight = 1.0;
-                    Medium::of(params).fill(&mut m);
+                    Medium::of(params, "name").fill(&mut m);
                 }
             }
             "measured" => {
@@ -244,24 +182,14 @@ impl Reader<'_> {
             other => {
                 let old = OLD.iter().find(|row| row.0 == other);
                 let help = match old {
-                    Some((_, now)) => {
-                        Some(format!("this is of pbrt-v3; `{now}` is nearest, and `pbrt --upgrade` converts a file"))
-                    }
+                    Some((_, now)) => Some(format!("this is of pbrt-v3; `{now}` is nearest")),
                     None => meant(other, KNOWN),
                 };
-                self.said.bad_with(at, format!("there is no material `{other}`"), help);
+                self.no_material(other, at, help, old.is_some());
                 return Made::Nothing;
             }
         }
-        if let Some(name) = params.text("normalmap") {
-            let place = params.get("normalmap").map_or(at, |param| param.values_at);
-            if let Some(bytes) = self.eight_bits(name, place) {
-                m.normal_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, place));
-            }
-        }
-        if let super::made::Texture::Picture(picture, scale) = self.pattern(params, "displacement", false, Vec3::ZERO) {
-            (m.bump_texture, m.bump_height) = (Some(self.asset(picture, params.place("displacement"))), scale.x);
-        }
+        self.surface(&mut m, params, "displacement");
         Made::Layers(Box::new(m), at)
     }
 
@@ -297,15 +225,15 @@ impl Reader<'_> {
         alphas: [f32; 2],
         outside: f32,
     ) {
-        let copper = |which: &str| super::named::spectrum(&format!("metal-Cu-{which}"));
+        let copper = |which: &str| named::spectrum(&format!("metal-Cu-{which}"));
         let [f0, f82] = match params.get(reflectance) {
             Some(param) => {
                 if params.get(eta).is_some() || params.get(k).is_some() {
                     self.said.bad(param.at, format!("a metal has either `{reflectance}` or `{eta}` and `{k}`"));
                 }
                 let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
-                    super::made::Texture::Even(color) => color,
-                    super::made::Texture::Picture(picture, scale) => {
+                    Texture::Even(color) => color,
+                    Texture::Picture(picture, scale) => {
                         // What it reflects at right angles is the picture's; grazing light has no
                         // colour of its own.
                         m.base_color_texture = Some(self.asset(picture, param.at));
@@ -336,105 +264,16 @@ impl Reader<'_> {
             self.said.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
             return Made::Nothing;
         };
-        let super::params::Values::Texts(names) = &param.values else { return Made::Nothing };
+        let Values::Texts(names) = &param.values else { return Made::Nothing };
         let [first, second] = names.as_slice() else {
             self.said.bad(param.values_at, format!("a mix is of two materials, not of {}", names.len()));
             return Made::Nothing;
         };
-        let found = [first, second].map(|name| self.named_materials.get(name).copied());
-        let [Some(a), Some(b)] = found else {
-            let missing = if found[0].is_none() { first } else { second };
-            let help = meant(missing, self.named_materials.keys().map(String::as_str));
-            self.said.bad_with(param.values_at, format!("there is no material `{missing}` before this"), help);
+        let (Some(a), Some(b)) =
+            (self.known_material(first, param.values_at), self.known_material(second, param.values_at))
+        else {
             return Made::Nothing;
         };
-        let [first, second] = [a, b].map(|number| &self.materials[number]);
-        let depth = 1 + first.depth().max(second.depth());
-        let pictured = first.is_pictured() || second.is_pictured();
-        if depth > DEEPEST {
-            self.said.bad(at, format!("materials are mixed more than {DEEPEST} deep"));
-            return Made::Nothing;
-        }
-        Made::Mix { parts: [a, b], share, depth, pictured, at }
-    }
-
-    /// Whether pictures lie on what is written now.
-    pub fn is_pictured(&self) -> bool {
-        let light = self.state.area.as_ref().is_some_and(|light| light.picture.is_some());
-        light || self.materials[self.state.material].is_pictured()
-    }
-
-    /// The number in the scene of a material that shines with a radiance and is there in part;
-    /// `None` for what is not there.
-    pub fn number(&mut self, made: usize, light: Option<(&AreaLight, Color)>, opacity: &Opacity) -> Option<u32> {
-        let key = (
-            made,
-            match light {
-                Some((light, color)) => {
-                    format!(
-                        "{opacity:?} {:?} {} {:?}",
-                        color.to_array().map(f32::to_bits),
-                        light.two_sided,
-                        light.picture
-                    )
-                }
-                None => format!("{opacity:?}"),
-            },
-        );
-        if let Some(known) = self.numbers.get(&key) {
-            return *known;
-        }
-        let number = match &self.materials[made] {
-            Made::Nothing => None,
-            Made::Layers(layers, at) => {
-                let (mut m, at) = (layers.clone(), *at);
-                m.opacity = opacity.share.clamp(0.0, 1.0);
-                m.opacity_texture = opacity.picture.clone();
-                if let Some((light, color)) = light {
-                    self.shine(&mut m, light, color);
-                }
-                Some(self.scene_material(Material::Principled(m), at))
-            }
-            Made::Mix { parts: [a, b], share, at, .. } => {
-                let (a, b, share, at) = (*a, *b, *share, *at);
-                match (self.number(a, light, opacity), self.number(b, light, opacity)) {
-                    (Some(material1), Some(material2)) => {
-                        let solid = Solid::from(Mix { material1, material2, share });
-                        Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
-                    }
-                    (Some(only), None) | (None, Some(only)) => {
-                        self.said.once(at, "a mix with what is not there has no counterpart: the other counts alone");
-                        Some(only)
-                    }
-                    (None, None) => None,
-                }
-            }
-        };
-        self.numbers.insert(key, number);
-        number
-    }
-
-    fn scene_material(&mut self, value: Material, span: Span) -> u32 {
-        self.scene.materials.push(Spanned { value, span });
-        (self.scene.materials.len() - 1) as u32
-    }
-
-    fn shine(&mut self, m: &mut PrincipledMaterial, light: &AreaLight, color: Color) {
-        let most = color.max_element();
-        if most <= 0.0 {
-            return;
-        }
-        (m.emission_luminance, m.emission_color) = (most, color / most);
-        if light.two_sided {
-            match m.transmission_weight > 0.0 && m.walls == Walls::Solid {
-                true => self.said.once(light.at, "glass shines outwards only"),
-                false => m.walls = Walls::Thin,
-            }
-        }
-        if let Some(name) = &light.picture
-            && let Some(bytes) = self.eight_bits(name, light.at)
-        {
-            m.emission_texture = Some(self.asset(Picture { bytes, mapping: Mapping::default() }, light.at));
-        }
+        self.mix([a, b], share, at)
     }
 }
