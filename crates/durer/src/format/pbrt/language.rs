@@ -64,7 +64,8 @@ const OLD_MATERIALS: [&str; 11] = [
     "uber",
 ];
 
-const NEW_MATERIALS: [&str; 9] = [
+/// Materials that only the fourth has.
+pub(super) const NEW_MATERIALS: [&str; 9] = [
     "coatedconductor",
     "coateddiffuse",
     "conductor",

@@ -9,7 +9,7 @@ use super::super::named;
 use super::super::params::{Kind, Params, Values};
 use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
-use super::matte;
+use super::{below_skin, matte};
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
@@ -143,14 +143,9 @@ impl Reader<'_> {
                 [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
                 m.specular_ior = self.index(params, "eta", 1.33);
                 if params.get("reflectance").is_some() {
-                    let (color, picture) = self.colored(params, "reflectance", 1.0);
-                    m.subsurface_color_texture = picture;
+                    let color = self.colored(params, "reflectance", 1.0);
                     let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
-                    m.subsurface_weight = 1.0;
-                    m.subsurface_color = color.min(Vec3::ONE);
-                    m.subsurface_radius = params.float("scale").unwrap_or(1.0).max(1e-6);
-                    m.subsurface_radius_scale = path.max(Vec3::splat(1e-6));
-                    m.subsurface_scatter_anisotropy = params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99);
+                    below_skin(&mut m, params, color, path);
                 } else {
                     // The skin refracts, and what is inside scatters.
                     m.transmission_weight = 1.0;

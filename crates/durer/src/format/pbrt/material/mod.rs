@@ -14,6 +14,7 @@ use super::language::Language;
 use super::made::{AreaLight, Made, Opacity, Texture};
 use super::params::{Kind, Param, Params};
 use super::state::{MATERIAL, Reader};
+use crate::describe::FileName;
 use crate::diag::{Diagnostic, Span};
 use crate::format::said::meant;
 use crate::material::mix::Mix;
@@ -50,6 +51,15 @@ impl Made {
 /// Matte, without a boundary.
 fn matte(base_color: Color) -> PrincipledMaterial {
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// Lets light go so far into a body, which gives back a colour by a picture.
+fn below_skin(m: &mut PrincipledMaterial, params: &Params, (color, picture): (Color, Option<FileName>), path: Vec3) {
+    m.subsurface_weight = 1.0;
+    (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);
+    m.subsurface_radius = params.float("scale").unwrap_or(1.0).max(1e-6);
+    m.subsurface_radius_scale = path.max(Vec3::splat(1e-6));
+    m.subsurface_scatter_anisotropy = params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99);
 }
 
 impl Reader<'_> {

@@ -4,13 +4,14 @@
 //! Source of all meanings: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File
 //! Format*, pbrt.org/fileformat-v3.
 
+use super::super::language::NEW_MATERIALS;
 use super::super::made::{Made, Medium, Texture};
 use super::super::params::{Kind, Params};
 use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
-use super::matte;
 use super::parts::{Part, glass, glossy, metallic, oren_nayar};
 use super::rough::Rough;
+use super::{below_skin, matte};
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::material::PrincipledMaterial;
@@ -33,18 +34,6 @@ const KNOWN: [&str; 15] = [
     "subsurface",
     "translucent",
     "uber",
-];
-
-/// Materials of pbrt-v4 alone.
-const NEW: [&str; 8] = [
-    "coatedconductor",
-    "coateddiffuse",
-    "conductor",
-    "dielectric",
-    "diffuse",
-    "diffusetransmission",
-    "interface",
-    "thindielectric",
 ];
 
 /// Indices of copper for red, green and blue: what its spectra come to in pbrt-v3.
@@ -134,11 +123,11 @@ impl Reader<'_> {
                 vec![Part { layers: matte(Vec3::new(0.2, 0.12, 0.07)), most: 1.0 }]
             }
             other => {
-                let help = match NEW.contains(&other) {
+                let help = match NEW_MATERIALS.contains(&other) {
                     true => Some("this is of pbrt-v4".into()),
                     false => meant(other, KNOWN),
                 };
-                self.no_material(other, at, help, NEW.contains(&other));
+                self.no_material(other, at, help, NEW_MATERIALS.contains(&other));
                 return Made::Nothing;
             }
         };
@@ -235,13 +224,9 @@ impl Reader<'_> {
         m.specular_ior = self.old_index(params, 1.33);
         params.left_out(&["Kr", "Kt"], "the skin takes no light");
         if kind == "kdsubsurface" {
-            let (color, picture) = self.colored(params, "Kd", 0.5);
+            let color = self.colored(params, "Kd", 0.5);
             let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.plain());
-            m.subsurface_weight = 1.0;
-            (m.subsurface_color, m.subsurface_color_texture) = (color.min(Vec3::ONE), picture);
-            m.subsurface_radius = params.float("scale").unwrap_or(1.0).max(1e-6);
-            m.subsurface_radius_scale = path.max(Vec3::splat(1e-6));
-            m.subsurface_scatter_anisotropy = params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99);
+            below_skin(&mut m, params, color, path);
         } else {
             m.transmission_weight = 1.0;
             Medium::of(params, "name").fill(&mut m);
