@@ -83,13 +83,13 @@ impl Raster {
         };
         let span = span.max(Vec2::ONE);
         // From the lower left corner of the square, in parts of its side.
-        let mut points = places;
+        let (mut upwards, mut points) = (places, [[0.0; N]; 2]);
         for i in 0..N {
-            points[1][i] = self.height as f32 - places[1][i];
+            upwards[1][i] = self.height as f32 - places[1][i];
         }
         for axis in 0..2 {
             for i in 0..N {
-                let place = points[axis][i] - 0.5 * inset + 0.5 * (span - size)[axis];
+                let place = upwards[axis][i] - 0.5 * inset + 0.5 * (span - size)[axis];
                 points[axis][i] = 2.0 * (place / span[axis]) - 1.0;
             }
         }

@@ -184,10 +184,10 @@ impl<F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, F> {
         let numbers = from_fn(|i| of[i].1);
         let positions = Sequence::points(&from_fn(|i| of[i].0.positions), &numbers);
         let (offsets, weights) = warp.samples(&positions);
-        let mut places = offsets;
+        let mut places = [[0.0; BATCH]; 2];
         for axis in 0..2 {
             for i in 0..BATCH {
-                places[axis][i] += of[i].0.center[axis];
+                places[axis][i] = of[i].0.center[axis] + offsets[axis][i];
             }
         }
         let lenses = match aim.has_aperture {
