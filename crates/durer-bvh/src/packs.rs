@@ -93,7 +93,8 @@ impl PrimitivePacks {
 
     /// The first hits of eight rays, as [`PrimitivePacks::closest`] has them one by one: the rays
     /// are side by side, and things are tested one after the other. So it pays where there are few.
-    pub fn closest_of_eight(&self, rays: &[Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
+    /// Rays that are not finite, or have no direction, meet nothing.
+    pub fn closest_of_eight(&self, rays: [&Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
         let found = self.level.run(Together { packs: self, rays });
         found.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
@@ -164,7 +165,7 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
 /// Eight rays' ways through all packs.
 struct Together<'a> {
     packs: &'a PrimitivePacks,
-    rays: &'a [Ray; WIDTH],
+    rays: [&'a Ray; WIDTH],
 }
 
 impl Kernel for Together<'_> {
@@ -177,14 +178,15 @@ impl Kernel for Together<'_> {
         let mut rows = [lanes.splat(0.0); WIDTH];
         for lane in 0..WIDTH {
             best[lane].t = rays[lane].t_max;
-            rows[lane] = lanes.load(numbers_of(&rays[lane]));
+            rows[lane] = lanes.load(numbers_of(rays[lane]));
         }
         let [x, y, z, dx, dy, dz, t_min, t_max] = lanes.transpose(rows);
+        let sound = sound(lanes, [x, y, z, dx, dy, dz]);
         let (origin, dir) = (lanes.doubles3([x, y, z]), lanes.doubles3([dx, dy, dz]));
         for pack in &packs.planes {
             for thing in pack.things() {
                 let t = plane(lanes, origin, dir, splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
-                let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
+                let met = sound & lanes.lt(t_min, t) & lanes.lt(t, t_max);
                 nearer(lanes.store(t), met, pack.numbers[thing], &mut best);
             }
         }
@@ -193,12 +195,22 @@ impl Kernel for Together<'_> {
                 let (center, square) = (splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
                 let Some([near, far]) = sphere(lanes, origin, dir, center, square) else { continue };
                 let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
-                let met = in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max);
+                let met = sound & (in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max));
                 nearer(lanes.store(lanes.select(in_near, near, far)), met, pack.numbers[thing], &mut best);
             }
         }
         best
     }
+}
+
+/// The rays, by origin and direction, that are finite and have a direction.
+#[inline(always)]
+fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
+    let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
+    let [x, y, z, dx, dy, dz] = numbers.map(|number| lanes.abs(number));
+    let finite = [x, y, z, dx, dy, dz].map(|size| lanes.lt(size, infinity));
+    let some = [dx, dy, dz].map(|size| lanes.lt(zero, size));
+    finite.into_iter().fold(some[0] | some[1] | some[2], |all, one| all & one)
 }
 
 /// Where rays meet planes.

@@ -211,7 +211,7 @@ impl Sequence {
     /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
     /// one by one: first coordinates, then second ones. Side by side, for compilers to make SIMD
     /// of.
-    #[inline]
+    #[inline(always)]
     pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
         let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
         for i in 0..N {
@@ -271,11 +271,13 @@ fn mix(state: u64) -> u64 {
 }
 
 /// The upper 24 bits as a number in [0,1): exact, and never 1.
+#[inline(always)]
 fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (f32::EPSILON * 0.5)
 }
 
 /// Owen's scrambling: each bit is flipped or not according to the bits above it and the key.
+#[inline(always)]
 fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     let mut v = bits.reverse_bits();
     v ^= v.wrapping_mul(0x3d20_adea);
@@ -291,6 +293,7 @@ fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
 ///
 /// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead
 /// of 32.
+#[inline(always)]
 fn sobol_second(index: u32) -> u32 {
     let mut v = index;
     v ^= v >> 16;

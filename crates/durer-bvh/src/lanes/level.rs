@@ -1,6 +1,6 @@
 //! Which instructions are used: chosen once, by what the processor has and `DURER_SIMD`.
 
-use super::operations::Kernel;
+use super::operations::{Kernel, Lanes};
 use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
@@ -91,6 +91,34 @@ impl SimdLevel {
     }
 }
 
+/// Loops over arrays in plain code, to be compiled for each level: with the instructions of a
+/// level, compilers make them as wide as it is. They fuse and reorder nothing by themselves, so all
+/// levels give the same bits. What `run` calls should be inlined into it.
+pub trait PlainKernel {
+    /// What comes of it.
+    type Output;
+
+    /// The work, to be marked `#[inline(always)]`.
+    fn run(self) -> Self::Output;
+}
+
+/// Runs plain code at the level that was chosen.
+#[inline(always)]
+pub fn run_plain<K: PlainKernel>(kernel: K) -> K::Output {
+    Available::chosen().run_plain(kernel)
+}
+
+struct Plain<K>(K);
+
+impl<K: PlainKernel> Kernel for Plain<K> {
+    type Output = K::Output;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) -> K::Output {
+        self.0.run()
+    }
+}
+
 /// A level that the processor was found to have.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Available(SimdLevel);
@@ -103,6 +131,12 @@ impl Available {
     /// The level; the plain one where the processor has not got it.
     pub fn or_scalar(level: SimdLevel) -> Self {
         Available(if level.is_available() { level } else { SimdLevel::Scalar })
+    }
+
+    /// Runs plain code at this level.
+    #[inline(always)]
+    pub fn run_plain<K: PlainKernel>(self, kernel: K) -> K::Output {
+        self.run(Plain(kernel))
     }
 
     /// Runs a kernel at this level.

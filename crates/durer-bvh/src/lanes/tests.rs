@@ -182,3 +182,33 @@ fn every_level_gives_the_same_bits() {
     }
     println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
 }
+
+/// What might be fused, or taken in another order.
+struct Sums([[f32; 24]; 3]);
+
+impl PlainKernel for Sums {
+    type Output = [u32; 24];
+
+    #[inline(always)]
+    fn run(self) -> [u32; 24] {
+        let [a, b, c] = self.0;
+        let (mut bits, mut sum) = ([0; 24], 0.0);
+        for i in 0..24 {
+            let double = f64::from(a[i]) * f64::from(b[i]) + f64::from(c[i]);
+            sum += (a[i] * b[i] + c[i]).abs().sqrt() / (b[i] * c[i] + a[i]) + double as f32;
+            bits[i] = sum.to_bits();
+        }
+        bits
+    }
+}
+
+#[test]
+fn plain_code_has_the_same_bits_on_every_level() {
+    let mut random = Random(27);
+    for _ in 0..rounds(10_000) {
+        let numbers = std::array::from_fn(|_| std::array::from_fn(|_| random.between(-2.0, 2.0)));
+        for level in SimdLevel::available() {
+            assert_eq!(Available::or_scalar(level).run_plain(Sums(numbers)), Sums(numbers).run(), "{level:?}");
+        }
+    }
+}

@@ -226,7 +226,14 @@ fn rays_side_by_side_are_those_one_by_one() {
             let frame = CameraBasis::of(camera, rules);
             let samples: [CameraSample; 8] = std::array::from_fn(|_| looked(camera, random).0);
             let alone = samples.each_ref().map(|sample| camera.ray(&frame, sample));
-            assert_eq!(camera.rays(&frame, &samples), alone, "{camera:?}");
+            let side_by_side = CameraSamples {
+                points: [0, 1].map(|axis| samples.map(|sample| sample.point[axis])),
+                pixels: samples.map(|sample| sample.pixel),
+                lenses: [0, 1].map(|axis| samples.map(|sample| sample.lens[axis])),
+            };
+            let mut found = Vec::new();
+            camera.rays(&frame, &side_by_side, |_, ray| found.push(ray));
+            assert_eq!(found, alone, "{camera:?}");
         }
     });
 }

@@ -59,8 +59,14 @@ macro_rules! delegate {
             fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
                 match self { $(Camera::$variant(c) => c.ray(frame, sample),)+ }
             }
-            fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
-                match self { $(Camera::$variant(c) => c.rays(frame, samples),)+ }
+            #[inline(always)]
+            fn rays<const N: usize>(
+                &self,
+                frame: &CameraBasis,
+                samples: &CameraSamples<N>,
+                take: impl FnMut(usize, Option<Ray>),
+            ) {
+                match self { $(Camera::$variant(c) => c.rays(frame, samples, take),)+ }
             }
             fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {
                 match self { $(Camera::$variant(c) => c.project(frame, world, lens, found),)+ }
@@ -115,6 +121,31 @@ impl CameraSample {
     }
 }
 
+/// Several of them side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct CameraSamples<const N: usize> {
+    /// The points of the picture: x of all, then y.
+    pub points: [[f32; N]; 2],
+    /// The centres of their pixels.
+    pub pixels: [Vec2; N],
+    /// The points of the lens, as those of the picture.
+    pub lenses: [[f32; N]; 2],
+}
+
+impl<const N: usize> CameraSamples<N> {
+    /// One of them.
+    pub fn sample(&self, i: usize) -> CameraSample {
+        let [point, lens] = [self.points, self.lenses].map(|[x, y]| Vec2::new(x[i], y[i]));
+        CameraSample { point, pixel: self.pixels[i], lens }
+    }
+}
+
+impl From<CameraSample> for CameraSamples<1> {
+    fn from(CameraSample { point, pixel, lens }: CameraSample) -> Self {
+        CameraSamples { points: [[point.x], [point.y]], pixels: [pixel], lenses: [[lens.x], [lens.y]] }
+    }
+}
+
 /// What every camera can do.
 pub trait Projection {
     /// Where it stands.
@@ -146,9 +177,15 @@ pub trait Projection {
     /// that `t` is a distance.
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray>;
 
-    /// The rays of several samples, as [`Projection::ray`] gives them one by one.
-    fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
-        std::array::from_fn(|i| self.ray(frame, &samples[i]))
+    /// Gives the rays of several samples, one after the other, as [`Projection::ray`] has them: for
+    /// `take` to put each where it belongs, since what is copied at once is waited for.
+    fn rays<const N: usize>(
+        &self,
+        frame: &CameraBasis,
+        samples: &CameraSamples<N>,
+        mut take: impl FnMut(usize, Option<Ray>),
+    ) {
+        (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
     }
 
     /// Calls `found` with every point of the picture at which a point of the world is seen through

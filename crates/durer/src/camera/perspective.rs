@@ -8,7 +8,7 @@
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
 use super::pose::{unit_or, units_or};
-use super::{CameraBasis, CameraSample, Pose, Projection};
+use super::{CameraBasis, CameraSample, CameraSamples, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3, fp};
@@ -44,8 +44,9 @@ impl Projection for PerspectiveCamera {
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         if !frame.screen_point {
-            let [ray] = self.rays(frame, &[*sample]);
-            return ray;
+            let mut found = None;
+            self.rays::<1>(frame, &(*sample).into(), |_, ray| found = ray);
+            return found;
         }
         let (along, half) = (0.5 * (sample.point + 1.0), frame.half_width as f32);
         let corner = frame.eye + frame.forward - half * frame.right - half * frame.up;
@@ -54,20 +55,26 @@ impl Projection for PerspectiveCamera {
         Some(Ray::new(frame.eye, unit_or(dir, frame.forward)))
     }
 
-    fn rays<const N: usize>(&self, frame: &CameraBasis, samples: &[CameraSample; N]) -> [Option<Ray>; N] {
+    #[inline(always)]
+    fn rays<const N: usize>(
+        &self,
+        frame: &CameraBasis,
+        samples: &CameraSamples<N>,
+        mut take: impl FnMut(usize, Option<Ray>),
+    ) {
         if frame.screen_point {
-            return std::array::from_fn(|i| self.ray(frame, &samples[i]));
+            return (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
         }
         let forward = frame.forward / frame.half_width as f32;
+        let [x, y] = &samples.points;
         let mut dirs = [[0.0; N]; 3];
         for axis in 0..3 {
             for i in 0..N {
-                let point = samples[i].point;
-                dirs[axis][i] = forward[axis] + point.x * frame.right[axis] + point.y * frame.up[axis];
+                dirs[axis][i] = forward[axis] + x[i] * frame.right[axis] + y[i] * frame.up[axis];
             }
         }
-        let units = units_or(&dirs, frame.forward);
-        std::array::from_fn(|i| Some(Ray::new(frame.eye, units[i])))
+        let [x, y, z] = units_or(&dirs, frame.forward);
+        (0..N).for_each(|i| take(i, Some(Ray::new(frame.eye, Vec3::new(x[i], y[i], z[i])))));
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, _: Vec2, found: &mut dyn FnMut(Vec2)) {

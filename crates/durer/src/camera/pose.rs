@@ -39,21 +39,35 @@ pub struct CameraBasis {
 /// A vector's direction, each component divided by the length (glam multiplies by its reciprocal,
 /// which rounds once more).
 pub(super) fn unit_or(v: Vec3, fallback: Vec3) -> Vec3 {
-    units_or(&[[v.x], [v.y], [v.z]], fallback)[0]
+    let [[x], [y], [z]] = units_or(&[[v.x], [v.y], [v.z]], fallback);
+    Vec3::new(x, y, z)
 }
 
 /// The same of several vectors side by side: their x, y and z.
-#[inline]
-pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [Vec3; N] {
-    let mut units = [[0.0; N]; 3];
+#[inline(always)]
+pub(super) fn units_or<const N: usize>([x, y, z]: &[[f32; N]; 3], fallback: Vec3) -> [[f32; N]; 3] {
+    let (mut units, mut all_sound) = ([[0.0; N]; 3], true);
     for i in 0..N {
         let length = (x[i] * x[i] + y[i] * y[i] + z[i] * z[i]).sqrt();
-        (units[0][i], units[1][i], units[2][i]) = (x[i] / length, y[i] / length, z[i] / length);
+        let unit = [x[i] / length, y[i] / length, z[i] / length];
+        (units[0][i], units[1][i], units[2][i]) = unit.into();
+        all_sound &= is_sound(unit);
     }
-    std::array::from_fn(|i| match Vec3::new(units[0][i], units[1][i], units[2][i]) {
-        unit if unit.is_finite() && unit != Vec3::ZERO => unit,
-        _ => Vec3::new(x[i], y[i], z[i]).normalize_or(fallback),
-    })
+    if !all_sound {
+        for i in 0..N {
+            if !is_sound([units[0][i], units[1][i], units[2][i]]) {
+                let unit = Vec3::new(x[i], y[i], z[i]).normalize_or(fallback);
+                (units[0][i], units[1][i], units[2][i]) = unit.into();
+            }
+        }
+    }
+    units
+}
+
+/// Whether a direction is finite and not zero; without a branch, so that it is asked of several at once.
+#[inline(always)]
+fn is_sound([x, y, z]: [f32; 3]) -> bool {
+    (x.is_finite() & y.is_finite() & z.is_finite()) & ((x != 0.0) | (y != 0.0) | (z != 0.0))
 }
 
 /// The same as the program of 2004 has it: multiplied by the reciprocal of the length.

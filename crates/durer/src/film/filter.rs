@@ -202,13 +202,17 @@ impl FilterSampler {
         (offset, self.weight(offset))
     }
 
-    /// The same of several positions side by side: their x, then their y.
-    #[inline]
-    pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([Vec2; N], [f32; N]) {
-        let (mut offsets, mut weights) = ([Vec2::ZERO; N], [1.0; N]);
+    /// The same of several positions side by side: x of all, then y.
+    #[inline(always)]
+    pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([[f32; N]; 2], [f32; N]) {
+        let (mut offsets, mut weights) = ([[0.0; N]; 2], [1.0; N]);
+        for axis in 0..2 {
+            for i in 0..N {
+                offsets[axis][i] = self.warp(positions[axis][i]);
+            }
+        }
         for i in 0..N {
-            offsets[i] = Vec2::new(self.warp(positions[0][i]), self.warp(positions[1][i]));
-            weights[i] = self.weight(offsets[i]);
+            weights[i] = self.weight(Vec2::new(offsets[0][i], offsets[1][i]));
         }
         (offsets, weights)
     }
@@ -222,7 +226,7 @@ impl FilterSampler {
     }
 
     /// The distance from the centre for a share of the filter, on the side that `u` lies on.
-    #[inline]
+    #[inline(always)]
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * u - 1.0;
         let place = v.abs() * SHARES as f32;

@@ -17,7 +17,7 @@ use glam::DVec3;
 /// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from
 /// there on. Without: it starts beside the surface, as far away as the point may be off, and every
 /// hit counts.
-#[inline]
+#[inline(always)]
 pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
     if let Some(epsilon) = epsilon {
         return Ray64::new(surface.point(), dir, epsilon, t_max);
@@ -29,7 +29,7 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 /// starts on the bent surface that a triangle with normals at its corners stands for, on the side
 /// on which that faces the light. Where the triangle's own slope does not face it, it is in its own
 /// way: light from outside does not come in along the border of light.
-#[inline]
+#[inline(always)]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     match epsilon {
         Some(_) => spawn_ray(surface, dir, distance, epsilon),
@@ -51,14 +51,15 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
 }
 
 /// A ray from the bent surface, on the side of the normals or `behind`.
-#[inline]
+#[inline(always)]
 fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
-    let lift = surface.shadow_offsets[usize::from(behind)];
+    let [front, back] = surface.shadow_offsets;
+    let lift = if behind { back } else { front };
     from(surface, lift, dir, distance - lift.dot(dir), behind)
 }
 
 /// A ray from beside the lifted point, on the side of the true normal or `behind`.
-#[inline]
+#[inline(always)]
 fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
     let ray = Ray64::new(offset_ray_origin(surface, lift, side), dir, 0.0, t_max);
@@ -69,7 +70,7 @@ fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> R
 /// off than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
-#[inline]
+#[inline(always)]
 fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
     // Twice the bound: the next intersection rounds as well.
     let offset = 2.0 * side.abs().dot(surface.error + gamma(1) * lift.abs()) * side;

@@ -272,6 +272,7 @@ impl<'w> Whitted<'w> {
 }
 
 mod direct;
+mod lamps;
 pub(crate) mod secondary;
 #[cfg(test)]
 mod tests;

@@ -3,7 +3,8 @@
 use super::error::center;
 use super::sub_pixels::SubPixels;
 use super::{Job, Sampling, camera_ray, raster};
-use crate::camera::{CameraSample, Projection, Raster};
+use crate::bvh::internal::{PlainKernel, run_plain};
+use crate::camera::{CameraSample, CameraSamples, Projection, Raster};
 use crate::film::FilterSampler;
 use crate::math::{Ray, Vec2};
 use crate::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
@@ -57,16 +58,6 @@ impl Batch {
         self.len += 1;
         self.len == BATCH
     }
-
-    pub(super) fn is_empty(&self) -> bool {
-        self.len == 0
-    }
-
-    /// All of them; then there are none.
-    pub(super) fn take(&mut self) -> &[(Pixel, u32)] {
-        let len = std::mem::take(&mut self.len);
-        &self.of[..len]
-    }
 }
 
 /// Aims the samples of a job.
@@ -118,32 +109,37 @@ impl<'a> Aim<'a> {
         PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
-    /// Rays and weights of a batch, as [`Aim::sample`] has them one by one; behind the last sample
-    /// there are any.
-    pub(super) fn batch(&self, batch: &Batch) -> ([Option<Ray>; BATCH], [f32; BATCH]) {
-        let mut lenses = [[0.5; BATCH]; 2];
-        let (points, weights): ([Vec2; BATCH], _) = match (&self.warp, self.job.sampling) {
-            (Some(warp), _) => {
-                let numbers = from_fn(|i| batch.of[i].1);
-                let positions = Sequence::points(&from_fn(|i| batch.of[i].0.positions), &numbers);
-                let (offsets, weights) = warp.samples(&positions);
-                if self.has_aperture {
-                    lenses = Sequence::points(&from_fn(|i| batch.of[i].0.id.sequence(LENS_DIMENSION)), &numbers);
-                }
-                (self.raster.points(&from_fn(|i| batch.of[i].0.center + offsets[i])), weights)
+    /// Gives pixel, number, ray and weight of all samples of a batch, as [`Aim::sample`] has them
+    /// one by one; then there are none.
+    pub(super) fn batch(&self, batch: &mut Batch, mut take: impl FnMut(&Pixel, u32, Option<Ray>, f32)) {
+        let of = &batch.of;
+        let samples = &of[..std::mem::take(&mut batch.len)];
+        let mut take = |i: usize, ray, weight| samples.get(i).map_or((), |(pixel, n)| take(pixel, *n, ray, weight));
+        match (&self.warp, self.job.sampling) {
+            (Some(warp), _) => run_plain(AimKernel { aim: self, warp, of, take }),
+            (None, Sampling::Center) => {
+                let points = [0, 1].map(|axis| from_fn(|i| of[i].0.point[axis]));
+                self.rays(of, points, [[0.5; BATCH]; 2], |i, ray| take(i, ray, 1.0));
             }
-            (None, Sampling::Center) => (from_fn(|i| batch.of[i].0.point), [1.0; BATCH]),
             _ => {
-                let one = batch.of.each_ref().map(|(pixel, sample)| self.sample(pixel, *sample));
-                return (one.each_ref().map(|sample| sample.ray), one.map(|sample| sample.weight));
+                for (i, (pixel, sample)) in samples.iter().enumerate() {
+                    let PixelSample { ray, weight, .. } = self.sample(pixel, *sample);
+                    take(i, ray, weight);
+                }
             }
-        };
-        let at = from_fn(|i| CameraSample {
-            point: points[i],
-            pixel: batch.of[i].0.point,
-            lens: Vec2::new(lenses[0][i], lenses[1][i]),
-        });
-        (self.world.camera().rays(self.world.camera_frame(), &at), weights)
+        }
+    }
+
+    #[inline(always)]
+    fn rays(
+        &self,
+        of: &[(Pixel, u32); BATCH],
+        points: [[f32; BATCH]; 2],
+        lenses: [[f32; BATCH]; 2],
+        take: impl FnMut(usize, Option<Ray>),
+    ) {
+        let samples = CameraSamples { points, pixels: from_fn(|i| of[i].0.point), lenses };
+        self.world.camera().rays(self.world.camera_frame(), &samples, take);
     }
 
     /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
@@ -168,5 +164,36 @@ impl<'a> Aim<'a> {
             true => sampler.lens_position(self.job.seed, x, y, sample),
             false => Vec2::splat(0.5),
         }
+    }
+}
+
+/// Aims the samples of a batch as a filter wants them.
+struct AimKernel<'a, F> {
+    aim: &'a Aim<'a>,
+    warp: &'a FilterSampler,
+    of: &'a [(Pixel, u32); BATCH],
+    take: F,
+}
+
+impl<F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let AimKernel { aim, warp, of, mut take } = self;
+        let numbers = from_fn(|i| of[i].1);
+        let positions = Sequence::points(&from_fn(|i| of[i].0.positions), &numbers);
+        let (offsets, weights) = warp.samples(&positions);
+        let mut places = [[0.0; BATCH]; 2];
+        for axis in 0..2 {
+            for i in 0..BATCH {
+                places[axis][i] = of[i].0.center[axis] + offsets[axis][i];
+            }
+        }
+        let lenses = match aim.has_aperture {
+            true => Sequence::points(&from_fn(|i| of[i].0.id.sequence(LENS_DIMENSION)), &numbers),
+            false => [[0.5; BATCH]; 2],
+        };
+        aim.rays(of, aim.raster.points(places), lenses, |i, ray| take(i, ray, weights[i]));
     }
 }

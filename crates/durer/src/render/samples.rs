@@ -201,17 +201,14 @@ impl<'a> Samples<'a> {
 
     /// Aims some samples, of which there are none left then.
     fn aim_batch(&self, batch: &mut Batch, aimed: &mut Aimed) {
-        if batch.is_empty() {
-            return;
-        }
-        let (rays, weights) = self.aim.batch(batch);
-        for ((pixel, sample), (ray, weight)) in batch.take().iter().zip(rays.into_iter().zip(weights)) {
+        let Aimed { samples, rays, of, .. } = aimed;
+        self.aim.batch(batch, |pixel, sample, ray, weight| {
             if let Some(ray) = ray {
-                aimed.rays.push((ray, pixel.id.of_sample(*sample)));
-                aimed.of.push(aimed.samples.len());
+                rays.push((ray, pixel.id.of_sample(sample)));
+                of.push(samples.len());
             }
-            aimed.samples.push(((pixel.x, pixel.y, *sample), weight, ray.is_some()));
-        }
+            samples.push(((pixel.x, pixel.y, sample), weight, ray.is_some()));
+        });
     }
 
     /// Adds samples that were aimed, of which there are none left then.

@@ -29,6 +29,10 @@ impl Chord {
     /// What is left where a coordinate, `o + t d`, lies between two bounds; each has the number of
     /// its face.
     pub(super) fn slab(self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
+        // What misses one face is not asked for the next.
+        if self.ends().is_none() {
+            return Chord::NOTHING;
+        }
         if d == 0.0 {
             return if o < low || o > high { Chord::NOTHING } else { self };
         }

@@ -159,8 +159,11 @@ impl Mesh {
     }
 
     /// The corners of a triangle.
+    #[inline]
     pub fn corners(&self, part: u32) -> [Vec3; 3] {
-        self.data.triangles[part as usize].map(|i| self.data.positions[i as usize])
+        // Not by `map`, which is called like any function.
+        let ([a, b, c], at) = (self.data.triangles[part as usize], |i: u32| self.data.positions[i as usize]);
+        [at(a), at(b), at(c)]
     }
 
     /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
@@ -225,8 +228,10 @@ impl Mesh {
         let n_geo = face_normal(corners);
         let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
         let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
-        let shadow_offsets =
-            normals.map_or([Vec3::ZERO; 2], |normals| shadow_offsets(position, corners, normals).map(mix));
+        let shadow_offsets = normals.map_or([Vec3::ZERO; 2], |normals| {
+            let [front, back] = shadow_offsets(position, corners, normals);
+            [mix(front), mix(back)]
+        });
         let uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
         // Normals in the file say which side is out, whatever way the corners go round.
         let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };

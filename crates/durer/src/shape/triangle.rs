@@ -81,6 +81,7 @@ impl Shape for Triangle {
 /// them. The point keeps off the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
+#[inline]
 pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
     let barycentric = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
     let (position, error) = weighted(corners, barycentric);

@@ -328,9 +328,10 @@ impl Csg {
         // The last crossing behind the origin that leads to the other side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
+        let speed = ray.line().dir.length();
         let mut from = 0;
         while from < events.len() {
-            let to = self.coincident(ray, events, from, &mut state.groups);
+            let to = self.coincident((ray, speed), events, from, &mut state.groups);
             let (group, before) = (&events[from..to], whole);
             from = to;
             for event in group {
@@ -403,8 +404,8 @@ impl Csg {
     }
 
     /// The end of the crossings that coincide with one, each of another part: see the head of this
-    /// file.
-    fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, groups: &mut [usize]) -> usize {
+    /// file. The length of the ray's direction is worked out once.
+    fn coincident(&self, ray: (&Ray64, f64), events: &[Event], from: usize, groups: &mut [usize]) -> usize {
         groups[events[from].leaf as usize] = from + 1;
         let mut to = from + 1;
         while to < events.len()
@@ -417,9 +418,9 @@ impl Csg {
         to
     }
 
-    fn coincide(&self, ray: &Ray64, a: &Event, b: &Event) -> bool {
+    fn coincide(&self, (ray, speed): (&Ray64, f64), a: &Event, b: &Event) -> bool {
         let line = ray.line();
-        let gap = (b.t - a.t) * line.dir.length();
+        let gap = (b.t - a.t) * speed;
         let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
         let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();
         let [r, q] = [a, b].map(|event| self.leaves[event.leaf as usize].rounding);
@@ -433,7 +434,7 @@ impl Csg {
             object.surface(ray, at, &crossing, event.part, PlacementQuirks::default()).n_geo.as_dvec3()
         });
         // A grazing ray runs farther between faces at the same distance.
-        let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / line.dir.length();
+        let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;
         m.dot(n).abs() >= ALIKE && gap * cosine <= slack
     }
 

@@ -181,12 +181,13 @@ impl Object {
         quirks: PlacementQuirks,
         surface: &mut Surface,
     ) {
-        *surface = match &self.geometry {
-            Geometry::Primitive(Primitive::Sphere(sphere)) => sphere.surface(point, crossing),
-            Geometry::Primitive(Primitive::Plane(plane)) => plane.surface(point, crossing),
-            Geometry::Primitive(shape) => shape.surface(point, crossing),
-            Geometry::Mesh(tree) => tree.mesh.surface(part, crossing),
-            Geometry::Solid(solid) => solid.surface(ray, crossing, part, quirks),
+        // Each writes for itself: what all wrote to one place would be copied from there.
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
+            Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
+            Geometry::Primitive(shape) => *surface = shape.surface(point, crossing),
+            Geometry::Mesh(tree) => *surface = tree.mesh.surface(part, crossing),
+            Geometry::Solid(solid) => *surface = solid.surface(ray, crossing, part, quirks),
         }
     }
 

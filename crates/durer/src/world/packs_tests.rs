@@ -58,7 +58,17 @@ fn packs_hit_as_shapes_do() {
         }
         for eight in asked.as_chunks::<8>().0 {
             let alone = eight.each_ref().map(|ray| packs.closest(ray, &mut ()));
-            assert_eq!(packs.closest_of_eight(eight), alone, "{eight:?}");
+            assert_eq!(packs.closest_of_eight(eight.each_ref()), alone, "{eight:?}");
+            let unsound = [
+                Ray::new(Vec3::NAN, Vec3::X),
+                Ray::new(Vec3::ZERO, f32::INFINITY * Vec3::Y),
+                Ray::new(Vec3::ZERO, Vec3::ZERO),
+                Ray { t_min: 1.0, t_max: 1.0, ..eight[0] },
+            ];
+            let [a, b, c, d, ..] = eight;
+            let mixed = [a, &unsound[0], b, &unsound[1], c, &unsound[2], d, &unsound[3]];
+            let expected = [alone[0], None, alone[1], None, alone[2], None, alone[3], None];
+            assert_eq!(packs.closest_of_eight(mixed), expected, "{mixed:?}");
         }
     }
     assert!(3 * hits > rays, "{hits} of {rays} rays hit");

@@ -87,8 +87,8 @@ impl World {
 
     fn few_together(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
         for start in (0..rays.len()).step_by(8) {
-            let ray = |i: usize| rays.get(start + i).map(|ray| ray.rounded).filter(crate::bvh::is_sound);
-            let met = self.few.closest_of_eight(&from_fn(|i| ray(i).unwrap_or(NOWHERE)));
+            let ray = |i: usize| rays.get(start + i).map_or(&NOWHERE, |ray| &ray.rounded);
+            let met = self.few.closest_of_eight(from_fn(ray));
             met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
         }
     }

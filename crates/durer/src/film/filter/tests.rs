@@ -131,6 +131,10 @@ fn offsets_side_by_side_are_those_one_by_one() {
         let positions: [Vec2; 8] = std::array::from_fn(|i| random_2d(1, 0, 0, i as u32, 0) * (i % 7) as f32 / 6.0);
         let (offsets, weights) = sampler.samples(&[positions.map(|p| p.x), positions.map(|p| p.y)]);
         let alone = positions.map(|position| sampler.sample(position));
-        assert_eq!(std::array::from_fn::<_, 8, _>(|i| (offsets[i], weights[i])), alone, "{filter:?}");
+        assert_eq!(
+            std::array::from_fn::<_, 8, _>(|i| (Vec2::new(offsets[0][i], offsets[1][i]), weights[i])),
+            alone,
+            "{filter:?}"
+        );
     }
 }

@@ -20,7 +20,7 @@ impl Whitted<'_> {
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
-    #[inline]
+    #[inline(always)]
     pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
         let rules = self.world.rules();
         // What stands exactly at the light does not block it.
@@ -88,21 +88,40 @@ pub(super) fn direct<T: TraceListener>(
     seen: &Illumination,
     tally: &mut T,
 ) -> Color {
-    let cosine = n.dot(seen.to_light);
+    let base = |model| match model {
+        HighlightModel::Blinn => blinn(n, view, seen.to_light),
+        HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
+    };
+    scattered(phong.highlight, diffuse, n.dot(seen.to_light), base, tally) * seen.color
+}
+
+/// The cosine of the angle between the normal and what is halfway between light and eye.
+#[inline(always)]
+pub(super) fn blinn(n: Vec3, view: Vec3, to_light: Vec3) -> f32 {
+    n.dot((to_light - view).normalize_or_zero())
+}
+
+/// What is scattered of white light that comes in at an angle of a cosine; `base` is the cosine
+/// that a highlight is a power of.
+#[inline(always)]
+pub(super) fn scattered<T: TraceListener>(
+    highlight: Option<(Color, f32, HighlightModel)>,
+    diffuse: Color,
+    cosine: f32,
+    base: impl FnOnce(HighlightModel) -> f32,
+    tally: &mut T,
+) -> Color {
     tally.begin(|| TermKind::Diffuse { cosine });
     tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
     let mut color = cosine.max(0.0) * diffuse;
-    if let Some((specular, exponent, model)) = phong.highlight {
-        let base = match model {
-            HighlightModel::Blinn => (cosine > 0.0).then(|| n.dot((seen.to_light - view).normalize_or_zero())),
-            HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(seen.to_light)),
-        };
-        if let Some(base) = base {
-            let strength = fp::pow(base.max(0.0), exponent);
-            tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
-            tally.end(Color::splat(strength), Color::ONE, specular);
-            color += strength * specular;
-        }
+    if let Some((specular, exponent, model)) = highlight
+        && (cosine > 0.0 || model == HighlightModel::Phong { behind: true })
+    {
+        let base = base(model);
+        let strength = fp::pow(base.max(0.0), exponent);
+        tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+        tally.end(Color::splat(strength), Color::ONE, specular);
+        color += strength * specular;
     }
-    color * seen.color
+    color
 }

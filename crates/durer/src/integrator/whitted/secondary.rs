@@ -58,6 +58,7 @@ impl Whitted<'_> {
     }
 
     /// How light is divided at a hit.
+    #[inline(always)]
     pub(super) fn parted(
         &self,
         at: &Interaction,
