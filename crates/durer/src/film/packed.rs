@@ -93,12 +93,13 @@ fn words(number: i128) -> [u64; 2] {
 }
 
 impl Packed {
-    /// A film, packed.
-    pub fn new(film: Film) -> Self {
+    /// A film, packed; `samples`: how many its pixels will have in all. What grows later is as wide
+    /// from the start, so that no memory is left between what was smaller.
+    pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
             return Packed::Whole(Box::new(film));
         }
-        if let Some(singles) = all(&film, single) {
+        if let Some(singles) = all(&film, single).filter(|_| samples == 1) {
             let (colors, luminances): (Vec<_>, Vec<_>) = singles.into_iter().unzip();
             return Packed::Single(colors.into(), luminances.into());
         }
@@ -135,6 +136,11 @@ impl Packed {
             Packed::Small(pixels) => pixels.iter().for_each(|small| offer(&small.pixel())),
             Packed::Whole(film) => film.pixels.iter().for_each(offer),
         }
+    }
+
+    /// Whether it is quickly known that all of each pixel saw something.
+    pub fn is_covered(&self) -> bool {
+        !matches!(self, Packed::Whole(_))
     }
 
     /// The film itself, where samples were left out: others pack.

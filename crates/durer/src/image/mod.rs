@@ -154,7 +154,7 @@ impl Layer {
         if bottom_up { (0..height).rev().try_for_each(&mut offer) } else { (0..height).try_for_each(&mut offer) }
     }
 
-    /// The same layer with the share of each pixel that is seen.
+    /// The same layer with the share of each pixel that is seen; none where all is.
     pub fn with_coverage(self, coverage: Vec<f32>) -> Layer {
         // Opaque pictures are written without alpha.
         let opaque = coverage.iter().all(|&share| share == 1.0);

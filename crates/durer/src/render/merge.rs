@@ -99,7 +99,7 @@ fn merge_samples(
             match (merged.film(rect), piece.film(rect)) {
                 (Some(mut film), Some(other)) => {
                     film.merge(&other).expect("a block of the same picture has the same pixels");
-                    merged.film = Some(Arc::new(Packed::new(film)));
+                    merged.film = Some(Arc::new(Packed::new(film, whole.packed_samples())));
                 }
                 _ => merged.film = piece.film,
             }

@@ -272,6 +272,12 @@ impl PartialRender {
         }
     }
 
+    /// How many samples a pixel's sums will have, as they are kept: where samples count for several
+    /// pixels, finished ones.
+    pub(super) fn packed_samples(&self) -> u32 {
+        if self.job.sampling.is_local() { self.job.sampling.samples() } else { 1 }
+    }
+
     /// Bytes of memory that it takes when all is made, with the pictures made of it.
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };

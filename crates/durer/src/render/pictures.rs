@@ -84,16 +84,19 @@ impl PartialRender {
         ]
     }
 
-    /// Colours and coverage; what is not made yet is transparent.
+    /// Colours and coverage; what is not made yet is transparent. Where all is seen, no coverage is
+    /// told.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
         let count = window.pixels() as usize;
-        let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; count]);
+        let is_seen = state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()));
+        let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; if is_seen { 0 } else { count }]);
         let (mut free_colors, mut free_coverage) = (&mut colors[..], &mut coverage[..]);
         // A row of blocks is some whole rows of pixels.
         let strips = self.blocks.rows().filter_map(|blocks| {
             let pixels = (self.blocks.rect(blocks.start).height * window.width) as usize;
-            Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..pixels)?))
+            let covered = if is_seen { 0 } else { pixels };
+            Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..covered)?))
         });
         strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
             let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
@@ -101,8 +104,10 @@ impl PartialRender {
                 let Some(film) = &state.samples[index].film else { continue };
                 let mut places = self.blocks.rect(index).places();
                 film.means(|color, share| {
-                    if let Some(at) = places.next().map(|(x, y)| place(strip, x, y)) {
-                        (colors[at], coverage[at]) = (color, share);
+                    let Some(at) = places.next().map(|(x, y)| place(strip, x, y)) else { return };
+                    colors[at] = color;
+                    if let Some(own) = coverage.get_mut(at) {
+                        *own = share;
                     }
                 });
             }

@@ -278,7 +278,7 @@ impl Work<'_> {
             taken += rect.pixels() * u64::from(end - block.to);
             traced += rays.0;
             block.rays += rays.0;
-            (block.to, block.film) = (end, Some(Arc::new(Packed::new(film))));
+            (block.to, block.film) = (end, Some(Arc::new(Packed::new(film, part.packed_samples()))));
             made.push(block);
         }
         self.keep(tile, made, taken, traced);
@@ -306,7 +306,12 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film: Some(Arc::new(Packed::new(film))) });
+            made.push(BlockSamples {
+                from: 0,
+                to: 1,
+                rays: rays.0 - before,
+                film: Some(Arc::new(Packed::new(film, 1))),
+            });
             before = rays.0;
         }
         self.keep(tile, made, around.pixels(), rays.0);

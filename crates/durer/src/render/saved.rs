@@ -200,7 +200,7 @@ impl PartialRender {
                 return None;
             }
             let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
-            *block = BlockSamples { from, to, rays, film: Some(Arc::new(Packed::new(film))) };
+            *block = BlockSamples { from, to, rays, film: Some(Arc::new(Packed::new(film, self.packed_samples()))) };
         }
         let pictures = self.job.ray_aovs().count();
         while let number @ 1.. = rest.whole::<usize>()? {

@@ -36,7 +36,7 @@ proptest! {
         let single: Vec<Sample> = (0..6).zip(&usual).map(|(i, &Sample(_, _, s, color, weight))| Sample(i % 3, i / 3, s, color, weight)).collect();
         for (samples, count) in [(&samples, 50), (&usual, 120), (&single, 1)] {
             let film = film(samples);
-            let packed = Packed::new(film.clone());
+            let packed = Packed::new(film.clone(), count);
             prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
             let (mut means, bits) = (Vec::new(), |color: Color, share: f32| (color.to_array().map(f32::to_bits), share.to_bits()));
             packed.means(|color, share| means.push(bits(color, share)));

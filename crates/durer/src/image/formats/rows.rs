@@ -118,10 +118,15 @@ pub(super) fn encode(
     for layer in layers {
         let strip = Strip::of(layer, options);
         out.extend((rows.head)(&strip)?);
+        let before = out.len();
         let mut row = 0;
         layer.try_rows(rows.bottom_up, |pixels, coverage| {
             (rows.row)(&strip, row, pixels, coverage, out);
             row += 1;
+            // All rows are about as long as the first.
+            if row == 1 {
+                out.reserve_exact((out.len() - before) * (strip.height as usize - 1));
+            }
             Ok(())
         })?;
     }
