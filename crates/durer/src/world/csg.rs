@@ -145,16 +145,19 @@ impl Csg {
             join => join,
         };
         csg.add(solid, None);
+        csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
+        // Beyond the box of the whole, no part changes it; but those may coincide with what does.
+        let margin = GRAZING as f32 * csg.slack;
+        let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
         for (i, leaf) in csg.leaves.iter().enumerate() {
             match leaf.object.bounds() {
                 Some(b) => {
                     csg.bounded.push(i as u32);
-                    boxes.push(b);
+                    boxes.push(matters.map_or(b, |m| Aabb { min: b.min.max(m.min), max: b.max.min(m.max) }));
                 }
                 None => csg.unbounded.push(i as u32),
             }
-            csg.slack = csg.slack.max(2.0 * leaf.slack);
         }
         csg.bvh = (boxes.len() > FEW).then(|| Bvh::build(&boxes));
         csg
