@@ -23,7 +23,7 @@ described! {
 }
 
 impl Cone {
-    fn axis(&self) -> Axis {
+    pub(super) fn axis(&self) -> Axis {
         Axis::new(self.base, self.top)
     }
 
@@ -32,32 +32,25 @@ impl Cone {
     }
 
     /// How fast the radius grows with height.
-    fn growth(&self) -> f64 {
+    fn growth(&self, axis: &Axis) -> f64 {
         let [base, top] = self.radii();
-        (top - base) / self.axis().height
+        (top - base) / axis.height
     }
 
-    fn radius_at(&self, y: f64) -> f64 {
+    fn radius_at(&self, axis: &Axis, y: f64) -> f64 {
         let [base, top] = self.radii();
-        let share = y / self.axis().height;
+        let share = y / axis.height;
         base * (1.0 - share) + top * share
-    }
-}
-
-impl Shape for Cone {
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.axis().bounds(self.radii()))
     }
 
     /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in
     /// the height.
     ///
     /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        let axis = self.axis();
+    pub(super) fn crossings_about(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
-        let (r, dr) = (self.radius_at(y), self.growth() * slope);
+        let (r, dr) = (self.radius_at(axis, y), self.growth(axis) * slope);
         let (a, b, c) = (d.length_squared() - dr * dr, o.dot(d) - r * dr, o.length_squared() - r * r);
         let slabbed = Chord::LINE.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
         let chord = match roots::quadratic(a, b, c).filter(|_| a != 0.0) {
@@ -71,6 +64,16 @@ impl Shape for Cone {
             None => return,
         };
         chord.offer(&mut |t, uv| offer(t + shift, uv));
+    }
+}
+
+impl Shape for Cone {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.axis().bounds(self.radii()))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        self.crossings_about(&self.axis(), line, offer);
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
@@ -87,8 +90,8 @@ impl Shape for Cone {
         let (y, around) = axis.split(point - axis.base);
         let (y, around) =
             (inset(y, axis.height, axis.error(base.max(top))), around.normalize_or(axis.dir.any_orthonormal_vector()));
-        let r = self.radius_at(y);
-        let normal = around - self.growth() * axis.dir;
+        let r = self.radius_at(&axis, y);
+        let normal = around - self.growth(&axis) * axis.dir;
         let largest = base.max(top);
         // At a tip the curvature has no bound; the point's error is far larger than this.
         let curvature = 1.0 / r.max(1e-6 * largest);
@@ -100,7 +103,7 @@ impl Shape for Cone {
     fn inside(&self, point: DVec3) -> Option<bool> {
         let axis = self.axis();
         let (y, around) = axis.split(point - axis.base);
-        Some(y > 0.0 && y < axis.height && around.length() < self.radius_at(y))
+        Some(y > 0.0 && y < axis.height && around.length() < self.radius_at(&axis, y))
     }
 
     fn flaw(&self) -> Option<&'static str> {

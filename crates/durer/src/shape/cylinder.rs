@@ -21,7 +21,7 @@ described! {
 
 /// A piece of a line from which heights are counted.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Axis {
+pub(crate) struct Axis {
     pub base: DVec3,
     /// Unit direction.
     pub dir: DVec3,
@@ -84,20 +84,13 @@ impl Axis {
 }
 
 impl Cylinder {
-    fn axis(&self) -> Axis {
+    pub(super) fn axis(&self) -> Axis {
         Axis::new(self.base, self.top)
-    }
-}
-
-impl Shape for Cylinder {
-    fn bounds(&self) -> Option<Aabb> {
-        Some(self.axis().bounds([f64::from(self.radius); 2]))
     }
 
     /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across
     /// it.
-    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        let axis = self.axis();
+    pub(super) fn crossings_about(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
@@ -107,6 +100,16 @@ impl Shape for Cylinder {
         let chord = Chord::LINE.quadratic(across, o.dot(d), o.length_squared() - r * r, SIDE);
         let chord = chord.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
         chord.offer(&mut |t, uv| offer(t + shift, uv));
+    }
+}
+
+impl Shape for Cylinder {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.axis().bounds([f64::from(self.radius); 2]))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        self.crossings_about(&self.axis(), line, offer);
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {

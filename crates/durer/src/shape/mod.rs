@@ -26,6 +26,7 @@ use crate::describe::described_list;
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
+pub(crate) use cylinder::Axis;
 pub use cylinder::Cylinder;
 pub use disc::Disc;
 pub use durer_bvh::watertight;
@@ -90,6 +91,26 @@ described_list! {
         Quadric(quadric::Quadric),
         Disc(disc::Disc),
         Rectangle(rectangle::Rectangle),
+    }
+}
+
+impl Primitive {
+    /// The axis of what is round about one.
+    pub(crate) fn axis(&self) -> Option<Axis> {
+        match self {
+            Primitive::Cylinder(s) => Some(s.axis()),
+            Primitive::Cone(s) => Some(s.axis()),
+            _ => None,
+        }
+    }
+
+    /// [`Shape::crossings`] by an axis that is known.
+    pub(crate) fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        match (self, axis) {
+            (Primitive::Cylinder(s), Some(axis)) => s.crossings_about(axis, line, offer),
+            (Primitive::Cone(s), Some(axis)) => s.crossings_about(axis, line, offer),
+            _ => self.crossings(line, offer),
+        }
     }
 }
 

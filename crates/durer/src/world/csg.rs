@@ -23,7 +23,7 @@ use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, PlacementQuirks};
 use crate::bvh::{Bvh, TraversalCounter};
 use crate::math::{Aabb, Ray, Ray64, Vec2, Vec3};
-use crate::shape::{Shape, ShapeHit, Surface};
+use crate::shape::{Axis, Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -57,6 +57,8 @@ pub struct Csg {
 #[derive(Debug)]
 struct Leaf {
     object: Arc<Object>,
+    /// Its own, worked out once.
+    axis: Option<Axis>,
     edge: Edge,
     /// Number of its first triangle.
     first: u32,
@@ -145,16 +147,19 @@ impl Csg {
             join => join,
         };
         csg.add(solid, None);
+        csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
+        // Beyond the box of the whole, no part changes it; but those may coincide with what does.
+        let margin = GRAZING as f32 * csg.slack;
+        let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
         for (i, leaf) in csg.leaves.iter().enumerate() {
             match leaf.object.bounds() {
                 Some(b) => {
                     csg.bounded.push(i as u32);
-                    boxes.push(b);
+                    boxes.push(matters.map_or(b, |m| Aabb { min: b.min.max(m.min), max: b.max.min(m.max) }));
                 }
                 None => csg.unbounded.push(i as u32),
             }
-            csg.slack = csg.slack.max(2.0 * leaf.slack);
         }
         csg.bvh = (boxes.len() > FEW).then(|| Bvh::build(&boxes));
         csg
@@ -166,7 +171,8 @@ impl Csg {
                 let first = self.leaves.last().map_or(0, |last| last.first + last.object.parts());
                 let slack = slack_of(&object);
                 let size = object.bounds().map_or(0.0, |b| b.size().max_element());
-                self.leaves.push(Leaf { object, edge, first, slack, rounding: 4.0 * f32::EPSILON * size });
+                let (axis, rounding) = (object.axis(), 4.0 * f32::EPSILON * size);
+                self.leaves.push(Leaf { object, axis, edge, first, slack, rounding });
             }
             (Solid::Operand(_), None) => {}
             (Solid::Join { rule, parts, cut }, edge) => {
@@ -265,7 +271,8 @@ impl Csg {
         events.clear();
         let take = |i: u32, events: &mut Vec<Event>, counter: &mut T| {
             let offer = &mut |t, uv, part| events.push(Event { t, leaf: i, part, uv });
-            self.leaves[i as usize].object.crossings(ray, counter, offer);
+            let Leaf { object, axis, .. } = &self.leaves[i as usize];
+            object.crossings(axis.as_ref(), ray, counter, offer);
         };
         self.unbounded.iter().for_each(|&i| take(i, events, counter));
         let Some(bvh) = &self.bvh else {

@@ -4,7 +4,7 @@ use super::csg::Csg;
 use crate::bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
-use crate::shape::{Mesh, Primitive, Shape, ShapeHit, Surface, Uv};
+use crate::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Surface, Uv};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -132,9 +132,15 @@ impl Object {
         self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
     }
 
+    /// The axis of what is round about one, for [`Object::crossings`].
+    pub(super) fn axis(&self) -> Option<Axis> {
+        if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
+    }
+
     /// Offers every crossing of the line through a ray, with the number of its part, in any order.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
+        axis: Option<&Axis>,
         ray: &Ray64,
         counter: &mut T,
         offer: &mut impl FnMut(f64, Vec2, u32),
@@ -143,7 +149,7 @@ impl Object {
         match &self.geometry {
             Geometry::Primitive(shape) => {
                 counter.work(0, 1);
-                shape.crossings(&line, &mut |t, uv| offer(t, uv, 0));
+                shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
             // Solids in solids are one tree.

@@ -251,6 +251,7 @@ fn rays_that_are_asked_about_together_have_their_own_answers() {
         ),
         format!("{mesh} Intersection {{ Box {{ min -1 -1 -1 max 1 1 1 }} Sphere {{ center 0 0 0 radius 1.2 }} }}"),
         format!("{mesh} Transform {{ Translate 0.5 0 0 {mesh} }}"),
+        "Plane { normal 0 1 0 offset -1 } Difference { Box { min -1 -1 -1 max 1 1 1 } Sphere { center 1 1 1 radius 1 } }".into(),
     ];
     let mut hits = 0;
     for group in groups {

@@ -14,11 +14,11 @@ const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
     /// Whether anything is gained by asking about rays together: in a world of a few planes and
-    /// spheres, and of a few things with a mesh among them.
+    /// spheres, and of a few things with a mesh or a solid of several parts among them.
     pub(crate) fn answers_together(&self) -> bool {
-        let is_mesh = |&i: &u32| matches!(self.objects()[i as usize].geometry, Geometry::Mesh(_));
+        let pays = |&i: &u32| !matches!(self.objects()[i as usize].geometry, Geometry::Primitive(_));
         let alone = matches!(&self.accel, Accel::Bvh(bvh) if bvh.is_empty());
-        !self.few.is_empty() || alone && self.loose.iter().any(is_mesh)
+        !self.few.is_empty() || alone && self.loose.iter().any(pays)
     }
 
     /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.

@@ -452,6 +452,30 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
     assert!(inner > 400, "{inner}");
 }
 
+/// A tree over what is cut away, as far as it reaches into the box of the whole, against all of it.
+#[test]
+fn parts_matter_in_the_box_of_the_whole_alone() {
+    let (mut random, mut hits) = (Random(28), 0);
+    let operand = |shape| Solid::Operand(Arc::new(world(&shape).objects()[0].clone()));
+    for _ in 0..20 {
+        let mut rod = || {
+            let (base, along) = (random.point(), 5.0 * random.direction());
+            operand(shape(Cylinder { base: base - along, top: base + along, radius: random.between(0.05, 0.3) }))
+        };
+        let cut: Vec<Solid> = (0..12).map(|_| rod()).collect();
+        let parts = vec![operand(cuboid([-1.0, -0.2, -1.0], [1.0, 0.2, 1.0])), operand(ball([0.0; 3], 1.2))];
+        let [solid, mut whole] = [0; 2].map(|_| Csg::new(Solid::all(parts.clone(), cut.clone())));
+        assert!(whole.bvh.take().is_some());
+        for _ in 0..1000 {
+            let ray = Ray64::from(Ray::new(2.0 * random.point(), random.direction()));
+            let hit = solid.closest(&ray, None, &mut ());
+            assert_eq!(hit, whole.closest(&ray, None, &mut ()), "{ray:?}");
+            hits += usize::from(hit.is_some());
+        }
+    }
+    assert!(hits > 2000, "{hits}");
+}
+
 #[test]
 fn rays_that_leave_a_solid_do_not_meet_it_there() {
     let folder = tempfile::tempdir().unwrap();
