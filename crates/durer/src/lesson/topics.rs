@@ -436,7 +436,7 @@ pub static TOPICS: [Topic; 18] = [
         ],
         places: &[
             at("crates/durer/src/integrator/path/photons.rs", "fn trace"),
-            at("crates/durer/src/integrator/path/photons.rs", "fn light"),
+            at("crates/durer/src/integrator/path/photons.rs", "fn on_surface"),
             at("crates/durer/src/integrator/path/photons.rs", "fn radius"),
         ],
         shots: &[color("paths alone", paths(u32::MAX, BOTH)), color("paths and photons", paths(u32::MAX, PHOTONS))],
