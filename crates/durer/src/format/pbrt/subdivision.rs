@@ -25,8 +25,7 @@ struct Ring {
     closed: bool,
 }
 
-/// A surface, its points moved to where endless subdivision has them.
-/// So many triangles are left.
+/// A surface of at most `left` triangles, its points moved to where endless subdivision has them.
 pub(super) fn smooth(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
     params.known(&["scheme"]);
     let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
