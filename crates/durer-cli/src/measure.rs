@@ -9,7 +9,7 @@ use crate::options::SceneArgs;
 use crate::terminal::say;
 use clap::Args;
 use durer::integrator::{Integrate, Integrator, Method, Settings, Setup};
-use durer::math::{Color, Ray64, Vec3};
+use durer::math::{Color, LUMINANCE, Ray64, Vec3};
 use durer::render::Job;
 use durer::sampler::SampleId;
 use durer::scene::Axis;
@@ -145,7 +145,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &options, false, &mut Guard::default())?;
     let scene = &opened.loaded.scene;
     let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
-    let lumens = scene.lumens.unwrap_or(Color::new(0.2126, 0.7152, 0.0722));
+    let lumens = scene.lumens.unwrap_or(LUMINANCE);
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };

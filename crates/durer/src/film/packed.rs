@@ -99,7 +99,9 @@ impl Packed {
         if film.rejected() > 0 {
             return Packed::Whole(Box::new(film));
         }
-        if let Some(singles) = all(&film, single).filter(|_| samples == 1) {
+        if samples == 1
+            && let Some(singles) = all(&film, single)
+        {
             let (colors, luminances): (Vec<_>, Vec<_>) = singles.into_iter().unzip();
             return Packed::Single(colors.into(), luminances.into());
         }

@@ -9,7 +9,7 @@
 //! Variance-Guided Filtering*, HPG 2017, of which this is the spatial half.
 
 use super::Image;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec3, fp};
 use rayon::prelude::*;
 
 /// What is known of the surface at each pixel, row by row.
@@ -39,7 +39,7 @@ struct Pixel {
 }
 
 fn luminance(color: Color) -> f32 {
-    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+    color.dot(LUMINANCE)
 }
 
 /// The picture without noise. It has the same bits on any number of threads.

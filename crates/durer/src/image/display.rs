@@ -1,7 +1,7 @@
 //! How light becomes what eight bits can hold: exposure, and a curve for what is too bright.
 
 use super::Transfer;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec3, fp};
 use glam::Mat3;
 
 /// What makes eight bits of a colour. Formats of floating point have no use for it.
@@ -73,7 +73,7 @@ impl Tone {
         match self {
             Tone::None => color,
             Tone::Reinhard => {
-                let brightness = color.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(0.0);
+                let brightness = color.dot(LUMINANCE).max(0.0);
                 color / (1.0 + brightness)
             }
             Tone::Aces => {

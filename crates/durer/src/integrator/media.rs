@@ -75,8 +75,12 @@ impl Clone for Media {
 impl Media {
     /// What is around a point.
     pub fn around(world: &World, point: Vec3) -> Self {
-        let around = world.bodies_around(point).map(|(object, ior)| Body::new(world, object, ior));
-        around.fold(Media::default(), |media, medium| media.entered(medium))
+        Media::within(world, world.bodies_around(point))
+    }
+
+    /// Of all things that it is in, with their indices of refraction.
+    fn within(world: &World, bodies: impl Iterator<Item = (u32, f32)>) -> Self {
+        bodies.fold(Media::default(), |media, (object, ior)| media.entered(Body::new(world, object, ior)))
     }
 
     /// Nothing but this.
@@ -143,8 +147,7 @@ impl Media {
         } else if world.objects()[object as usize].contains(start) {
             // A ray that leaves what it never entered began inside.
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
-            let all = others.map(|(other, ior)| Body::new(world, other, ior)).chain([own]);
-            all.fold(Media::default(), |media, medium| media.entered(medium))
+            Media::within(world, others.chain([(object, ior)]))
         } else {
             // Turned inside out, it is the wall of a cavity in what is around.
             let behind = self.object().map_or(Media::default(), |around| self.left(around));

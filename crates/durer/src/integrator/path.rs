@@ -196,10 +196,7 @@ impl<'w> Path<'w> {
 
     /// What a ray carries from a point where it is given no other.
     fn start(&self, point: DVec3) -> State {
-        match self.world.has_media() {
-            true => State { media: Media::around(self.world, point.as_vec3()), ..State::default() },
-            false => State::default(),
-        }
+        State { media: Media::around(self.world, point.as_vec3()), ..State::default() }
     }
 
     fn vertex<'a>(&self, place: Place<'a, 'w>, state: &'a State, sample: &Sample) -> Vertex<'a, 'w> {

@@ -7,7 +7,7 @@ pub mod spot;
 
 use crate::describe::{FileName, described_list};
 use crate::dialect::Rules;
-use crate::math::{Color, Vec3};
+use crate::math::{Color, LUMINANCE, Vec3};
 pub use directional::DirectionalLight;
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};
@@ -73,7 +73,7 @@ described_list! {
 
 /// A colour that is as bright as white times a number. What is black stays black.
 fn as_bright(color: Color, white: f32) -> Color {
-    let luminance = color.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+    let luminance = color.dot(LUMINANCE);
     if luminance > 0.0 { color * (white / luminance) } else { Color::ZERO }
 }
 

@@ -4,7 +4,7 @@ use super::habits::{Output, Rays};
 use super::{Pupil, Variant};
 use crate::image::Transfer;
 use crate::image::compare::{Scale, linear_to_srgb, srgb_to_linear};
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use crate::render::{Job, sample_places};
 use rayon::prelude::*;
 
@@ -122,7 +122,7 @@ fn grey(how: u32, color: Color) -> f32 {
     match how {
         0 => (color.x + color.y + color.z) / 3.0,
         1 => color.dot(Vec3::new(0.299, 0.587, 0.114)),
-        2 => color.dot(Vec3::new(0.2126, 0.7152, 0.0722)),
+        2 => color.dot(LUMINANCE),
         3 => color.max_element(),
         channel => color[(channel as usize - 4).min(2)],
     }

@@ -143,6 +143,7 @@ fn linear(bright: f32, x: f32, y: f32) -> Color {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::LUMINANCE;
 
     fn sky(height: f64, turbidity: f32) -> Sky {
         let (sin, cos) = fp::sin_cos_degrees(height);
@@ -150,7 +151,7 @@ mod tests {
     }
 
     fn brightness(color: Color) -> f32 {
-        color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+        color.dot(LUMINANCE)
     }
 
     #[test]

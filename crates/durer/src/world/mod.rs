@@ -42,7 +42,8 @@ pub struct World {
     has_interfaces: bool,
     /// Whether light goes straight through some sheet.
     has_sheets: bool,
-    has_media: bool,
+    /// What paths may begin in: bodies that they enter, where some is filled.
+    bodies: Vec<u32>,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// All things, where they are a few planes and spheres: for rays that are asked together.
@@ -103,7 +104,7 @@ impl World {
             hides_backs: false,
             has_interfaces: false,
             has_sheets: false,
-            has_media: false,
+            bodies: Vec::new(),
             packs: PrimitivePacks::default(),
             few: PrimitivePacks::default(),
             loose: Vec::new(),
@@ -113,7 +114,7 @@ impl World {
         world.hides_backs = world.finds_hidden_backs();
         world.has_interfaces = world.finds_interfaces();
         world.has_sheets = world.finds_sheets();
-        world.has_media = world.finds_media();
+        world.bodies = world.finds_bodies();
         world.emitters = Emitters::new(&world);
         world
     }
@@ -136,11 +137,6 @@ impl World {
     /// Whether some body has no skin, so that light goes straight into it.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
-    }
-
-    /// Whether something that absorbs or scatters fills some body.
-    pub fn has_media(&self) -> bool {
-        self.has_media
     }
 
     /// Whether light may go straight through some sheet, such as a pane.
@@ -268,17 +264,23 @@ impl World {
 
     /// The closed things of glass that a point is inside, with their indices of refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
-        self.around(point, |glass| glass.transparent != Color::ZERO)
+        self.around(point, 0..self.objects().len() as u32, |glass| glass.transparent != Color::ZERO)
     }
 
     /// The closed bodies that paths enter and that a point is inside, with their indices of
-    /// refraction.
+    /// refraction; none where no body absorbs or scatters.
     pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
-        self.around(point, Phong::is_entered)
+        self.around(point, self.bodies.iter().copied(), Phong::is_entered)
     }
 
-    fn around(&self, point: Vec3, wanted: fn(&Phong) -> bool) -> impl Iterator<Item = (u32, f32)> {
-        (0..).zip(self.objects()).filter_map(move |(number, object)| {
+    fn around(
+        &self,
+        point: Vec3,
+        among: impl Iterator<Item = u32>,
+        wanted: fn(&Phong) -> bool,
+    ) -> impl Iterator<Item = (u32, f32)> {
+        among.filter_map(move |number| {
+            let object = &self.objects()[number as usize];
             match &self.materials()[object.material as usize] {
                 Material::Phong(phong) if wanted(phong) && object.contains(point) => Some((number, phong.ior)),
                 _ => None,

@@ -263,10 +263,18 @@ impl World {
         (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
     }
 
-    /// Whether something fills some body.
-    pub(crate) fn finds_media(&self) -> bool {
-        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.medium.is_some());
-        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+    /// The bodies that paths enter, if something that absorbs or scatters fills some material's.
+    pub(crate) fn finds_bodies(&self) -> Vec<u32> {
+        let of = |number: u32| match &self.materials()[number as usize] {
+            Material::Phong(phong) => Some(phong),
+            Material::Solid(..) => None,
+        };
+        let is_filled = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.medium.is_some());
+        if !(0..self.materials().len() as u32).filter_map(of).any(is_filled) {
+            return Vec::new();
+        }
+        let enters = |object: &Object| of(object.material).is_some_and(Phong::is_entered);
+        (0..).zip(self.objects()).filter(|(_, object)| enters(object)).map(|(number, _)| number).collect()
     }
 
     /// Whether some material is a sheet through which light may go straight.

@@ -7,7 +7,7 @@ use super::plugin::Plugin;
 use super::state::Reader;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::Vec3;
+use crate::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
     /// The layers of `principled` and `principledthin`.
@@ -22,7 +22,7 @@ impl Reader<'_> {
         let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
         let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
         let sheen = share("sheen", 0.0);
-        let luminance = base_color.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-6);
+        let luminance = base_color.dot(LUMINANCE).max(1e-6);
         let tinted = |tint: f32| Vec3::ONE.lerp(base_color / luminance, tint).clamp(Vec3::ZERO, Vec3::ONE);
         let ior = match plugin.get("eta") {
             Some(_) => self.value(plugin, "eta", 1.5),

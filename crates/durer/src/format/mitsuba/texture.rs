@@ -7,7 +7,7 @@ use crate::diag::Span;
 use crate::format::pictures::{asset, checkerboard};
 use crate::format::said::meant;
 use crate::image::{decode_linear, decode_srgb};
-use crate::math::{Color, Vec3};
+use crate::math::{Color, LUMINANCE, Vec3};
 use crate::scene::{Picture, PictureBytes};
 use crate::texture::{Mapping, Wrap};
 use glam::DAffine3;
@@ -128,7 +128,7 @@ impl Reader<'_> {
     /// A number that may be a texture: of a picture the mean is taken.
     pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
         let color = self.color(plugin, name, Vec3::splat(usual));
-        color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+        color.dot(LUMINANCE)
     }
 
     /// A colour that may be a texture: of a picture the mean is taken.

@@ -7,7 +7,7 @@ use crate::diag::{Diagnostic, Span};
 use crate::format::panorama;
 use crate::format::pictures::unusable;
 use crate::image::{self, Encoded, Image};
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{FRAC_2_PI, PI, TAU};
 
@@ -165,7 +165,7 @@ fn upper_illuminance(image: &Image, map: Map) -> f32 {
             Map::EqualArea => (of_equal_area(place).z, 4.0 * PI),
             Map::Longitude => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
         };
-        let luminance = light.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let luminance = light.dot(LUMINANCE);
         sum += f64::from(luminance * cosine.max(0.0) * size);
     }
     (sum / f64::from(width * height)) as f32

@@ -13,7 +13,7 @@ use crate::format::pictures::{Pictures, unusable};
 use crate::image::{self, Encoded, Image};
 use crate::light::photometric::ProfileKind;
 use crate::light::{PhotometricLight, Profile};
-use crate::math::{Color, Vec2, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use crate::scene::Spanned;
 use glam::{DAffine3, DVec3};
 use std::f32::consts::{PI, TAU};
@@ -94,8 +94,7 @@ impl Reader<'_> {
             ],
         };
         let strength = power.map_or(1.0, |power| {
-            let luminance = Vec3::new(0.2126, 0.7152, 0.0722);
-            let flux: f64 = lamps.iter().map(|(hue, lamp)| f64::from(hue.dot(luminance)) * lamp.flux()).sum();
+            let flux: f64 = lamps.iter().map(|(hue, lamp)| f64::from(hue.dot(LUMINANCE)) * lamp.flux()).sum();
             if flux > 0.0 { power / flux as f32 } else { 0.0 }
         });
         let axis = |local: Vec3| map.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();

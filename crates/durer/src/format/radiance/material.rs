@@ -12,7 +12,7 @@ use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::mix::Mix;
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec3, fp};
 use crate::medium::Fog;
 use crate::scene::{Material, Spanned};
 
@@ -279,7 +279,7 @@ impl Reader<'_> {
         };
         let number = self.add_material(m, thing.at());
         // What is in the air thins light by its brightness.
-        let mean = extinction.dot(Vec3::new(0.2126, 0.7152, 0.0722));
+        let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
         self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
         let number = Some(number);

@@ -3,9 +3,8 @@
 //! Paths from the eye find such light by chance, or not at all. So photons are sent from the lamps
 //! to all that mirrors or refracts, followed over single directions, and kept on the first thing
 //! that scatters broadly, or where they are scattered in the air. There the light is estimated from
-//! the photons nearby. Each sample of a
-//! pixel has photons of its own, and looks less far than the one before, so that the mean over
-//! samples comes to the truth.
+//! the photons nearby. Each sample of a pixel has photons of its own, and looks less far than the
+//! one before, so that the mean over samples comes to the truth.
 //!
 //! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
 //! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,

@@ -7,7 +7,7 @@ use crate::dialect::Compat;
 use crate::image::Transfer;
 use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
 use crate::integrator::{TraceNode, Tree};
-use crate::math::{Color, Vec3, reflect};
+use crate::math::{Color, LUMINANCE, Vec3, reflect};
 use crate::scene::Scene;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightId;
@@ -82,7 +82,7 @@ struct Context<'a> {
 }
 
 fn brightness(color: Color) -> f32 {
-    color.dot(Color::new(0.2126, 0.7152, 0.0722))
+    color.dot(LUMINANCE)
 }
 
 impl Names<'_> {

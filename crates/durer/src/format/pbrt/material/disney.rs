@@ -10,7 +10,7 @@ use super::rough::Rough;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec3, fp};
 
 /// The share of light that sheen of strength 1 gives back, over what our fuzz does, both on the mean
 /// over all directions.
@@ -40,7 +40,7 @@ impl Reader<'_> {
         };
         Rough::new(alphas).put(&mut m);
         if sheen > 0.0 {
-            let hue = color / color.dot(Vec3::new(0.2126, 0.7152, 0.0722)).max(1e-6);
+            let hue = color / color.dot(LUMINANCE).max(1e-6);
             let fuzz = Vec3::ONE.lerp(hue, tint);
             let most = fuzz.max_element().max(1e-6);
             (m.fuzz_weight, m.fuzz_color) = ((SHEEN * sheen * most).min(1.0), fuzz / most);

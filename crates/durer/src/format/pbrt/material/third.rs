@@ -123,11 +123,9 @@ impl Reader<'_> {
                 vec![Part { layers: matte(Vec3::new(0.2, 0.12, 0.07)), most: 1.0 }]
             }
             other => {
-                let help = match NEW_MATERIALS.contains(&other) {
-                    true => Some("this is of pbrt-v4".into()),
-                    false => meant(other, KNOWN),
-                };
-                self.no_material(other, at, help, NEW_MATERIALS.contains(&other));
+                let is_new = NEW_MATERIALS.contains(&other);
+                let help = if is_new { Some("this is of pbrt-v4".into()) } else { meant(other, KNOWN) };
+                self.no_material(other, at, help, is_new);
                 return Made::Nothing;
             }
         };
@@ -166,13 +164,7 @@ impl Reader<'_> {
             }
         });
         let (share, picture) = match self.pattern(params, "opacity", true, Vec3::ONE) {
-            Texture::Even(color) => {
-                if color.max_element() - color.min_element() > 1e-3 {
-                    let what = "an `opacity` of a colour has no counterpart: the mean of its parts is taken";
-                    self.said.once(params.place("opacity"), what);
-                }
-                (color.element_sum() / 3.0, None)
-            }
+            Texture::Even(color) => (self.grey(params, "opacity", color), None),
             Texture::Picture(..) => (1.0, self.changed(params, "opacity", true, |x| x)),
         };
         for part in &mut parts {
@@ -234,16 +226,19 @@ impl Reader<'_> {
         Part { layers: m, most: 1.0 }
     }
 
+    /// One number of a parameter that may be a colour in pbrt-v3.
+    fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
+        if color.max_element() - color.min_element() > 1e-3 {
+            let what = format!("an `{name}` of a colour has no counterpart: the mean of its parts is taken");
+            self.said.once(params.place(name), what);
+        }
+        color.element_sum() / 3.0
+    }
+
     /// `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
         let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
-            Texture::Even(color) => {
-                if color.max_element() - color.min_element() > 1e-3 {
-                    let what = "an `amount` of a colour has no counterpart: the mean of its parts is taken";
-                    self.said.once(params.place("amount"), what);
-                }
-                color.element_sum() / 3.0
-            }
+            Texture::Even(color) => self.grey(params, "amount", color),
             Texture::Picture(picture, scale) => self.mean_of(params, "amount", &picture).unwrap_or(0.5) * scale.x,
         };
         let names = ["namedmaterial1", "namedmaterial2"].map(|name| (name, params.text(name).map(str::to_string)));

@@ -1,7 +1,7 @@
 //! FLIP for light of any range: the largest error over all exposures that show something.
 
 use super::flip_of;
-use crate::math::{Vec3, fp};
+use crate::math::{LUMINANCE, Vec3, fp};
 
 /// Coefficients of the tone curve (a x^2 + b x) / (c x^2 + d x + e), Narkowicz' fit to that of ACES
 /// with its exposure of 0.6.
@@ -34,8 +34,7 @@ fn tone_map(light: Vec3) -> Vec3 {
 /// Factors, about one stop apart, from one that shows the brightest light to one that shows the
 /// median. 2021, section 3.2.
 pub fn exposures(reference: &[Vec3]) -> Vec<f32> {
-    let luminance = Vec3::new(0.2126, 0.7152, 0.0722);
-    let mut light: Vec<f32> = reference.iter().map(|pixel| pixel.max(Vec3::ZERO).dot(luminance)).collect();
+    let mut light: Vec<f32> = reference.iter().map(|pixel| pixel.max(Vec3::ZERO).dot(LUMINANCE)).collect();
     let brightest = light.iter().copied().fold(0.0, f32::max);
     // The upper one of an even number, as the authors' program has it.
     let middle = light.len() / 2;
