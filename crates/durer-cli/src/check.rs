@@ -18,7 +18,7 @@ use durer::diag::{Edit, Severity};
 use durer::source::Source;
 use std::path::Path;
 
-pub use after::{after_course, after_render};
+pub use after::{after_course, after_render, looks};
 pub use args::CheckArgs;
 use change::Change;
 use checked::{Checked, look};

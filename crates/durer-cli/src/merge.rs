@@ -50,8 +50,10 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let whole = merge(&parts).map_err(|error| bad(error.to_string()))?;
     drop(parts);
     rejected(&whole.statistics(), args.quiet);
-    let rendered = whole.pictures().map_err(failed)?;
-    output::save(&target.files(&rendered, args.display.display()?)?, args.quiet)?;
+    let display = args.display.display()?;
+    if target.save_colors(&whole, display, args.quiet)?.is_none() {
+        output::save(&target.files(&whole.pictures().map_err(failed)?, display)?, args.quiet)?;
+    }
     if args.hash {
         say(&whole.hash().to_string());
     }

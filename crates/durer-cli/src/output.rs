@@ -5,8 +5,11 @@ use crate::guard::Guard;
 use crate::options::DIAGRAMS;
 use crate::progress;
 use crate::terminal::say;
-use durer::image::{Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
-use durer::render::Rendered;
+use durer::check::picture::Looks;
+use durer::image::{Content, Depth, Destination, Display, Format, Layer, WriteOptions, format_for, save_all};
+use durer::render::{BandsError, PartialRender, Rendered};
+use std::cell::RefCell;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The format of a picture's name, or what is wrong with the name.
@@ -54,6 +57,19 @@ impl Target {
         }
     }
 
+    /// Saves the colours of a part while they are converted, row by row, without a picture of them
+    /// in memory, and says how they look; `None` where the file takes more than that.
+    pub fn save_colors(&self, part: &PartialRender, display: Display, quiet: bool) -> Result<Option<Looks>, Failure> {
+        let only_colors = part.job().color && part.job().aovs.is_empty();
+        let rows = |format: &Format| only_colors && format.rows.is_some() && !format.layers;
+        let Some((place, format)) = self.single().filter(|(_, format)| rows(format)) else { return Ok(None) };
+        progress::saving();
+        let colors = Colors { part, format, display, looks: RefCell::new(Looks::new(display.exposure)) };
+        save_all(&[(place, &colors)])?;
+        wrote(place, quiet);
+        Ok(Some(colors.looks.into_inner()))
+    }
+
     /// Whether pictures of this size fit into the files.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
         self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
@@ -71,6 +87,27 @@ impl Target {
             Ok((place, encode(self.format, layers, display, &rendered.attributes)?))
         };
         self.files.iter().map(|(name, place)| file((name.as_deref(), place))).collect()
+    }
+}
+
+/// The colours of a part, which become a file's bytes while they are written.
+struct Colors<'a> {
+    part: &'a PartialRender,
+    format: &'static Format,
+    display: Display,
+    /// How they look.
+    looks: RefCell<Looks>,
+}
+
+impl Content for &Colors<'_> {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (mut out, mut looks) = (io::BufWriter::new(out), self.looks.borrow_mut());
+        let written = self.part.write_colors(self.format, self.display, &mut out, |pixels| looks.add(pixels));
+        written.map_err(|error| match error {
+            BandsError::Io(error) => error,
+            error => io::Error::other(error),
+        })?;
+        out.flush()
     }
 }
 

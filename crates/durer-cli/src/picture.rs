@@ -12,7 +12,9 @@ use crate::terminal::{complain, say};
 use crate::{check, diagrams, job, large, output, progress};
 use durer::compile::Kept;
 use durer::image::checked_count;
-use durer::render::{Bands, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, replay};
+use durer::render::{
+    Bands, Control, Job, Panicked, PartialRender, RenderError, RenderOutcome, Rendered, Shard, ShardBy, replay,
+};
 use durer::world::World;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
@@ -167,28 +169,21 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     match target {
         None => keeper.save(&part)?,
         Some(target) => {
-            let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(failed)?;
-            diagrams::add(&args.view.show, args.view.zoom, &opened.world, &job, &control, &mut rendered)
-                .map_err(failed)?;
-            if shows_error {
-                let [values, shown] = part.error(&opened.world, threads).map_err(failed)?;
-                rendered.layers.push(values);
-                rendered.pictures.push(shown);
-            }
-            if let (Some(denoiser), true) = (args.denoise, job.color) {
-                let noisy = part.noisy(&opened.world, threads).map_err(failed)?;
-                let clean = denoiser.clean(noisy, threads, args.quiet)?;
-                for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
-                    shown.image = clean.image.clone();
-                }
-                rendered.layers.push(clean);
-            }
             let display = args.display.display()?;
-            let files = durer::threads::install(threads, || target.files(&rendered, display))?;
-            output::save(&files, args.quiet)?;
+            let plain = args.view.show == ["color"] && args.denoise.is_none();
+            let saved = || if plain { target.save_colors(&part, display, args.quiet) } else { Ok(None) };
+            let (looks, pictures) = match durer::threads::install(threads, saved)? {
+                Some(looks) => (Some(looks), Vec::new()),
+                None => {
+                    let rendered = pictures(args, &opened.world, &part, &control)?;
+                    let files = durer::threads::install(threads, || target.files(&rendered, display))?;
+                    output::save(&files, args.quiet)?;
+                    (check::looks(&job, &rendered.pictures, display.exposure), rendered.pictures)
+                }
+            };
             keeper.done(&part, finished);
             if finished && !args.quiet {
-                check::after_render(&opened, &job, &rendered.pictures, &rendered.statistics, display);
+                check::after_render(&opened, &job, looks.as_ref(), &pictures, &part.statistics(), display);
             }
         }
     }
@@ -203,6 +198,32 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         say(&part.hash().to_string());
     }
     Ok(())
+}
+
+/// All the pictures of a part, with those that are made of it or beside it.
+fn pictures(
+    args: &RenderArgs,
+    world: &World,
+    part: &PartialRender,
+    control: &Arc<Control>,
+) -> Result<Rendered, Failure> {
+    let (job, threads) = (part.job(), control.threads);
+    let mut rendered = durer::threads::install(threads, || part.pictures()).map_err(failed)?;
+    diagrams::add(&args.view.show, args.view.zoom, world, job, control, &mut rendered).map_err(failed)?;
+    if args.view.show.iter().any(|show| show == ERROR) {
+        let [values, shown] = part.error(world, threads).map_err(failed)?;
+        rendered.layers.push(values);
+        rendered.pictures.push(shown);
+    }
+    if let (Some(denoiser), true) = (args.denoise, job.color) {
+        let noisy = part.noisy(world, threads).map_err(failed)?;
+        let clean = denoiser.clean(noisy, threads, args.quiet)?;
+        for shown in rendered.pictures.iter_mut().filter(|layer| layer.name == "color") {
+            shown.image = clean.image.clone();
+        }
+        rendered.layers.push(clean);
+    }
+    Ok(rendered)
 }
 
 /// What is to be shown, each once.

@@ -4,7 +4,7 @@ use crate::open::Opened;
 use crate::report;
 use crate::terminal::complain;
 use codespan_reporting::term::termcolor::StandardStream;
-use durer::check::picture::{Oddity, oddity};
+use durer::check::picture::{Looks, Oddity};
 use durer::check::{Subject, check};
 use durer::diag::Diagnostic;
 use durer::image::{Display, Layer, Tone};
@@ -14,17 +14,33 @@ use durer::render::{Job, Statistics};
 /// At most so many findings are told.
 const MOST: usize = 3;
 
+/// How the first of some pictures looks, if it is one of colours.
+pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<Looks> {
+    let color = pictures.first().filter(|_| job.color)?;
+    let mut looks = Looks::new(exposure);
+    looks.add(&color.image.pixels);
+    Some(looks)
+}
+
 /// After `durer render`: whatever looks wrong is told of.
-pub fn after_render(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics, display: Display) {
+pub fn after_render(
+    opened: &Opened,
+    job: &Job,
+    looks: Option<&Looks>,
+    pictures: &[Layer],
+    statistics: &Statistics,
+    display: Display,
+) {
     // A curve brings back what is brighter than white.
     let is_odd = |oddity: &Oddity| display.tone == Tone::default() || *oddity != Oddity::White;
-    After { opened, job, statistics, exposure: display.exposure }.look(pictures, is_odd);
+    After { opened, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
 }
 
 /// After `durer course`: pictures of one colour alone, for those are not meant in any year.
 pub fn after_course(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
-    After { opened, job, statistics, exposure: 1.0 }.look(pictures, is_odd);
+    let looks = looks(job, pictures, 1.0);
+    After { opened, job, statistics, exposure: 1.0 }.look(looks.as_ref(), pictures, is_odd);
 }
 
 /// What was rendered.
@@ -36,9 +52,8 @@ struct After<'a> {
 }
 
 impl After<'_> {
-    fn look(&self, pictures: &[Layer], is_odd: impl Fn(&Oddity) -> bool) {
-        let color = pictures.first().filter(|_| self.job.color);
-        match color.and_then(|layer| oddity(&layer.image, self.exposure, self.statistics)).filter(is_odd) {
+    fn look(&self, looks: Option<&Looks>, pictures: &[Layer], is_odd: impl Fn(&Oddity) -> bool) {
+        match looks.and_then(|looks| looks.oddity(self.statistics)).filter(is_odd) {
             Some(oddity) => self.tell(&format!("the picture {}", oddity.words())),
             None => self.depths(pictures),
         }

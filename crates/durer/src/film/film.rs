@@ -43,7 +43,19 @@ pub(super) struct Pixel {
 }
 
 impl Pixel {
-    /// Adds a sample; `false` if it is no finite number. What is too bright to be kept is cut.
+    /// Adds a sample that covers a share of the pixel; `false` if it is no finite number.
+    #[inline]
+    pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
+        let (rgb, size) = (color.to_array().map(f64::from), color.x.abs() + color.y.abs() + color.z.abs());
+        // Nearly all samples are small.
+        if size < SMALL_COLOR && weight.abs() <= 1.0 && share == 1.0 {
+            self.add_small(rgb, weight.into());
+            return true;
+        }
+        self.add(rgb, weight.into(), share.into())
+    }
+
+    /// The same; `false` if it is no finite number. What is too bright to be kept is cut.
     fn add(&mut self, rgb: [f64; 3], weight: f64, share: f64) -> bool {
         let weight = weight * WEIGHT_SCALE;
         if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.is_finite())) {
@@ -84,6 +96,36 @@ impl Pixel {
         self.covered = self.covered.wrapping_add(weight);
     }
 
+    /// The sums of one sample of weight 1 that saw something.
+    pub(super) fn of_single(color: Color) -> Self {
+        let mut pixel = Pixel::default();
+        pixel.add_any(color, 1.0, 1.0);
+        pixel
+    }
+
+    /// The colour of which [`Pixel::of_single`] makes these sums. One sample of weight 1 has one:
+    /// what its colour is rounded to is a number of single precision again.
+    #[inline]
+    pub(super) fn single(&self) -> Option<Color> {
+        if self.samples != 1 || self.weight != WEIGHT_SCALE as i64 || self.covered != self.weight {
+            return None;
+        }
+        let mut color = [0.0_f32; 3];
+        for (channel, &sum) in color.iter_mut().zip(&self.color) {
+            *channel = (rounded(sum) / COLOR_SCALE) as f32;
+        }
+        let rgb = color.map(f64::from);
+        if rgb.iter().map(|c| c.abs()).sum::<f64>() >= f64::from(SMALL_COLOR) {
+            let color = Color::from(color);
+            return (Pixel::of_single(color) == *self).then_some(color);
+        }
+        // What `add_small` makes of it.
+        let is_same = rgb.iter().zip(&self.color).all(|(c, &sum)| i128::from((c * COLOR_SCALE) as i64) == sum)
+            && whole_number(luminance(rgb) * LUMINANCE_SCALE) == self.luminance
+            && i128::from(self.luminance) * i128::from(self.luminance) == self.squares;
+        is_same.then(|| Color::from(color))
+    }
+
     /// As [`Film::resolve`].
     #[inline]
     pub(super) fn mean(&self) -> Color {
@@ -122,7 +164,7 @@ impl Pixel {
 const SMALL_COLOR: f32 = 8.0;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
-pub(super) const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
+const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
 const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
@@ -181,12 +223,7 @@ impl Film {
     /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
     pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
         let index = self.index(x, y).expect("the pixel lies in the film's window");
-        let pixel = &mut self.pixels[index];
-        let (rgb, size) = (color.to_array().map(f64::from), color.x.abs() + color.y.abs() + color.z.abs());
-        // Nearly all samples are small.
-        if size < SMALL_COLOR && weight.abs() <= 1.0 && share == 1.0 {
-            pixel.add_small(rgb, weight.into());
-        } else if !pixel.add(rgb, weight.into(), share.into()) {
+        if !self.pixels[index].add_any(color, share, weight) {
             self.reject(Rejected { y, x, sample });
         }
     }

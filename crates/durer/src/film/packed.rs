@@ -1,14 +1,15 @@
 //! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
 
-use super::film::{Film, Pixel, WEIGHT_SCALE};
+use super::film::{Film, Pixel};
 use crate::math::Color;
 
 /// A film that nothing is added to for a while. It is the same film: what comes out is what went
 /// in.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum Packed {
-    /// Each pixel has one sample of weight 1, which saw something: its colour, and its luminance.
-    Single(Box<[[i64; 3]]>, Box<[i32]>),
+    /// Each pixel has one sample of weight 1, which saw something, and of which its colour tells
+    /// all.
+    Single(Box<[Color]>),
     /// Sums of 64 bits are enough, and all samples saw something.
     Small(Box<[Small]>),
     /// All that a film can hold.
@@ -54,28 +55,6 @@ impl Small {
             samples: self.samples.into(),
         }
     }
-
-    fn of_single((&color, &luminance): (&[i64; 3], &i32)) -> Self {
-        let luminance = i64::from(luminance);
-        Small {
-            color,
-            squares: words((luminance * luminance).into()),
-            luminance,
-            weight: WEIGHT_SCALE as i64,
-            samples: 1,
-        }
-    }
-}
-
-/// The colour of one sample of weight 1 that saw something, and its luminance in few bits.
-fn single(pixel: &Pixel) -> Option<([i64; 3], i32)> {
-    let is_single = pixel.samples == 1
-        && pixel.weight == WEIGHT_SCALE as i64
-        && pixel.covered == pixel.weight
-        && pixel.squares == i128::from(pixel.luminance) * i128::from(pixel.luminance);
-    let [r, g, b] = pixel.color;
-    let luminance = is_single.then(|| pixel.luminance.try_into().ok()).flatten()?;
-    Some(([r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?], luminance))
 }
 
 /// All of a film's pixels made smaller, if all can be.
@@ -100,10 +79,9 @@ impl Packed {
             return Packed::Whole(Box::new(film));
         }
         if samples == 1
-            && let Some(singles) = all(&film, single)
+            && let Some(singles) = all(&film, Pixel::single)
         {
-            let (colors, luminances): (Vec<_>, Vec<_>) = singles.into_iter().unzip();
-            return Packed::Single(colors.into(), luminances.into());
+            return Packed::Single(singles.into());
         }
         match all(&film, Small::of) {
             Some(small) => Packed::Small(small.into()),
@@ -119,9 +97,7 @@ impl Packed {
             film
         };
         match self {
-            Packed::Single(colors, luminances) => {
-                film(colors.iter().zip(luminances).map(|one| Small::of_single(one).pixel()).collect())
-            }
+            Packed::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
             Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
             Packed::Whole(film) => Film::clone(film),
         }
@@ -130,19 +106,20 @@ impl Packed {
     /// The mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
     /// [`Film::coverage`].
     pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
-        let mut offer = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
+        let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
         match self {
-            Packed::Single(colors, luminances) => {
-                colors.iter().zip(luminances).for_each(|one| offer(&Small::of_single(one).pixel()));
-            }
-            Packed::Small(pixels) => pixels.iter().for_each(|small| offer(&small.pixel())),
-            Packed::Whole(film) => film.pixels.iter().for_each(offer),
+            Packed::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
+            Packed::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
+            Packed::Whole(film) => film.pixels.iter().for_each(offer_pixel),
         }
     }
 
-    /// Whether it is quickly known that all of each pixel saw something.
+    /// Whether all of each pixel saw something.
     pub fn is_covered(&self) -> bool {
-        !matches!(self, Packed::Whole(_))
+        match self {
+            Packed::Single(_) | Packed::Small(_) => true,
+            Packed::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
+        }
     }
 
     /// The film itself, where samples were left out: others pack.
@@ -155,6 +132,6 @@ impl Packed {
 
     /// Bytes that a pixel of so many samples takes, where light is not stronger than usual.
     pub fn pixel_bytes(samples: u32) -> u64 {
-        (if samples == 1 { size_of::<[i64; 3]>() + size_of::<i32>() } else { size_of::<Small>() }) as u64
+        (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
     }
 }

@@ -97,7 +97,7 @@ impl Bands {
         // Whether the camera sees all is not known before the end: where it may not, there is
         // alpha.
         let (width, height, display) = (window.width, window.height, options.display);
-        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
+        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display, whole: false };
         let samples = u64::from(self.job.sampling.samples());
         control.all.store(window.pixels().saturating_mul(samples), Relaxed);
         let mut crops = self.crops();
@@ -115,9 +115,7 @@ impl Bands {
                 }
                 part.hash_into(&mut hasher);
                 statistics.add(part.statistics());
-                let rendered = part.pictures()?;
-                let Some(layer) = rendered.pictures.first() else { continue };
-                layer.try_rows(bottom_up, |pixels, coverage| rows.row(pixels, coverage))?;
+                part.try_strips(bottom_up, |pixels, coverage| rows.rows(pixels, coverage))?;
             }
             Ok((statistics, (!bottom_up).then(|| Digest(hasher.finalize().into()))))
         })

@@ -2,15 +2,20 @@
 
 use super::error::RenderError;
 use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
-use super::{Blocks, Crop};
+use super::{BandsError, Blocks, Crop};
 use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
 use crate::film::false_color::LightScale;
-use crate::image::{Image, Layer};
+use crate::image::{Display as ImageDisplay, Format, Image, Layer, Strip};
 use crate::math::{Aabb, Color, Vec3};
 use rayon::prelude::*;
+use std::io::Write;
+use std::ops::Range;
 use std::sync::Arc;
+
+/// Rows of blocks whose colours are in memory at once where they are offered in strips.
+const AT_ONCE: usize = 16;
 
 /// Pictures and what was counted on the way.
 #[derive(Debug)]
@@ -84,23 +89,76 @@ impl PartialRender {
         ]
     }
 
+    /// Writes the colours of what is made so far, row by row, for formats that are written so: no
+    /// picture of all of them is in memory. `look` is offered all of them, some rows at a time.
+    ///
+    /// # Errors
+    /// Those of the file, and [`BandsError::Image`] for formats that take all rows at once.
+    pub fn write_colors(
+        &self,
+        format: &Format,
+        display: ImageDisplay,
+        out: &mut dyn Write,
+        mut look: impl FnMut(&[Color]),
+    ) -> Result<(), BandsError> {
+        let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
+        let strip = Strip { width, height, alpha, display, whole: true };
+        let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
+        format.write_rows(strip, out, |rows| {
+            self.try_strips(bottom_up, |pixels, coverage| {
+                look(pixels);
+                Ok(rows.rows(pixels, coverage)?)
+            })
+        })
+    }
+
+    fn is_all_seen(&self, state: &State) -> bool {
+        state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()))
+    }
+
+    /// Offers the colours of what is made so far, some whole rows at a time, with the share of each
+    /// pixel that is seen (empty where all is); the lowest rows first if `bottom_up`. What is not
+    /// made yet is transparent.
+    ///
+    /// # Errors
+    /// The first of `strip`.
+    pub(super) fn try_strips<E>(
+        &self,
+        bottom_up: bool,
+        mut strip: impl FnMut(&[Color], &[f32]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (state, rows): (_, Vec<_>) = (self.state(), self.blocks.rows().collect());
+        let is_seen = self.is_all_seen(&state);
+        let mut offer = |rows: &[Range<usize>]| {
+            let (colors, coverage) = self.colors_of(&state, rows, is_seen);
+            strip(&colors, &coverage)
+        };
+        let mut parts = rows.chunks(AT_ONCE);
+        if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
+    }
+
     /// Colours and coverage; what is not made yet is transparent. Where all is seen, no coverage is
     /// told.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
+        self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.is_all_seen(state))
+    }
+
+    /// The same of some rows of blocks.
+    fn colors_of(&self, state: &State, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
-        let count = window.pixels() as usize;
-        let is_seen = state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()));
+        // A row of blocks is some whole rows of pixels.
+        let pixels = |blocks: &Range<usize>| (self.blocks.rect(blocks.start).height * window.width) as usize;
+        let count = rows.iter().map(pixels).sum();
         let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; if is_seen { 0 } else { count }]);
         let (mut free_colors, mut free_coverage) = (&mut colors[..], &mut coverage[..]);
-        // A row of blocks is some whole rows of pixels.
-        let strips = self.blocks.rows().filter_map(|blocks| {
-            let pixels = (self.blocks.rect(blocks.start).height * window.width) as usize;
+        let strips = rows.iter().filter_map(|blocks| {
+            let pixels = pixels(blocks);
             let covered = if is_seen { 0 } else { pixels };
             Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..covered)?))
         });
         strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
             let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
-            for index in blocks {
+            for index in blocks.clone() {
                 let Some(film) = &state.samples[index].film else { continue };
                 let mut places = self.blocks.rect(index).places();
                 film.means(|color, share| {

@@ -455,3 +455,40 @@ fn a_picture_made_in_bands_is_the_same() {
     let depth = Job { aovs: AOVS.iter().filter(|aov| aov.name == "depth").collect(), ..small() };
     assert!(matches!(Bands::new(&depth, u64::MAX), Err(RenderError::Bands(_))));
 }
+
+#[test]
+fn colours_written_row_by_row_are_the_file_of_their_picture() {
+    let fisheye = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
+    let crop = Some(Crop { left: 5, top: 3, width: 20, height: 24 });
+    let tall = Job { width: 5, height: 200, ..Job::default() };
+    for (text, job, most_tiles) in [
+        (TEXT, small(), None),
+        (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
+        (TEXT, tall, None),
+        // Some pixels see nothing, and some are not made.
+        (&fisheye, Job { sampling: filtered(4), ..small() }, None),
+        (TEXT, small(), Some(2)),
+    ] {
+        let world = testing::read(text);
+        let part = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
+        let control = Control { most_tiles, threads: Some(1), ..Control::default() };
+        part.render(&world, &control, &mut |_, _| {}).unwrap();
+        let layers = part.pictures().unwrap().pictures;
+        let is_open = layers[0].coverage.is_some();
+        assert_eq!(is_open, most_tiles.is_some() || text == fisheye);
+        for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
+            let (mut by_rows, mut at_once, mut seen) = (Vec::new(), Vec::new(), Vec::new());
+            part.write_colors(format, Default::default(), &mut by_rows, |colors| seen.extend_from_slice(colors))
+                .unwrap();
+            format.write(&layers, &WriteOptions::default(), &mut at_once).unwrap();
+            let name = format!("x.{}", format.extensions[0]);
+            assert_eq!(read(&by_rows, &name).unwrap(), read(&at_once, &name).unwrap(), "{name}");
+            // OpenEXR is packed where all of it is there.
+            assert!(format.name == "OpenEXR" || by_rows == at_once, "{name}");
+            assert_eq!(seen.len() as u64, job.window().pixels());
+        }
+        let bmp = FORMATS.iter().find(|format| format.rows.is_none()).unwrap();
+        let refused = part.write_colors(bmp, Default::default(), &mut Vec::new(), |_| {});
+        assert!(matches!(refused, Err(BandsError::Image(_))));
+    }
+}

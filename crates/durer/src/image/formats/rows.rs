@@ -1,7 +1,8 @@
 //! Formats that are written row by row, so that no picture is too large for them.
 
-use super::{Display, Format, ImageError, Layer, Transfer, WriteOptions};
+use super::{Display, Format, Image, ImageError, Layer, Transfer, WriteOptions};
 use crate::math::Vec3;
+use rayon::prelude::*;
 use std::io::{self, Write};
 
 /// How a format writes rows.
@@ -28,13 +29,16 @@ pub struct Strip {
     pub alpha: bool,
     /// What makes eight bits of a colour.
     pub display: Display,
+    /// Whether memory is there for all of it in eight bits: PNG is packed quicker so.
+    pub whole: bool,
 }
 
 impl Strip {
     /// Of a layer, as a format shows it.
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
-        Strip { width: layer.image.width, height: layer.image.height, alpha, display: super::display(layer, options) }
+        let Image { width, height, .. } = *layer.image;
+        Strip { width, height, alpha, display: super::display(layer, options), whole: true }
     }
 
     /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where
@@ -60,7 +64,6 @@ pub struct RowWriter<'w> {
     /// The number of the next row.
     next: u32,
     out: &'w mut dyn Write,
-    bytes: Vec<u8>,
 }
 
 impl Format {
@@ -80,31 +83,52 @@ impl Format {
         let head = (format.head)(&strip)?;
         if !format.png {
             out.write_all(&head)?;
-            return rows(&mut RowWriter { format, strip, next: 0, out, bytes: Vec::new() });
+            return rows(&mut RowWriter { format, strip, next: 0, out });
         }
         let mut encoder = png::Encoder::new(out, strip.width, strip.height);
         encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_compression(png::Compression::Fast);
+        encoder.set_filter(png::Filter::Adaptive);
         let mut file = encoder.write_header().map_err(io::Error::from)?;
-        let mut packed = file.stream_writer().map_err(io::Error::from)?;
-        let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed, bytes: Vec::new() })?;
-        packed.finish().map_err(io::Error::from)?;
+        let made = if strip.whole {
+            let channels = if strip.alpha { 4 } else { 3 };
+            let mut bytes = Vec::with_capacity(channels * strip.width as usize * strip.height as usize);
+            let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut bytes })?;
+            file.write_image_data(&bytes).map_err(io::Error::from)?;
+            made
+        } else {
+            let mut packed = file.stream_writer().map_err(io::Error::from)?;
+            let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed })?;
+            packed.finish().map_err(io::Error::from)?;
+            made
+        };
         file.finish().map_err(io::Error::from)?;
         Ok(made)
     }
 }
 
 impl RowWriter<'_> {
-    /// The next row. `coverage` is the share of each pixel that is seen; empty where all is.
+    /// The next rows, from top to bottom whatever comes first in the file. `coverage` is the share
+    /// of each pixel that is seen; empty where all is.
     ///
     /// # Errors
     /// Those of the file.
-    pub fn row(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
-        self.bytes.clear();
-        (self.format.row)(&self.strip, self.next, pixels, coverage, &mut self.bytes);
-        self.next += 1;
-        self.out.write_all(&self.bytes)
+    pub fn rows(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
+        let (format, strip, width) = (self.format, &self.strip, self.strip.width as usize);
+        let count = (pixels.len() / width) as u32;
+        // In the order of the file.
+        let row = |i: u32| {
+            let y = if format.bottom_up { count - 1 - i } else { i } as usize;
+            let range = y * width..(y + 1) * width;
+            let mut bytes = Vec::new();
+            let coverage = coverage.get(range.clone()).unwrap_or_default();
+            (format.row)(strip, self.next + i, &pixels[range], coverage, &mut bytes);
+            bytes
+        };
+        let made: Vec<Vec<u8>> = (0..count).into_par_iter().map(row).collect();
+        self.next += count;
+        made.iter().try_for_each(|bytes| self.out.write_all(bytes))
     }
 }
 
