@@ -145,7 +145,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let opened = open(&args.scene, &options, false, &mut Guard::default())?;
     let scene = &opened.loaded.scene;
     let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
-    let lumens = scene.lumens.unwrap_or(LUMINANCE);
+    let lumens = opened.world.lumens().unwrap_or(LUMINANCE);
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };

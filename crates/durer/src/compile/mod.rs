@@ -160,6 +160,7 @@ pub fn compile(
         materials: compiled,
         objects,
         rules: rules.clone(),
+        lumens: scene.lumens,
     };
     let assets = Assets { cube_map, environment, fog, profiles, illuminants, textures };
     let mut world = World::new(contents, assets, digest);

@@ -7,11 +7,11 @@
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
 use crate::bvh::TraversalStats;
-use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture, Rules};
+use crate::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture};
 use crate::math::{Aabb, Color, Vec3};
 use crate::sampler::hash;
 use crate::shape::Surface;
-use crate::world::Interaction;
+use crate::world::{Interaction, World};
 use serde::{Deserialize, Serialize};
 
 /// What the ray through a pixel's centre found.
@@ -25,7 +25,7 @@ pub struct AovInput {
     pub albedo: Color,
     /// The work for the pixel, with all secondary rays.
     pub counts: TraversalStats,
-    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2; 0 unless
+    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts; 0 unless
     /// it is asked for.
     pub illuminance: f32,
 }
@@ -48,6 +48,8 @@ pub struct Sums<'a> {
     pub pixel: Option<(&'a Film, u32, u32)>,
     /// The size of the samples' weights where their mean is 1, as [`Film::variance`] takes it.
     pub gain: f32,
+    /// What makes lumens of light, by colour, where that is in watts.
+    pub lumens: Option<Vec3>,
 }
 
 impl Sums<'_> {
@@ -63,8 +65,13 @@ impl Sums<'_> {
 
     /// Luminance of their mean.
     pub fn luminance(&self) -> f64 {
-        self.pixel.map_or(0.0, |(film, x, y)| luminance_of(film.resolve(x, y)))
+        self.pixel.map_or(0.0, |(film, x, y)| brightness(film.resolve(x, y), self.lumens))
     }
+}
+
+/// The luminance of light, or its lumens where it is in watts.
+pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
+    lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
 }
 
 /// Those rules of a scene's dialect that say how values are shown.
@@ -76,12 +83,21 @@ pub struct DisplayRules {
     pub depth: DepthPicture,
     /// Quirks of the official program.
     pub compat: CompatSet,
+    /// What makes lumens of light, by colour, where that is in watts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lumens: Option<Vec3>,
 }
 
 impl DisplayRules {
-    /// The look of some rules.
-    pub fn new(rules: &Rules) -> Self {
-        DisplayRules { normals: rules.normals_picture, depth: rules.depth_picture, compat: rules.compat }
+    /// Those of a world.
+    pub fn of(world: &World) -> Self {
+        let rules = world.rules();
+        DisplayRules {
+            normals: rules.normals_picture,
+            depth: rules.depth_picture,
+            compat: rules.compat,
+            lumens: world.lumens(),
+        }
     }
 
     /// Whether a compatibility is on.
@@ -235,7 +251,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "luminance",
-        doc: "luminance of the colour, in cd/m^2 where the scene's light is; as a picture, false colours with their scale",
+        doc: "luminance of the colour, in cd/m^2 where the scene's light is, or in watts; as a picture, false colours with their scale",
         value: Value::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
         picture: light_picture,
         relative: true,
@@ -243,7 +259,7 @@ pub static AOVS: &[Aov] = &[
     },
     Aov {
         name: "illuminance",
-        doc: "light that arrives at the surface, in lux where the scene's light is in cd/m^2, by paths; false colours with their scale",
+        doc: "light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts, by paths; false colours with their scale",
         value: Value::Ray(|seen| Vec3::splat(seen.illuminance)),
         picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
         relative: true,

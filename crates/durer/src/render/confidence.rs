@@ -138,7 +138,7 @@ impl PartialRender {
             let Some(film) = block.film(rect) else { continue };
             let twin = other.as_ref().and_then(|other| other.samples[index].film(rect));
             for (x, y) in rect.places() {
-                let sums = |film| Sums { pixel: Some((film, x, y)), gain };
+                let sums = |film| Sums { pixel: Some((film, x, y)), gain, lumens: None };
                 let bound = ErrorBound::new(&sums(&film), &sums(twin.as_ref().unwrap_or(&film))).bound;
                 bounds[place(window, x, y)] = bound as f32;
             }

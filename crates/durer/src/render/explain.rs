@@ -170,7 +170,7 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
             Some(integrator.radiance(&ray, SampleId::new(job.seed, (x, y), s.sample), &mut ()))
         })
     });
-    let sums = |film| Sums { pixel: Some((film, x, y)), gain: source.gain() };
+    let sums = |film| Sums { pixel: Some((film, x, y)), gain: source.gain(), lumens: None };
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 

@@ -115,7 +115,7 @@ impl PartialRender {
     /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
-        PartialRender::empty(job.clone(), shard, world.digest(), DisplayRules::new(world.rules()))
+        PartialRender::empty(job.clone(), shard, world.digest(), DisplayRules::of(world))
     }
 
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {

@@ -189,11 +189,11 @@ impl PartialRender {
 
     /// The values of a picture that comes from the samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
-        let gain = self.gain();
-        let none = value(&Sums { pixel: None, gain });
+        let (gain, lumens) = (self.gain(), self.look.lumens);
+        let none = value(&Sums { pixel: None, gain, lumens });
         let mut pixels = vec![(none, PrimaryHit::Blind); self.job.window().pixels() as usize];
         self.each_sampled(state, |index, film, x, y| {
-            let sums = Sums { pixel: Some((film, x, y)), gain };
+            let sums = Sums { pixel: Some((film, x, y)), gain, lumens };
             pixels[index] = (value(&sums), PrimaryHit::Hit);
         });
         pixels

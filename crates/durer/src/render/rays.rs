@@ -4,8 +4,7 @@ use super::part::{BlockAovs, PrimaryHit};
 use super::samples::{SampleCursor, Samples, Stopped};
 use super::{Crop, Job, center_ray, raster};
 use crate::bvh::{RayCount, TraversalStats};
-use crate::film::aov::AovInput;
-use crate::film::luminance_of;
+use crate::film::aov::{AovInput, brightness};
 use crate::integrator::Path;
 use crate::math::Vec3;
 use crate::sampler::SampleId;
@@ -47,7 +46,7 @@ pub(super) fn trace(
                     samples.check()?;
                     sum += path.irradiance_on(&at.surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
                 }
-                (luminance_of(sum) / f64::from(count)) as f32
+                (brightness(sum, world.lumens()) / f64::from(count)) as f32
             }
             _ => 0.0,
         };

@@ -89,7 +89,7 @@ impl PartialRender {
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.look != DisplayRules::new(world.rules()) {
+        if self.scene != world.digest() || self.look != DisplayRules::of(world) {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));

@@ -9,7 +9,7 @@ use crate::film::aov::{AOVS, Aov};
 use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
 use crate::image::{Depth, FORMATS, WriteOptions, read};
-use crate::integrator::Settings;
+use crate::integrator::{Method, Settings};
 use crate::math::{Aabb, Vec3};
 use crate::sampler::Sampler;
 use crate::source::Digest;
@@ -491,4 +491,24 @@ fn colours_written_row_by_row_are_the_file_of_their_picture() {
         let refused = part.write_colors(bmp, Default::default(), &mut Vec::new(), |_| {});
         assert!(matches!(refused, Err(BandsError::Image(_))));
     }
+}
+
+#[test]
+fn light_in_watts_is_shown_in_lumens() {
+    let mut world = world();
+    let aovs = AOVS.iter().filter(|aov| aov.unit.is_some()).collect();
+    let job = Job { aovs, method: Method::PATH, ..small() };
+    let values = |world: &World| {
+        let rendered = render(world, &job, &Control::default()).unwrap();
+        rendered.layers[1..].iter().map(|layer| layer.image.pixels.clone()).collect::<Vec<_>>()
+    };
+    let plain = values(&world);
+    world.edit().lumens = Some(179.0 * crate::math::LUMINANCE);
+    let watts = values(&world);
+    assert_eq!(plain.len(), 2);
+    for (plain, watts) in plain.iter().flatten().zip(watts.iter().flatten()) {
+        let right = (watts.x - 179.0 * plain.x).abs() <= 1e-4 * watts.x;
+        assert!(right, "{plain} {watts}");
+    }
+    assert!(watts.iter().all(|layer| layer.iter().any(|pixel| pixel.x > 1.0)));
 }

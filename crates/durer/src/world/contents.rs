@@ -4,7 +4,7 @@ use super::{Geometry, Material, Object, World};
 use crate::camera::{Camera, CameraBasis};
 use crate::dialect::Rules;
 use crate::light::{Light, Profile};
-use crate::math::Color;
+use crate::math::{Color, Vec3};
 use crate::medium::Medium;
 use crate::source::Digest;
 use crate::spectrum::Curve;
@@ -31,6 +31,8 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// What the words of the scene's dialect mean.
     pub rules: Rules,
+    /// What makes lumens of its light, by colour, where that is in watts.
+    pub lumens: Option<Vec3>,
 }
 
 /// What the files became that it names.
@@ -66,7 +68,8 @@ impl World {
         if !self.edited {
             return self.source;
         }
-        let Contents { camera, frame, background, ambient, lights, materials, objects, rules } = &self.contents;
+        let Contents { camera, frame, background, ambient, lights, materials, objects, rules, lumens: _ } =
+            &self.contents;
         let mut text = format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules));
         for Object { geometry, to_world, center, material, normal_length, span: _ } in objects {
             let geometry = match geometry {

@@ -119,6 +119,11 @@ impl World {
         world
     }
 
+    /// What makes lumens of its light, by colour, where that is in watts.
+    pub fn lumens(&self) -> Option<Vec3> {
+        self.contents.lumens
+    }
+
     /// What shines.
     pub fn emitters(&self) -> &Emitters {
         &self.emitters
