@@ -46,13 +46,14 @@ impl Pixel {
     /// Adds a sample that covers a share of the pixel; `false` if it is no finite number.
     #[inline]
     pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
-        let (rgb, size) = (color.to_array().map(f64::from), color.x.abs() + color.y.abs() + color.z.abs());
         // Nearly all samples are small.
-        if size < SMALL_COLOR && weight.abs() <= 1.0 && share == 1.0 {
-            self.add_small(rgb, weight.into());
+        if share == 1.0 && Small::holds(color, weight) {
+            let mut small = Small::default();
+            small.add(color, weight);
+            self.add_small(&small);
             return true;
         }
-        self.add(rgb, weight.into(), share.into())
+        self.add(color.to_array().map(f64::from), weight.into(), share.into())
     }
 
     /// The same; `false` if it is no finite number. What is too bright to be kept is cut.
@@ -87,13 +88,14 @@ impl Pixel {
             && within(self.squares, luminance * luminance)
     }
 
-    /// The same numbers, faster, for a sample that covers the pixel, of a colour below
-    /// [`SMALL_COLOR`] and a weight of at most 1.
-    fn add_small(&mut self, rgb: [f64; 3], weight: f64) {
-        let weight = whole_number(weight * WEIGHT_SCALE);
-        let scale = weight as f64 * (COLOR_SCALE / WEIGHT_SCALE);
-        self.sum(rgb.map(|c| whole_number(c * scale).into()), weight, whole_number(luminance(rgb) * LUMINANCE_SCALE));
-        self.covered = self.covered.wrapping_add(weight);
+    /// Adds what [`Small`] has.
+    fn add_small(&mut self, small: &Small) {
+        self.color.iter_mut().zip(small.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c.into()));
+        self.luminance = self.luminance.wrapping_add(small.luminance);
+        self.squares = self.squares.wrapping_add(small.squares);
+        self.weight = self.weight.wrapping_add(small.weight);
+        self.covered = self.covered.wrapping_add(small.weight);
+        self.samples += small.samples;
     }
 
     /// The sums of one sample of weight 1 that saw something.
@@ -159,9 +161,44 @@ impl Pixel {
     }
 }
 
+/// Sums of up to [`MOST_SMALL`] samples of one pixel that cover it, of colours below [`SMALL_COLOR`]
+/// and weights of at most 1: the numbers that [`Pixel::add`] has, faster.
+#[derive(Default)]
+struct Small {
+    color: [i64; 3],
+    squares: i128,
+    luminance: i64,
+    weight: i64,
+    samples: u64,
+}
+
+impl Small {
+    #[inline(always)]
+    fn holds(color: Color, weight: f32) -> bool {
+        color.x.abs() + color.y.abs() + color.z.abs() < SMALL_COLOR && weight.abs() <= 1.0
+    }
+
+    #[inline(always)]
+    fn add(&mut self, color: Color, weight: f32) {
+        let rgb = color.to_array().map(f64::from);
+        let weight = whole_number(f64::from(weight) * WEIGHT_SCALE);
+        let scale = weight as f64 * (COLOR_SCALE / WEIGHT_SCALE);
+        (0..3).for_each(|i| self.color[i] += whole_number(rgb[i] * scale));
+        let luminance = whole_number(luminance(rgb) * LUMINANCE_SCALE);
+        self.luminance += luminance;
+        // Below 2^62.
+        self.squares += i128::from(luminance * luminance);
+        self.weight += weight;
+        self.samples += 1;
+    }
+}
+
 /// Sums of the sizes of a sample's red, green and blue below this, and weights up to 1, give
 /// products below 2^51 units.
 const SMALL_COLOR: f32 = 8.0;
+
+/// The products of so many fit 64 bits.
+const MOST_SMALL: u64 = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
 const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
@@ -211,21 +248,38 @@ impl Film {
 
     /// Adds a sample of some weight (up to 2^10 in size) to a pixel. Panics outside the window.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
-        self.add_covering(x, y, sample, (color, 1.0), weight);
+        self.add_if_seen(x, y, sample, Some(color), weight);
     }
 
     /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent
     /// by its weight.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
-        self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
+        self.add_all(x, y, std::iter::once((sample, color, weight)));
+    }
+
+    /// The same for samples of one pixel, by their numbers, with their weights.
+    pub fn add_all(&mut self, x: u32, y: u32, samples: impl Iterator<Item = (u32, Option<Color>, f32)>) {
+        let mut small = Small::default();
+        for (sample, color, weight) in samples {
+            match color {
+                // Nearly always.
+                Some(color) if Small::holds(color, weight) && small.samples < MOST_SMALL => small.add(color, weight),
+                seen => self.add_covering(x, y, sample, seen.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight),
+            }
+        }
+        self.pixel_mut(x, y).add_small(&small);
     }
 
     /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
     pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
-        let index = self.index(x, y).expect("the pixel lies in the film's window");
-        if !self.pixels[index].add_any(color, share, weight) {
+        if !self.pixel_mut(x, y).add_any(color, share, weight) {
             self.reject(Rejected { y, x, sample });
         }
+    }
+
+    fn pixel_mut(&mut self, x: u32, y: u32) -> &mut Pixel {
+        let index = self.index(x, y).expect("the pixel lies in the film's window");
+        &mut self.pixels[index]
     }
 
     /// Counts a sample as left out; the first few in reading order are remembered.

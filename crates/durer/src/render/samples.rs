@@ -229,10 +229,13 @@ impl<'a> Samples<'a> {
         };
         self.integrator.radiances(aims, begin, rays, colors);
         let mut colors = colors.iter();
-        for &((x, y, sample), weight, sees) in samples.iter() {
-            let color = if sees { colors.next() } else { None };
-            let color = color.map(|&color| self.with_stale((x, y), color));
-            film.add_if_seen(x, y, sample, color, weight);
+        for of_one in samples.chunk_by(|(a, ..), (b, ..)| (a.0, a.1) == (b.0, b.1)) {
+            let (x, y, _) = of_one[0].0;
+            let with_colors = of_one.iter().map(|&((.., sample), weight, sees)| {
+                let color = if sees { colors.next() } else { None };
+                (sample, color.map(|&color| self.with_stale((x, y), color)), weight)
+            });
+            film.add_all(x, y, with_colors);
         }
         aimed.clear();
         Ok(())

@@ -159,10 +159,14 @@ proptest! {
     #[test]
     fn small_samples_add_the_same_numbers(r in -2.6_f32..2.6, g in -2.6_f32..2.6, b in -2.6_f32..2.6, weight in -1.0_f32..=1.0) {
         for scale in [1.0, 1e-3, 1e-6, 0.0] {
-            let rgb = [r, g, b].map(|c| f64::from(c * scale));
-            let (mut fast, mut slow) = (Pixel::default(), Pixel::default());
-            fast.add_small(rgb, weight.into());
-            prop_assert!(slow.add(rgb, weight.into(), 1.0));
+            let color = scale * Vec3::new(r, g, b);
+            let (mut fast, mut slow, mut small) = (Pixel::default(), Pixel::default(), Small::default());
+            for weight in [weight, 1.0] {
+                prop_assert!(Small::holds(color, weight));
+                small.add(color, weight);
+                prop_assert!(slow.add(color.to_array().map(f64::from), weight.into(), 1.0));
+            }
+            fast.add_small(&small);
             prop_assert_eq!(fast, slow);
         }
     }
