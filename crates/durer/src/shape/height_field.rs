@@ -39,7 +39,14 @@ impl HeightField {
         let rows = heights.len() / columns;
         let size = self.max - self.min;
         let share = |i: usize, count: usize| i as f32 / (count - 1) as f32;
-        let mut data = MeshData::default();
+        // The border's points and the middle of the floor are added, and three triangles for each.
+        let around = 2 * (rows + columns) - 4;
+        let mut data = MeshData {
+            positions: Vec::with_capacity(heights.len() + around + 1),
+            uvs: Vec::with_capacity(heights.len() + around + 1),
+            triangles: Vec::with_capacity(2 * (rows - 1) * (columns - 1) + 3 * around),
+            ..MeshData::default()
+        };
         for (i, height) in heights.iter().enumerate() {
             let (u, v) = (share(i % columns, columns), share(i / columns, rows));
             data.positions.push(self.min + size * Vec3::new(u, *height, v));

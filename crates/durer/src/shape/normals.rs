@@ -115,7 +115,24 @@ fn creased(data: &MeshData, degrees: f32) -> Normals {
         sum.normalize_or(faces[i])
     };
     let of_triangle = |(i, triangle): (usize, &[u32; 3])| triangle.map(|vertex| normal(i, vertex));
-    let values: Vec<[Vec3; 3]> = data.triangles.par_iter().enumerate().map(of_triangle).collect();
-    let triangles = (0..values.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-    Normals { values: values.into_flattened(), triangles }
+    let own: Vec<[Vec3; 3]> = data.triangles.par_iter().enumerate().map(of_triangle).collect();
+    // Corners of one vertex mostly have one normal, which is kept once.
+    let (mut values, mut triangles): (Vec<Vec3>, _) = (Vec::new(), vec![[0; 3]; own.len()]);
+    for ends in starts.windows(2) {
+        let first = values.len();
+        for &corner in &corners[ends[0] as usize..ends[1] as usize] {
+            let [triangle, k] = [corner as usize / 3, corner as usize % 3];
+            let normal = own[triangle][k];
+            let known = values[first..]
+                .iter()
+                .take(MANY)
+                .position(|v| v.to_array().map(f32::to_bits) == normal.to_array().map(f32::to_bits));
+            triangles[triangle][k] = (first + known.unwrap_or(values.len() - first)) as u32;
+            if known.is_none() {
+                values.push(normal);
+            }
+        }
+    }
+    values.shrink_to_fit();
+    Normals { values, triangles }
 }
