@@ -130,22 +130,25 @@ pub fn atan2(y: f32, x: f32) -> f32 {
 /// far below a rounding of the result that only ties may go the other way; else what libm says.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
-    if base.is_normal() && base > 0.0 {
-        let power = f64::from(exponent) * log2(base);
-        // What single precision cannot hold is rounded to what it can; not a number is nothing
-        // here.
-        if power.abs() < 1000.0 {
-            return exp2(power) as f32;
-        }
-    }
-    libm::powf(base, exponent)
+    let usual = usual_pow(base, exponent);
+    if usual.is_nan() { libm::powf(base, exponent) } else { usual }
+}
+
+/// The same where both are usual numbers, else not a number: without a branch, so that compilers
+/// work out several side by side.
+#[inline(always)]
+pub fn usual_pow(base: f32, exponent: f32) -> f32 {
+    let power = f64::from(exponent) * log2(base);
+    // What single precision cannot hold is rounded to what it can; not a number is nothing here.
+    let is_usual = (base == base.clamp(f32::MIN_POSITIVE, f32::MAX)) & (power.abs() < 1000.0);
+    if is_usual { exp2(power) as f32 } else { f32::NAN }
 }
 
 /// Base-2 logarithm of a positive normal number, to 2 roundings of double precision.
 ///
 /// log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1), by its series; m is between the roots of
 /// 1/2 and 2, so s^2 < 0.0295.
-#[inline]
+#[inline(always)]
 fn log2(x: f32) -> f64 {
     /// 2 / (ln 2 (2 k + 1)).
     const SERIES: [f64; 10] = [
@@ -169,7 +172,7 @@ fn log2(x: f32) -> f64 {
 
 /// 2 to the power of a number between -1022 and 1022, to 2 roundings of double precision: the
 /// series of e^(f ln 2) for |f| <= 1/2.
-#[inline]
+#[inline(always)]
 fn exp2(x: f64) -> f64 {
     /// (ln 2)^k / k!.
     const SERIES: [f64; 13] = [
@@ -189,13 +192,15 @@ fn exp2(x: f64) -> f64 {
     ];
     // Adding this leaves no bits for a fraction.
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
-    let whole = (x + WHOLE) - WHOLE;
-    f64::from_bits(((whole as i64 + 1023) as u64) << 52) * polynomial(x - whole, &SERIES)
+    let shifted = x + WHOLE;
+    // The bits count on from those of what was added by one for each whole number.
+    let whole = shifted.to_bits().wrapping_sub(WHOLE.to_bits());
+    f64::from_bits(whole.wrapping_add(1023) << 52) * polynomial(x - (shifted - WHOLE), &SERIES)
 }
 
 /// c0 + c1 x + c2 x^2 + ..., of neighbours first (Estrin's scheme), so that few products wait for
 /// each other.
-#[inline]
+#[inline(always)]
 fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
     let x2 = x * x;
     let pair = |i: usize| c[i] + if i + 1 < N { c[i + 1] * x } else { 0.0 };

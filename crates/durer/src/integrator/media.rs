@@ -133,7 +133,11 @@ impl Media {
 
     /// Ours: things of glass may be inside each other and overlap.
     pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
-        let (object, start) = (at.hit.object, at.ray.rounded.origin);
+        self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
+    }
+
+    /// The same through the surface of an object, which light sets out for from a point.
+    pub(crate) fn passage_into(&self, world: &World, (object, start): (u32, Vec3), ior: f32, leaving: bool) -> Passage {
         let own = Body::new(world, object, ior);
         if !leaving {
             let behind = self.entered(own);

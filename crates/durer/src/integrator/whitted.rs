@@ -100,6 +100,27 @@ struct Side {
     black: bool,
 }
 
+/// What rules and settings say of the side that is shaded.
+#[derive(Clone, Copy)]
+struct Facing {
+    shaded_sides: bool,
+    black_backs: bool,
+    unit: bool,
+    shade_back: bool,
+}
+
+impl Facing {
+    /// The side on which a surface with normals for shading and of its own is seen.
+    #[inline(always)]
+    fn side(self, dir: Vec3, [n_shade, n_geo]: [Vec3; 2]) -> Side {
+        let from_behind = dir.dot(if self.shaded_sides { n_shade } else { n_geo }) > 0.0;
+        let black = from_behind && self.black_backs;
+        let n = if from_behind && self.shade_back { -n_shade } else { n_shade };
+        let n = if self.unit { n.normalize_or(n) } else { n };
+        Side { n, from_behind, black }
+    }
+}
+
 impl Integrate for Whitted<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, _: SampleId, tally: &mut T) -> Color {
         self.radiance(ray, tally)
@@ -249,11 +270,18 @@ impl<'w> Whitted<'w> {
     /// The side of a surface that is shaded.
     #[inline(always)]
     fn side(&self, at: &Interaction) -> Side {
-        let (surface, from_behind) = (&at.surface, self.sees_back(at));
-        let black = from_behind && !self.settings.shade_back && self.world.rules().has(Compat::BlackBacks);
-        let n = if from_behind && self.settings.shade_back { -surface.n_shade } else { surface.n_shade };
-        let n = if self.world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
-        Side { n, from_behind, black }
+        self.facing().side(at.ray.dir(), [at.surface.n_shade, at.surface.n_geo])
+    }
+
+    /// What decides which side of a surface is shaded.
+    fn facing(&self) -> Facing {
+        let (rules, shade_back) = (self.world.rules(), self.settings.shade_back);
+        Facing {
+            shaded_sides: rules.has(Compat::ShadedSides),
+            black_backs: !shade_back && rules.has(Compat::BlackBacks),
+            unit: rules.has(Compat::UnitLight),
+            shade_back,
+        }
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
@@ -271,6 +299,7 @@ impl<'w> Whitted<'w> {
     }
 }
 
+mod branches;
 mod direct;
 mod lamps;
 pub(crate) mod secondary;

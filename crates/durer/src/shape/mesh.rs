@@ -3,7 +3,7 @@
 pub use super::mesh_data::{MeshData, NO_INDEX, loosened, place_key};
 use super::normals::{Normals, made};
 use super::triangle::{face_normal, interpolate};
-use super::{ShapeHit, Surface};
+use super::{ShapeHit, Surface, Uv};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
@@ -173,7 +173,9 @@ impl Mesh {
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
-    fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
+    /// The normals at a triangle's corners, if it has any.
+    #[inline]
+    pub(crate) fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
         let (normals, triangles) = self.normals();
         attribute(triangles, normals, part)
     }
@@ -224,32 +226,47 @@ impl Mesh {
         // All that lies far away in memory is asked for before anything waits for it.
         let (corners, normals) = (self.corners(part), self.corner_normals(part));
         let uvs = attribute(&self.data.triangle_uvs, &self.data.uvs, part);
-        let (position, error, barycentric) = interpolate(corners, crossing.uv);
-        let n_geo = face_normal(corners);
-        let mix = |[a, b, c]: [Vec3; 3]| barycentric.x * a + barycentric.y * b + barycentric.z * c;
-        let n_shade = normals.map_or(n_geo, |normals| mix(normals).normalize_or(n_geo));
-        let shadow_offsets = normals.map_or([Vec3::ZERO; 2], |normals| {
-            let [front, back] = shadow_offsets(position, corners, normals);
-            [mix(front), mix(back)]
-        });
-        let uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c);
-        // Normals in the file say which side is out, whatever way the corners go round.
-        let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-        let color = self.color(part, barycentric).unwrap_or([1.0; 4]);
-        Surface {
-            position,
-            rest: Vec3::ZERO,
-            error,
-            curvature: 0.0,
-            n_geo,
-            n_shade,
-            uv: uv.into(),
-            barycentric,
-            shadow_offsets,
-            color,
-            solid: None,
-        }
+        let mut surface = triangle_surface(corners, normals, crossing.uv);
+        let barycentric = surface.barycentric;
+        surface.uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c).into();
+        surface.color = self.color(part, barycentric).unwrap_or([1.0; 4]);
+        surface
     }
+}
+
+/// The surface of a triangle at a crossing, without texture and colour. Normals of no length are
+/// none.
+#[inline(always)]
+pub(crate) fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
+    let (position, error, barycentric) = interpolate(corners, uv);
+    let n_geo = face_normal(corners);
+    let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
+    // Not by closures given to `map_or`, which are called like any function.
+    if let Some(normals) = normals {
+        n_shade = mixed(normals, barycentric).normalize_or(n_geo);
+        let [front, back] = offsets_of_corners(position, corners, normals);
+        shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
+    }
+    // Normals in the file say which side is out, whatever way the corners go round.
+    let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
+    Surface {
+        position,
+        rest: Vec3::ZERO,
+        error,
+        curvature: 0.0,
+        n_geo,
+        n_shade,
+        uv: Uv::None,
+        barycentric,
+        shadow_offsets,
+        color: [1.0; 4],
+        solid: None,
+    }
+}
+
+#[inline(always)]
+fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
+    barycentric.x * a + barycentric.y * b + barycentric.z * c
 }
 
 /// For each corner, the way from a point of the triangle up to the plane through the corner across
@@ -259,12 +276,14 @@ impl Mesh {
 /// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
 /// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
 /// Terminator*, Ray Tracing Gems II (2021), chapter 4.
-fn shadow_offsets(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+#[inline(always)]
+fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
     for i in 0..3 {
         let n = normals[i].normalize_or_zero();
         let height = (corners[i] - point).dot(n);
-        shadow_offsets[usize::from(height < 0.0)][i] = height * n;
+        let way = height * n;
+        (shadow_offsets[0][i], shadow_offsets[1][i]) = if height < 0.0 { (Vec3::ZERO, way) } else { (way, Vec3::ZERO) };
     }
     shadow_offsets
 }

@@ -201,6 +201,7 @@ impl Surface {
 
     /// The point as it is known. Far from the origin of coordinates that is finer than single
     /// precision.
+    #[inline]
     pub fn point(&self) -> DVec3 {
         self.position.as_dvec3() + self.rest.as_dvec3()
     }
@@ -210,6 +211,7 @@ impl Surface {
     }
 
     /// How far the surface may fall away from its tangent plane within an error of the point.
+    #[inline]
     pub fn bulge(&self, error: Vec3) -> Vec3 {
         0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
     }

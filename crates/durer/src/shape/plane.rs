@@ -48,7 +48,7 @@ impl Shape for Plane {
         slope > 0.0 || slope == 0.0 && n.dot(line.origin) < f64::from(self.offset)
     }
 
-    #[inline]
+    #[inline(always)]
     fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> Surface {
         let n = self.normal.as_dvec3();
         // Placed back onto the plane: what is left is the rounding of the coordinates.

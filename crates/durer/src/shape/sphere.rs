@@ -76,7 +76,7 @@ impl Shape for Sphere {
         Some((Sphere { center: Vec3::ZERO, ..self.clone() }, self.center))
     }
 
-    #[inline]
+    #[inline(always)]
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();

@@ -81,7 +81,7 @@ impl Shape for Triangle {
 /// them. The point keeps off the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
-#[inline]
+#[inline(always)]
 pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
     let barycentric = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
     let (position, error) = weighted(corners, barycentric);
@@ -91,6 +91,7 @@ pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
     }
 }
 
+#[inline(always)]
 fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
     let (wa, ub, vc) = (weights.x * a, weights.y * b, weights.z * c);
     (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
@@ -98,6 +99,7 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
 
 /// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges,
 /// where the given one does not.
+#[inline(always)]
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     // The distance from an edge is the barycentric coordinate times twice the area over the edge's
     // length. All squared.
@@ -107,11 +109,13 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     if !(areas * barycentric * barycentric).cmplt(least).any() {
         return None;
     }
-    let moved = barycentric.max((least / areas).map(f32::sqrt).min(Vec3::splat(0.25)));
+    let Vec3 { x, y, z } = least / areas;
+    let moved = barycentric.max(Vec3::new(x.sqrt(), y.sqrt(), z.sqrt()).min(Vec3::splat(0.25)));
     Some(moved / moved.element_sum())
 }
 
 /// The unit normal (b - a) x (c - a); that of a triangle without area points up.
+#[inline(always)]
 pub(crate) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()

@@ -10,6 +10,7 @@ mod merged;
 mod object;
 pub mod shading;
 pub mod solid;
+mod surfaces;
 mod together;
 
 use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
@@ -26,6 +27,7 @@ pub use interaction::Interaction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
+pub(crate) use surfaces::{LANES, Met, Numbers, PLACES, Surfaces, Vectors};
 pub(crate) use together::TOGETHER;
 
 /// A scene ready to be traced.

@@ -13,18 +13,14 @@ pub(crate) const TOGETHER: usize = 64;
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
-    /// Whether anything is gained by asking about rays together: in a world of a few planes and
-    /// spheres, and of a few things with a mesh or a solid of several parts among them.
-    pub(crate) fn answers_together(&self) -> bool {
-        let pays = |&i: &u32| !matches!(self.objects()[i as usize].geometry, Geometry::Primitive(_));
-        let alone = matches!(&self.accel, Accel::Bvh(bvh) if bvh.is_empty());
-        !self.few.is_empty() || alone && self.loose.iter().any(pays)
-    }
-
     /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
     pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
         if !self.few.is_empty() {
             self.few_together(rays, |i, met| hits[i] = met.map(hit_of));
+            return;
+        }
+        if !self.is_loose() {
+            hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray, &mut ()));
             return;
         }
         hits.fill(None);
@@ -62,6 +58,10 @@ impl World {
             self.few_together(rays, |i, met| blocked[i] = met.is_some());
             return;
         }
+        if !self.is_loose() {
+            blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
+            return;
+        }
         for (ray, blocked) in rays.iter().zip(&mut *blocked) {
             let sound = crate::bvh::is_sound(&ray.rounded);
             let apart = |&&i: &&u32| !matches!(self.objects()[i as usize].geometry, Geometry::Mesh(_));
@@ -83,6 +83,11 @@ impl World {
             tree.bvh.occluded_batch(&local[..count], &mut found[..count]);
             open[..count].iter().zip(found).for_each(|(&i, found)| blocked[i] = found);
         }
+    }
+
+    /// Whether all things stand outside the structure, as a few do.
+    fn is_loose(&self) -> bool {
+        matches!(&self.accel, Accel::Bvh(bvh) if bvh.is_empty())
     }
 
     fn few_together(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {

@@ -113,15 +113,18 @@ pub(super) fn scattered<T: TraceListener>(
 ) -> Color {
     tally.begin(|| TermKind::Diffuse { cosine });
     tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
-    let mut color = cosine.max(0.0) * diffuse;
-    if let Some((specular, exponent, model)) = highlight
-        && (cosine > 0.0 || model == HighlightModel::Phong { behind: true })
-    {
-        let base = base(model);
-        let strength = fp::pow(base.max(0.0), exponent);
-        tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
-        tally.end(Color::splat(strength), Color::ONE, specular);
-        color += strength * specular;
-    }
-    color
+    let shines = highlight.filter(|&(.., model)| cosine > 0.0 || model == HighlightModel::Phong { behind: true });
+    let Some((specular, exponent, model)) = shines else { return sum(cosine, diffuse, false, 0.0, Color::ZERO) };
+    let base = base(model);
+    let strength = fp::pow(base.max(0.0), exponent);
+    tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+    tally.end(Color::splat(strength), Color::ONE, specular);
+    sum(cosine, diffuse, true, strength, specular)
+}
+
+/// The diffuse term and, where it shines, the highlight.
+#[inline(always)]
+pub(super) fn sum(cosine: f32, diffuse: Color, shines: bool, strength: f32, specular: Color) -> Color {
+    let matte = cosine.max(0.0) * diffuse;
+    if shines { matte + strength * specular } else { matte }
 }

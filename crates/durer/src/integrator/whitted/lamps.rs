@@ -1,123 +1,95 @@
-//! What lamps bring to hits that are asked about together: worked out for eight of them at once, by
-//! the formulas that hold for one.
+//! What lamps bring to hits that are asked about together: worked out for several at once, by the
+//! formulas that hold for one.
 
-use super::direct::{blinn, scattered};
-use super::{Side, Whitted};
+use super::direct::{blinn, scattered, sum};
+use super::{Facing, Side, Whitted};
 use crate::bvh::internal::{PlainKernel, run_plain};
 use crate::integrator::trace::TraceListener;
 use crate::light::{Emitter as _, Illumination, Light};
-use crate::math::{self, Color, Ray, Ray64, Vec3, reflect};
-use crate::shape::Surface;
-use crate::world::{HighlightModel, Interaction, Phong, TOGETHER};
-
-/// Vectors side by side: x of all, then y, then z.
-type Vectors = [[f32; TOGETHER]; 3];
+use crate::math::{self, Color, Ray, Ray64, fp, reflect};
+use crate::world::{HighlightModel, Met, Numbers, PLACES, Phong, Surfaces, TOGETHER, Vectors};
 
 /// Hits that wait for the light of lamps, and what is worked out for one lamp.
 #[derive(Default)]
 pub(super) struct LampHits {
-    hits: Vec<Hit>,
-    places: Box<Places>,
+    hits: Vec<Met>,
+    /// Whether some have highlights.
+    shines: bool,
+    sides: Box<Sides>,
     seen: Box<Seen>,
     /// The light that hits scatter of a lamp if nothing is in the way, with the rays that ask.
     lights: Vec<(usize, Color)>,
     shadows: Vec<Ray64>,
 }
 
-/// What is not computed with side by side.
-struct Hit {
-    /// The number of the ray that hit.
-    ray: usize,
-    solid: Option<u32>,
-    diffuse: Color,
-    highlight: Option<(Color, f32, HighlightModel)>,
-}
-
-/// Where hits are, and how they are seen.
-struct Places {
-    position: Vectors,
-    rest: Vectors,
-    error: Vectors,
-    n_geo: Vectors,
-    n_shade: Vectors,
-    shadow_offsets: [Vectors; 2],
+/// The sides of surfaces that are shaded, and how they scatter light.
+struct Sides {
     /// The normal that light is reckoned with.
     n: Vectors,
-    view: Vectors,
+    /// 1 where it is, else 0.
+    from_behind: Numbers,
+    black: Numbers,
+    diffuse: Vectors,
+    specular: Vectors,
+    exponent: Numbers,
+    /// [`DULL`], [`BLINN`], [`PHONG`] or [`PHONG_BEHIND`].
+    highlight: Numbers,
 }
+
+const DULL: f32 = 0.0;
+const BLINN: f32 = 1.0;
+// These are worked out one by one.
+const PHONG: f32 = 2.0;
+const PHONG_BEHIND: f32 = 3.0;
 
 /// A lamp as it is seen from hits.
 struct Seen {
     to_light: Vectors,
-    distance: [f32; TOGETHER],
+    distance: Numbers,
     color: Vectors,
-    cosine: [f32; TOGETHER],
-    /// See [`blinn`].
-    blinn: [f32; TOGETHER],
+    cosine: Numbers,
+    /// Of Blinn's highlight.
+    strength: Numbers,
+    /// What is scattered of it, if nothing is in the way; 1 where that is known, else 0.
+    light: Vectors,
+    is_known: Numbers,
     /// The rays that ask what is in the way.
     origin: Vectors,
     rest: Vectors,
-    t_min: [f32; TOGETHER],
-    t_max: [f32; TOGETHER],
+    t_min: Numbers,
+    t_max: Numbers,
 }
 
-const NONE: Vectors = [[0.0; TOGETHER]; 3];
-
-impl Default for Places {
+impl Default for Sides {
     fn default() -> Self {
-        Places {
-            position: NONE,
-            rest: NONE,
-            error: NONE,
-            n_geo: NONE,
-            n_shade: NONE,
-            shadow_offsets: [NONE; 2],
-            n: NONE,
-            view: NONE,
+        let none = [0.0; PLACES];
+        Sides {
+            n: Vectors::ZERO,
+            from_behind: none,
+            black: none,
+            diffuse: Vectors::ZERO,
+            specular: Vectors::ZERO,
+            exponent: none,
+            highlight: none,
         }
     }
 }
 
 impl Default for Seen {
     fn default() -> Self {
-        let none = [0.0; TOGETHER];
+        let none = [0.0; PLACES];
         Seen {
-            to_light: NONE,
+            to_light: Vectors::ZERO,
             distance: none,
-            color: NONE,
+            color: Vectors::ZERO,
             cosine: none,
-            blinn: none,
-            origin: NONE,
-            rest: NONE,
+            strength: none,
+            light: Vectors::ZERO,
+            is_known: none,
+            origin: Vectors::ZERO,
+            rest: Vectors::ZERO,
             t_min: none,
             t_max: none,
-        }
-    }
-}
-
-#[inline(always)]
-fn get([x, y, z]: &Vectors, i: usize) -> Vec3 {
-    Vec3::new(x[i], y[i], z[i])
-}
-
-#[inline(always)]
-fn set([x, y, z]: &mut Vectors, i: usize, v: Vec3) {
-    (x[i], y[i], z[i]) = (v.x, v.y, v.z);
-}
-
-impl Places {
-    /// The surface at a hit, as far as shadow rays ask.
-    #[inline(always)]
-    fn surface(&self, i: usize, solid: Option<u32>) -> Surface {
-        Surface {
-            position: get(&self.position, i),
-            rest: get(&self.rest, i),
-            error: get(&self.error, i),
-            n_geo: get(&self.n_geo, i),
-            n_shade: get(&self.n_shade, i),
-            shadow_offsets: [get(&self.shadow_offsets[0], i), get(&self.shadow_offsets[1], i)],
-            solid,
-            ..Surface::NOWHERE
         }
     }
 }
@@ -125,44 +97,53 @@ impl Places {
 impl Seen {
     #[inline(always)]
     fn set(&mut self, i: usize, seen: Illumination) {
-        set(&mut self.to_light, i, seen.to_light);
+        self.to_light.set(i, seen.to_light);
         self.distance[i] = seen.distance;
-        set(&mut self.color, i, seen.color);
+        self.color.set(i, seen.color);
     }
 
     #[inline(always)]
     fn get(&self, i: usize) -> Illumination {
-        Illumination { to_light: get(&self.to_light, i), distance: self.distance[i], color: get(&self.color, i) }
+        Illumination { to_light: self.to_light.get(i), distance: self.distance[i], color: self.color.get(i) }
     }
 }
 
 impl LampHits {
-    pub(super) fn clear(&mut self) {
-        self.hits.clear();
+    /// Whether a surface is seen from behind.
+    #[inline(always)]
+    pub(super) fn sees_back(&self, place: usize) -> bool {
+        self.sides.from_behind[place] > 0.0
     }
 }
 
 impl Whitted<'_> {
+    /// Finds which sides of surfaces are shaded, none of which waits for lamps yet.
+    pub(super) fn find_sides(&self, surfaces: &Surfaces, lit: &mut LampHits) {
+        lit.hits.clear();
+        lit.shines = false;
+        run_plain(SideKernel { facing: self.facing(), surfaces, sides: &mut lit.sides });
+    }
+
     /// Ambient light at a hit, which is added to those that wait for lamps.
     #[inline(always)]
-    pub(super) fn unlit(&self, at: &Interaction, phong: &Phong, ray: usize, lit: &mut LampHits) -> Color {
-        let Side { n, black, .. } = self.side(at);
-        if black {
+    pub(super) fn unlit(&self, met: Met, diffuse: Color, phong: &Phong, lit: &mut LampHits) -> Color {
+        let (place, LampHits { hits, shines, sides, .. }) = (met.place(), lit);
+        if sides.black[place] > 0.0 {
             return Color::ZERO;
         }
-        let LampHits { hits, places, .. } = lit;
-        assert!(hits.len() < TOGETHER);
-        let (i, surface, diffuse) = (hits.len(), &at.surface, self.world.diffuse_color(phong, &at.surface));
-        set(&mut places.position, i, surface.position);
-        set(&mut places.rest, i, surface.rest);
-        set(&mut places.error, i, surface.error);
-        set(&mut places.n_geo, i, surface.n_geo);
-        set(&mut places.n_shade, i, surface.n_shade);
-        set(&mut places.shadow_offsets[0], i, surface.shadow_offsets[0]);
-        set(&mut places.shadow_offsets[1], i, surface.shadow_offsets[1]);
-        set(&mut places.n, i, n);
-        set(&mut places.view, i, at.ray.dir());
-        hits.push(Hit { ray, solid: surface.solid, diffuse, highlight: phong.highlight });
+        sides.diffuse.set(place, diffuse);
+        sides.highlight[place] = DULL;
+        if let Some((specular, exponent, model)) = phong.highlight {
+            sides.specular.set(place, specular);
+            sides.exponent[place] = exponent;
+            sides.highlight[place] = match model {
+                HighlightModel::Blinn => BLINN,
+                HighlightModel::Phong { behind: false } => PHONG,
+                HighlightModel::Phong { behind: true } => PHONG_BEHIND,
+            };
+            *shines = true;
+        }
+        hits.push(met);
         self.world.ambient() * phong.ambient.unwrap_or(diffuse)
     }
 
@@ -170,39 +151,34 @@ impl Whitted<'_> {
     pub(super) fn add_lamp<T: TraceListener>(
         &self,
         lamp: usize,
+        surfaces: &Surfaces,
         lit: &mut LampHits,
         colors: &mut [Color],
         tally: &mut T,
     ) {
-        let LampHits { hits, places, seen, lights, shadows } = lit;
-        run_plain(LampKernel { whitted: self, lamp, places, seen, count: hits.len() });
+        let LampHits { hits, shines, sides, seen, lights, shadows } = lit;
+        run_plain(LampKernel { whitted: self, lamp, surfaces, sides, seen, shines: *shines });
         lights.clear();
         shadows.clear();
-        for (i, &Hit { ray, solid, diffuse, highlight }) in (0..TOGETHER).zip(hits.iter()) {
-            let to_light = get(&seen.to_light, i);
-            let base = |model| match model {
-                HighlightModel::Blinn => seen.blinn[i],
-                HighlightModel::Phong { .. } => reflect(get(&places.view, i), get(&places.n, i)).dot(to_light),
+        for &met in hits.iter() {
+            let place = met.place();
+            let light = match seen.is_known[place] > 0.0 {
+                true => seen.light.get(place),
+                false => self.scattered_at(place, surfaces, sides, seen, tally),
             };
-            let light = scattered(highlight, diffuse, seen.cosine[i], base, tally) * get(&seen.color, i);
             if light == Color::ZERO {
                 continue;
             }
             tally.ray();
-            lights.push((ray, light));
-            shadows.push(match solid {
-                None => Ray64 {
-                    rounded: Ray {
-                        origin: get(&seen.origin, i),
-                        dir: to_light,
-                        t_min: seen.t_min[i],
-                        t_max: seen.t_max[i],
-                    },
-                    rest: get(&seen.rest, i),
-                    side: math::Side::ANY,
-                },
-                Some(_) => self.shadow_ray(&places.surface(i, solid), &seen.get(i)),
-            });
+            lights.push((met.ray(), light));
+            // Each is written to its place at once: what goes round by another would be waited for.
+            if let solid @ Some(_) = surfaces.solid(place) {
+                shadows.push(self.shadow_ray(&surfaces.get(place, solid), &seen.get(place)));
+                continue;
+            }
+            let (t_min, t_max) = (seen.t_min[place], seen.t_max[place]);
+            let rounded = Ray { origin: seen.origin.get(place), dir: seen.to_light.get(place), t_min, t_max };
+            shadows.push(Ray64 { rounded, rest: seen.rest.get(place), side: math::Side::ANY });
         }
         if self.settings.transparent_shadows {
             let mut found = [None; TOGETHER];
@@ -219,15 +195,63 @@ impl Whitted<'_> {
             }
         }
     }
+
+    /// What a hit scatters of a lamp, worked out alone.
+    fn scattered_at<T: TraceListener>(
+        &self,
+        place: usize,
+        surfaces: &Surfaces,
+        sides: &Sides,
+        seen: &Seen,
+        tally: &mut T,
+    ) -> Color {
+        let (n, view, to_light) = (sides.n.get(place), surfaces.view.get(place), seen.to_light.get(place));
+        let model = match sides.highlight[place] {
+            DULL | BLINN => HighlightModel::Blinn,
+            kind => HighlightModel::Phong { behind: kind == PHONG_BEHIND },
+        };
+        let shines = sides.highlight[place] != DULL;
+        let highlight = shines.then(|| (sides.specular.get(place), sides.exponent[place], model));
+        let base = |model| match model {
+            HighlightModel::Blinn => blinn(n, view, to_light),
+            HighlightModel::Phong { .. } => reflect(view, n).dot(to_light),
+        };
+        scattered(highlight, sides.diffuse.get(place), seen.cosine[place], base, tally) * seen.color.get(place)
+    }
+}
+
+/// Which sides of surfaces are shaded.
+struct SideKernel<'a> {
+    facing: Facing,
+    surfaces: &'a Surfaces,
+    sides: &'a mut Sides,
+}
+
+impl PlainKernel for SideKernel<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let SideKernel { facing, surfaces, sides } = self;
+        for i in 0..surfaces.end() {
+            let normals = [surfaces.n_shade.get(i), surfaces.n_geo.get(i)];
+            let Side { n, from_behind, black } = facing.side(surfaces.view.get(i), normals);
+            sides.n.set(i, n);
+            sides.from_behind[i] = f32::from(u8::from(from_behind));
+            sides.black[i] = f32::from(u8::from(black));
+        }
+    }
 }
 
 /// How hits see a lamp, with the rays that ask what is in the way.
 struct LampKernel<'a> {
     whitted: &'a Whitted<'a>,
     lamp: usize,
-    places: &'a Places,
+    surfaces: &'a Surfaces,
+    sides: &'a Sides,
     seen: &'a mut Seen,
-    count: usize,
+    /// Whether some hit has a highlight.
+    shines: bool,
 }
 
 impl PlainKernel for LampKernel<'_> {
@@ -235,25 +259,37 @@ impl PlainKernel for LampKernel<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let LampKernel { whitted, lamp, places, seen, count } = self;
+        let LampKernel { whitted, lamp, surfaces, sides, seen, shines } = self;
         let world = whitted.world;
-        // Behind the last hit there are others that were there before.
-        let count = count.next_multiple_of(8).min(TOGETHER);
+        // Between hits of different kinds there are others that were there before.
+        let places = 0..surfaces.end();
         match &world.lights()[lamp] {
             Light::Point(point) if matches!(world.profiles().get(lamp), None | Some(None)) => {
-                (0..count).for_each(|i| seen.set(i, point.illuminate(places.surface(i, None).point())));
+                places.clone().for_each(|i| seen.set(i, point.illuminate(surfaces.get(i, None).point())));
             }
-            _ => (0..count).for_each(|i| seen.set(i, world.illuminate(lamp, places.surface(i, None).point()))),
+            _ => places.clone().for_each(|i| seen.set(i, world.illuminate(lamp, surfaces.get(i, None).point()))),
         }
-        for i in 0..count {
-            let (surface, n) = (places.surface(i, None), get(&places.n, i));
+        for i in places.clone() {
             let from_here = seen.get(i);
-            seen.cosine[i] = n.dot(from_here.to_light);
-            seen.blinn[i] = blinn(n, get(&places.view, i), from_here.to_light);
-            let shadow = whitted.shadow_ray(&surface, &from_here);
-            set(&mut seen.origin, i, shadow.rounded.origin);
-            set(&mut seen.rest, i, shadow.rest);
+            seen.cosine[i] = sides.n.get(i).dot(from_here.to_light);
+            let shadow = whitted.shadow_ray(&surfaces.get(i, None), &from_here);
+            seen.origin.set(i, shadow.rounded.origin);
+            seen.rest.set(i, shadow.rest);
             (seen.t_min[i], seen.t_max[i]) = (shadow.rounded.t_min, shadow.rounded.t_max);
+        }
+        if shines {
+            for i in places.clone() {
+                let base = blinn(sides.n.get(i), surfaces.view.get(i), seen.to_light.get(i));
+                seen.strength[i] = fp::usual_pow(base.max(0.0), sides.exponent[i]);
+            }
+        }
+        for i in places {
+            let (cosine, strength) = (seen.cosine[i], seen.strength[i]);
+            let shines = sides.highlight[i] == BLINN && cosine > 0.0;
+            let light = sum(cosine, sides.diffuse.get(i), shines, strength, sides.specular.get(i));
+            seen.light.set(i, light * seen.color.get(i));
+            let unknown = sides.highlight[i] >= PHONG || shines && strength.is_nan();
+            seen.is_known[i] = if unknown { 0.0 } else { 1.0 };
         }
     }
 }

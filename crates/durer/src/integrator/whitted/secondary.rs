@@ -11,13 +11,65 @@ use crate::world::{Interaction, Material, WeightedMaterial};
 
 /// What goes on from a hit: directions, and the colours by which their light is weighed.
 pub(super) struct Parted {
-    mirrored: Vec3,
-    reflective: Color,
-    /// `None` for total reflection, and where nothing goes through.
-    transmitted: Option<Vec3>,
-    transparent: Color,
+    pub(super) mirrored: Vec3,
+    pub(super) reflective: Color,
+    /// Whether something goes through: not where reflection is total, or nothing is transparent.
+    pub(super) passes: bool,
+    pub(super) transmitted: Vec3,
+    pub(super) transparent: Color,
     /// The mirrored share, where the two divide the light by Fresnel's law.
     fresnel: Option<f32>,
+}
+
+/// What rules and settings say of how light is divided.
+#[derive(Clone, Copy)]
+pub(super) struct Division {
+    raw_normals: bool,
+    exit_r0: bool,
+    /// Whether mirrored and transmitted rays are traced both.
+    both: bool,
+}
+
+impl Division {
+    /// How light is divided where a surface with normals for shading and of its own is met.
+    #[inline(always)]
+    pub(super) fn part(
+        self,
+        dir: Vec3,
+        [n_shade, n_geo]: [Vec3; 2],
+        leaving: bool,
+        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
+        (here, there): (f32, f32),
+    ) -> Parted {
+        // The normal on the ray's side.
+        let (n, n_geo) = if leaving { (-n_shade, -n_geo) } else { (n_shade, n_geo) };
+        // An interpolated normal may point away from the ray; the surface itself does not.
+        let n = if dir.dot(n) < 0.0 { n } else { n_geo };
+        // A mirror without `shade_back` reflects about the normal as it is; the direction is the
+        // same.
+        let mirrored = reflect(dir, n);
+        // About a normal that is not of length 1 it is another one.
+        let (mirrored, n) = match self.raw_normals {
+            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
+            false => (mirrored, n),
+        };
+        // All is worked out, of use or not: so compilers do it side by side for several hits.
+        let (transmitted, passes) = match refract(dir, n, here / there) {
+            Some(transmitted) => (transmitted, transparent != Color::ZERO),
+            None => (Vec3::ZERO, false),
+        };
+        let share = fresnel_share(dir, n, transmitted, (here, there), leaving && self.exit_r0);
+        // Total reflection weighs 1.
+        let share = if passes { share } else { 1.0 };
+        // With one of the two left out, the other has all the light.
+        let divided = fresnel && self.both;
+        if divided {
+            reflective *= share;
+            transparent *= 1.0 - share;
+        }
+        let fresnel = if divided { Some(share) } else { None };
+        Parted { mirrored, reflective, passes, transmitted, transparent, fresnel }
+    }
 }
 
 impl Whitted<'_> {
@@ -31,7 +83,7 @@ impl Whitted<'_> {
         tally: &mut T,
     ) -> Color {
         let parted = self.parted(at, blend, &passage);
-        let total = blend.transparent != Color::ZERO && parted.transmitted.is_none();
+        let total = blend.transparent != Color::ZERO && !parted.passes;
         let Passage { here, there, .. } = passage;
         tally.begin(|| TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
         let mut color = Color::ZERO;
@@ -47,52 +99,30 @@ impl Whitted<'_> {
     }
 
     /// The mirrored ray's direction and weight, if it is asked for.
-    pub(super) fn mirrored(&self, parted: &Parted) -> Option<(Vec3, Color)> {
+    fn mirrored(&self, parted: &Parted) -> Option<(Vec3, Color)> {
         self.settings.reflection.then_some((parted.mirrored, parted.reflective))
     }
 
     /// The same of the transmitted one.
-    pub(super) fn transmitted(&self, parted: &Parted) -> Option<(Vec3, Color)> {
-        let asked = parted.transmitted.filter(|_| self.settings.refraction)?;
-        Some((asked, parted.transparent))
+    fn transmitted(&self, parted: &Parted) -> Option<(Vec3, Color)> {
+        (parted.passes && self.settings.refraction).then_some((parted.transmitted, parted.transparent))
     }
 
     /// How light is divided at a hit.
     #[inline(always)]
-    pub(super) fn parted(
-        &self,
-        at: &Interaction,
-        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
-        passage: &Passage,
-    ) -> Parted {
-        // The normal on the ray's side.
-        let Interaction { ray, surface, .. } = at;
-        let leaving = self.sees_back(at);
-        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
-        // An interpolated normal may point away from the ray; the surface itself does not.
-        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
-        // A mirror without `shade_back` reflects about the normal as it is; the direction is the
-        // same.
-        let mirrored = reflect(ray.dir(), n);
-        // About a normal that is not of length 1 it is another one.
-        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
-            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
-            false => (mirrored, n),
-        };
-        let Passage { here, there, .. } = *passage;
-        let transmitted = if transparent == Color::ZERO { None } else { refract(ray.dir(), n, here / there) };
-        // With one of the two left out, the other has all the light.
-        let divided = fresnel && self.settings.reflection && self.settings.refraction;
-        // Total reflection weighs 1.
-        let fresnel = divided.then(|| {
-            let zero = leaving && self.world.rules().has(Compat::ExitR0);
-            transmitted.map_or(1.0, |t| fresnel_share(ray.dir(), n, t, (here, there), zero))
-        });
-        if let Some(r) = fresnel {
-            reflective *= r;
-            transparent *= 1.0 - r;
+    fn parted(&self, at: &Interaction, blend: Blend, &Passage { here, there, .. }: &Passage) -> Parted {
+        let normals = [at.surface.n_shade, at.surface.n_geo];
+        self.division().part(at.ray.dir(), normals, self.sees_back(at), blend, (here, there))
+    }
+
+    /// What divides light.
+    pub(super) fn division(&self) -> Division {
+        let (rules, settings) = (self.world.rules(), &self.settings);
+        Division {
+            raw_normals: rules.has(Compat::RawNormals),
+            exit_r0: rules.has(Compat::ExitR0),
+            both: settings.reflection && settings.refraction,
         }
-        Parted { mirrored, reflective, transmitted, transparent, fresnel }
     }
 
     /// How light that may go through at a hit does; `None` where none may.
@@ -108,11 +138,23 @@ impl Whitted<'_> {
         if blend.transparent == Color::ZERO {
             return None;
         }
-        let leaving = self.sees_back(at);
-        Some(match self.world.rules().is_official() {
-            true => self.official_passage(at.hit.object, blend, leaving, media),
-            false => media.nested_passage(self.world, at, blend.ior, leaving),
-        })
+        Some(self.passage_through(at.hit.object, at.ray.rounded.origin, blend, self.sees_back(at), media))
+    }
+
+    /// How light goes through the surface of an object, which it sets out for from a point.
+    #[inline]
+    pub(super) fn passage_through(
+        &self,
+        object: u32,
+        start: Vec3,
+        blend: Blend,
+        leaving: bool,
+        media: &Media,
+    ) -> Passage {
+        match self.world.rules().is_official() {
+            true => self.official_passage(object, blend, leaving, media),
+            false => media.passage_into(self.world, (object, start), blend.ior, leaving),
+        }
     }
 
     /// The course's: one index is carried along, and behind glass there is air.
@@ -192,6 +234,7 @@ impl Blend {
 ///
 /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
 /// Physically-based Rendering*, Eurographics 1994.
+#[inline(always)]
 pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
     let ratio = (there - here) / (there + here);
     let r0 = if zero { 0.0 } else { ratio * ratio };
@@ -206,8 +249,9 @@ pub(crate) fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there)
 ///
 /// eta is the index before over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
 /// (d·n)^2)).
+#[inline(always)]
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {
     let cosine = d.dot(n);
     let radicand = 1.0 - eta * eta * (1.0 - cosine * cosine);
-    (radicand >= 0.0).then(|| eta * (d - cosine * n) - radicand.sqrt() * n)
+    if radicand >= 0.0 { Some(eta * (d - cosine * n) - radicand.sqrt() * n) } else { None }
 }

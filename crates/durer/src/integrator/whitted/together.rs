@@ -1,17 +1,16 @@
 //! Camera rays that are neighbours, and what becomes of them: what rays of one depth hit, and what
 //! lamps see of that, is asked for together.
 
+use super::branches::{Branches, Carried, Partings};
 use super::lamps::LampHits;
 use super::secondary::Blend;
 use super::{Path, Whitted};
 use crate::dialect::Compat;
-use crate::integrator::media::{Media, Passage};
-use crate::integrator::spawn::spawn_ray;
+use crate::integrator::media::Media;
 use crate::integrator::trace::TraceListener;
 use crate::math::{Color, Ray, Ray64};
 use crate::sampler::SampleId;
-use crate::world::{Hit, Interaction, Material, Phong, TOGETHER, WeightedMaterial};
-use smallvec::SmallVec;
+use crate::world::{Hit, Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
 use std::cell::RefCell;
 
 /// Fewer rays are followed one by one.
@@ -23,25 +22,6 @@ struct Waiting {
     ray: usize,
     /// Where its rays that go on end in the list of all.
     branches: usize,
-}
-
-/// Rays that go on from hits.
-#[derive(Default)]
-struct Branches {
-    rays: Vec<Ray64>,
-    carried: Vec<Carried>,
-    /// The colour that weighs the light of each, and once that is known, what it brings.
-    lights: Vec<Color>,
-}
-
-/// What a ray that goes on carries.
-struct Carried {
-    /// The number of the camera ray from which it comes.
-    camera: usize,
-    /// What it runs in.
-    media: Media,
-    /// How much it counts for in the pixel.
-    weight: f32,
 }
 
 /// What is used anew for each few rays of one depth.
@@ -56,8 +36,16 @@ struct Level {
 struct Scratch {
     /// By depth.
     levels: Vec<Level>,
-    /// Of one depth after the other.
+    hits: Hits,
+    camera_rays: Vec<Ray64>,
+}
+
+/// Hits of one depth after the other.
+#[derive(Default)]
+struct Hits {
+    surfaces: Box<Surfaces>,
     lit: LampHits,
+    partings: Box<Partings>,
 }
 
 thread_local! {
@@ -73,7 +61,7 @@ impl Whitted<'_> {
         tally: &mut T,
         colors: &mut [Color],
     ) {
-        if T::LISTENS || T::COUNTS_WORK || !self.world.answers_together() {
+        if T::LISTENS || T::COUNTS_WORK {
             for (i, ((ray, _), color)) in rays.iter().zip(colors).enumerate() {
                 begin(i);
                 *color = self.radiance(ray, tally);
@@ -81,12 +69,13 @@ impl Whitted<'_> {
             return;
         }
         let air = Media::default();
-        SCRATCH.with_borrow_mut(|Scratch { levels, lit }| {
+        SCRATCH.with_borrow_mut(|Scratch { levels, hits, camera_rays }| {
             levels.resize_with(levels.len().max(self.settings.bounces as usize + 1), Level::default);
             for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
-                let along: SmallVec<[Ray64; TOGETHER]> = rays.iter().map(|(ray, _)| Ray64::from(ray)).collect();
+                camera_rays.clear();
+                camera_rays.extend(rays.iter().map(|(ray, _)| Ray64::from(ray)));
                 let path = |i: usize| (TOGETHER * part + i, self.camera_path(&air));
-                self.light_level(&along, path, &begin, (levels, lit), tally, |i, color| colors[i] = color);
+                self.light_level(camera_rays, path, &begin, (levels, hits), tally, |i, color| colors[i] = color);
             }
         });
     }
@@ -99,41 +88,55 @@ impl Whitted<'_> {
         rays: &[Ray64],
         path: impl Fn(usize) -> (usize, Path<'a>),
         begin: &impl Fn(usize),
-        (levels, lit): (&mut [Level], &mut LampHits),
+        (levels, hits): (&mut [Level], &mut Hits),
         tally: &mut T,
         mut take: impl FnMut(usize, Color),
     ) {
         let Some((Level { waiting, branches }, deeper)) = levels.split_first_mut() else { return };
+        let Hits { surfaces, lit, partings } = hits;
         waiting.clear();
-        lit.clear();
         branches.clear();
-        let (mut hits, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
-        self.world.closest_together(rays, &mut hits[..rays.len()]);
-        let mut at = Interaction::NOWHERE;
+        surfaces.clear();
+        partings.clear();
+        let (mut found, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
+        self.world.closest_together(rays, &mut found[..rays.len()]);
         for (i, ray) in rays.iter().enumerate() {
             let (camera, path) = path(i);
             begin(camera);
             tally.ray();
-            let Some((hit, phong)) = hits[i].and_then(|hit| Some((hit, self.plain(&hit)?))) else {
-                colors[i] = self.trace(ray, hits[i], path, tally);
+            let Some(hit) = &found[i] else {
+                colors[i] = self.world.sky(ray.dir());
                 continue;
             };
-            self.world.meet(ray, hit, &mut at);
-            let passage = self.passage(&at, path.media);
-            if passage.as_ref().is_some_and(|passage| passage.hidden) {
-                colors[i] = self.trace(ray, hits[i], path, tally);
-                continue;
-            }
-            colors[i] = self.unlit(&at, phong, i, lit);
-            let blend = Blend::of(&[WeightedMaterial { phong, share: 1.0 }]);
-            if self.goes_on(path) && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO) {
-                self.branch(&at, blend, passage.unwrap_or_default(), camera, path, branches);
-                waiting.push(Waiting { ray: i, branches: branches.rays.len() });
+            match self.plain(hit) {
+                Some(phong) => self.world.add_met(i, hit, phong, surfaces),
+                None => colors[i] = self.trace(ray, found[i], path, tally),
             }
         }
-        (0..self.world.lights().len()).for_each(|lamp| self.add_lamp(lamp, lit, &mut colors, tally));
-        if !branches.rays.is_empty() {
-            self.follow(branches, begin, (deeper, lit), path(0).1.bounces - 1, tally);
+        self.world.meet_together(rays, &found, surfaces);
+        self.find_sides(surfaces, lit);
+        for &met in surfaces.met() {
+            let (i, place) = (met.ray(), met.place());
+            let Some((hit, phong)) = found[i].as_ref().and_then(|hit| Some((hit, self.plain(hit)?))) else { continue };
+            let (ray, (camera, path)) = (&rays[i], path(i));
+            let (blend, leaving) = (Blend::of(&[WeightedMaterial { phong, share: 1.0 }]), lit.sees_back(place));
+            let passage = (blend.transparent != Color::ZERO)
+                .then(|| self.passage_through(hit.object, ray.rounded.origin, blend, leaving, path.media));
+            if passage.as_ref().is_some_and(|passage| passage.hidden) {
+                begin(camera);
+                colors[i] = self.trace(ray, found[i], path, tally);
+                continue;
+            }
+            colors[i] = self.unlit(met, surfaces.diffuse(place, phong), phong, lit);
+            if self.goes_on(path) && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO) {
+                partings.push(met, blend, leaving, passage);
+            }
+        }
+        (0..self.world.lights().len()).for_each(|lamp| self.add_lamp(lamp, surfaces, lit, &mut colors, tally));
+        if !partings.is_empty() {
+            let bounces = path(0).1.bounces - 1;
+            self.branch(surfaces, partings, path, branches, |ray, branches| waiting.push(Waiting { ray, branches }));
+            self.follow(branches, begin, (deeper, hits), bounces, tally);
         }
         let mut first = 0;
         for &Waiting { ray, branches: end } in waiting.iter() {
@@ -152,38 +155,12 @@ impl Whitted<'_> {
         }
     }
 
-    /// Adds the rays that go on from a hit to a list.
-    #[inline(always)]
-    fn branch(
-        &self,
-        at: &Interaction,
-        blend: Blend,
-        passage: Passage,
-        camera: usize,
-        path: Path,
-        branches: &mut Branches,
-    ) {
-        let parted = self.parted(at, blend, &passage);
-        let ways = [
-            self.mirrored(&parted).map(|mirrored| (mirrored, path.media)),
-            self.transmitted(&parted).map(|transmitted| (transmitted, &passage.behind)),
-        ];
-        for ((dir, color), media) in ways.into_iter().flatten() {
-            let weight = self.weight_after(path.weight, color);
-            if color.max_element() > 0.0 && weight >= self.settings.least_weight {
-                branches.rays.push(spawn_ray(&at.surface, dir, f32::INFINITY, self.world.rules().epsilon));
-                branches.carried.push(Carried { camera, media: media.clone(), weight });
-                branches.lights.push(color);
-            }
-        }
-    }
-
     /// Finds the light along rays that go on.
     fn follow<T: TraceListener>(
         &self,
         branches: &mut Branches,
         begin: &impl Fn(usize),
-        (levels, lit): (&mut [Level], &mut LampHits),
+        (levels, hits): (&mut [Level], &mut Hits),
         bounces: u32,
         tally: &mut T,
     ) {
@@ -194,7 +171,7 @@ impl Whitted<'_> {
                 (*camera, Path { bounces, media, weight: *weight })
             };
             if rays.len() >= FEWEST {
-                self.light_level(rays, path, begin, (levels, lit), tally, |i, light| lights[i] *= light);
+                self.light_level(rays, path, begin, (levels, hits), tally, |i, light| lights[i] *= light);
                 continue;
             }
             for (i, (ray, light)) in rays.iter_mut().zip(lights).enumerate() {
@@ -204,13 +181,5 @@ impl Whitted<'_> {
                 *light *= self.trace(ray, found, path, tally);
             }
         }
-    }
-}
-
-impl Branches {
-    fn clear(&mut self) {
-        self.rays.clear();
-        self.carried.clear();
-        self.lights.clear();
     }
 }

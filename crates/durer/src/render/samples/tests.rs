@@ -39,7 +39,6 @@ fn no_sample_allocates() {
     let read = |text: &str| testing::try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path()).0.unwrap();
     let (stop, at) = (AtomicBool::new(false), Cell::new((0, 0, None)));
     let [world, of_mesh] = [read(TEXT), read(&of_mesh)];
-    assert!(of_mesh.answers_together());
     for (world, method) in [(&world, Method::WHITTED), (&of_mesh, Method::WHITTED), (&world, Method::PATH)] {
         let job = job(32, 64, method);
         let part = job.whole();
