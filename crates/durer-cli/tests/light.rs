@@ -442,3 +442,41 @@ m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 
     rows("measure mirror.rad --at 0,0,0 --integrator photons --samples 2");
     place.refused(2, "measure sky.rad --at 0,0,0 --samples 1", &["--samples"]);
 }
+
+#[test]
+fn what_of_a_sky_has_no_effect_is_told() {
+    let place = Place::new();
+    let told = |sky: &str| {
+        let scene = format!(
+            "PerspectiveCamera {{ center 0 1 6 direction 0 -1 -6 up 0 1 0 angle 30 }}\n{sky}
+Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 }} }}
+Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
+        );
+        place.put("s.txt", scene);
+        place.put("black.ppm", "P3 2 1 255 0 0 0 0 0 0\n");
+        place.gives(0, "measure s.txt --at 0,0,0 --samples 4").err
+    };
+    let sun = "sunAltitude 30 sunAzimuth 0";
+    for (sky, words) in [
+        ("zenithLuminance 900".to_string(), "`zenithLuminance` has no effect: the background has no `cieSky`"),
+        (format!("{sun} zenithLuminance 900"), "`zenithLuminance` has no effect"),
+        (format!("{sun} cieSky 12 turbidity 3"), "`turbidity` has no effect"),
+        ("groundReflectance 0.3".into(), "`groundReflectance` has no effect"),
+        ("environmentRotation 30".into(), "`environmentRotation` has no effect"),
+        ("environmentScale 2 2 2".into(), "`environmentScale` has no effect"),
+        ("environment black.ppm".into(), "the picture `black.ppm` around the scene is black"),
+    ] {
+        let said = told(&format!("Background {{ {sky} }}"));
+        assert!(said.contains(words) && said.contains("s.txt:2:"), "{sky}: {said}");
+    }
+    for sky in [
+        format!("{sun} turbidity 3 groundReflectance 0.3 environmentRotation 30 environmentScale 2 2 2"),
+        "cieSky 16 zenithLuminance 900 groundReflectance 0.3 environmentRotation 30".into(),
+        "color 0.5 0.5 0.5".into(),
+    ] {
+        let said = told(&format!("Background {{ {sky} }}"));
+        assert!(!said.contains("no effect") && !said.contains("grey"), "{sky}: {said}");
+    }
+    // Nobody wrote what shines from all around.
+    assert!(told("").contains("`Background { color 0 0 0 }`"));
+}

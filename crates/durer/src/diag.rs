@@ -29,6 +29,11 @@ impl PartialEq for Span {
 }
 
 impl Span {
+    /// Whether it is a place in a file: what options say, and what is not written, has none.
+    pub fn is_place(self) -> bool {
+        self.end > 0
+    }
+
     /// From the start of this span to the end of another in the same file; this span, if that is in
     /// another.
     pub fn to(self, end: Span) -> Span {

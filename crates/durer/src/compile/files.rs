@@ -339,7 +339,7 @@ impl<'r> Loader<'r> {
             let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
             // What an option names has no place in the file.
-            diagnostics.push(if name.span == Span::default() { warning } else { warning.at(name.span) });
+            diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
     }

@@ -118,6 +118,7 @@ pub fn compile(
     }
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     check_sun(scene, &mut own);
+    check_sky(scene, &mut own);
     let environment = loader.environment(&scene.background, scene.background_span, &mut own);
     let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
@@ -258,6 +259,26 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
         Ok(_) => return,
     };
     diagnostics.push(diagnostic.at(scene.background_span));
+}
+
+/// Tells of words of the background that say how something looks which is not there.
+fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
+    let sky = &scene.background;
+    let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.way_to_sun(), Ok(None)));
+    let (clear, picture) = (sun && !standard, sky.environment.is_some());
+    let any = standard || sun || picture;
+    for (word, given, has_use, wanted) in [
+        ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
+        ("turbidity", sky.turbidity.is_some(), clear, "clear sky, which a sun without `cieSky` has"),
+        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun and no `cieSky`"),
+        ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
+        ("environmentScale", sky.environment_scale.is_some(), any, "`environment`, sun or `cieSky`"),
+    ] {
+        if given && !has_use {
+            let message = format!("`{word}` has no effect: the background has no {wanted}");
+            diagnostics.push(Diagnostic::warning(message).at(scene.background_span));
+        }
+    }
 }
 
 fn check_camera(scene: &Scene, pose: crate::camera::Pose, diagnostics: &mut Diagnostics) {

@@ -139,21 +139,6 @@ impl Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Data, coverage: None }
     }
 
-    /// Offers each row with the share of its pixels that is seen (empty where all is), the lowest
-    /// first if `bottom_up`.
-    ///
-    /// # Errors
-    /// The first of `row`.
-    pub fn try_rows<E>(&self, bottom_up: bool, mut row: impl FnMut(&[Vec3], &[f32]) -> Result<(), E>) -> Result<(), E> {
-        let (width, height) = (self.image.width as usize, self.image.height as usize);
-        let mut offer = |y: usize| {
-            let range = y * width..(y + 1) * width;
-            let coverage = self.coverage.as_ref().map_or(&[][..], |coverage| &coverage[range.clone()]);
-            row(&self.image.pixels[range], coverage)
-        };
-        if bottom_up { (0..height).rev().try_for_each(&mut offer) } else { (0..height).try_for_each(&mut offer) }
-    }
-
     /// The same layer with the share of each pixel that is seen; none where all is.
     pub fn with_coverage(self, coverage: Vec<f32>) -> Layer {
         // Opaque pictures are written without alpha.

@@ -5,6 +5,9 @@ use crate::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
 
+/// Rows that are made side by side, and then written.
+const AT_ONCE: usize = 128;
+
 /// How a format writes rows.
 #[derive(Debug)]
 pub struct RowFormat {
@@ -126,33 +129,29 @@ impl RowWriter<'_> {
             (format.row)(strip, self.next + i, &pixels[range], coverage, &mut bytes);
             bytes
         };
-        let made: Vec<Vec<u8>> = (0..count).into_par_iter().map(row).collect();
+        for first in (0..count).step_by(AT_ONCE) {
+            let made: Vec<Vec<u8>> = (first..count.min(first + AT_ONCE as u32)).into_par_iter().map(row).collect();
+            made.iter().try_for_each(|bytes| self.out.write_all(bytes))?;
+        }
         self.next += count;
-        made.iter().try_for_each(|bytes| self.out.write_all(bytes))
+        Ok(())
     }
 }
 
 /// A picture in memory, by its rows.
 pub(super) fn encode(
-    rows: &'static RowFormat,
+    format: &'static RowFormat,
     layers: &[Layer],
     options: &WriteOptions,
     out: &mut Vec<u8>,
 ) -> Result<(), ImageError> {
     for layer in layers {
         let strip = Strip::of(layer, options);
-        out.extend((rows.head)(&strip)?);
-        let before = out.len();
-        let mut row = 0;
-        layer.try_rows(rows.bottom_up, |pixels, coverage| {
-            (rows.row)(&strip, row, pixels, coverage, out);
-            row += 1;
-            // All rows are about as long as the first.
-            if row == 1 {
-                out.reserve_exact((out.len() - before) * (strip.height as usize - 1));
-            }
-            Ok(())
-        })?;
+        out.extend((format.head)(&strip)?);
+        let coverage = layer.coverage.as_deref().unwrap_or_default();
+        let written = RowWriter { format, strip, next: 0, out }.rows(&layer.image.pixels, coverage);
+        // Memory takes whatever is written.
+        debug_assert!(written.is_ok());
     }
     Ok(())
 }
