@@ -10,7 +10,9 @@
 //! Vegdahl, *Building a Better LK Hash*, 2021, which is less biased than the published constants.
 
 use crate::math::Vec2;
+use durer_bvh::internal::{PlainKernel, run_plain};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 
 #[cfg(test)]
 pub(crate) mod tests;
@@ -131,6 +133,11 @@ impl SampleId {
         Sequence::of(self.key, self.first + dimension).point(self.sample)
     }
 
+    /// The pairs of its first dimensions, as [`SampleId::pair`] gives them one by one.
+    pub fn pairs<const N: usize>(&self) -> [Vec2; N] {
+        run_plain(Pairs::<N>(*self))
+    }
+
     /// The number in [0,1) that wavelengths are chosen by.
     pub fn wavelength(&self) -> f32 {
         Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
@@ -139,6 +146,21 @@ impl SampleId {
     /// A number in [0,1) for a layer on the way after some bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
         independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
+    }
+}
+
+/// Works out pairs side by side.
+struct Pairs<const N: usize>(SampleId);
+
+impl<const N: usize> PlainKernel for Pairs<N> {
+    type Output = [Vec2; N];
+
+    #[inline(always)]
+    fn run(self) -> [Vec2; N] {
+        let SampleId { key, sample, first } = self.0;
+        let sequences = from_fn(|i| Sequence::of(key, first + i as u32));
+        let [x, y] = Sequence::points(&sequences, &[sample; N]);
+        from_fn(|i| Vec2::new(x[i], y[i]))
     }
 }
 
@@ -203,6 +225,7 @@ pub struct Sequence {
 }
 
 impl Sequence {
+    #[inline(always)]
     fn of(key: u64, dimension: u32) -> Self {
         // One hash gives the shuffle its key and another the two scrambles.
         Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
@@ -258,11 +281,13 @@ fn key(seed: u64, x: u32, y: u32) -> u64 {
     mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32))
 }
 
+#[inline(always)]
 fn numbered(key: u64, sample: u32, dimension: u32) -> u64 {
     mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 
 /// One step of SplitMix64: a permutation of the 64-bit numbers.
+#[inline(always)]
 fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -4,6 +4,8 @@
 //! the pure-Rust `libm`, so that a picture has the same bits everywhere. `clippy.toml` forbids the
 //! others.
 
+use std::hint::select_unpredictable;
+
 /// Sine of an angle in radians.
 #[inline]
 pub fn sin(x: f32) -> f32 {
@@ -44,12 +46,13 @@ pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     let x = std::f64::consts::TAU * (f64::from(turn) - 0.25 * f64::from(quarters - WHOLE));
     let x2 = x * x;
     let (sin, cos) = ((x * polynomial(x2, &SINE)) as f32, polynomial(x2, &COSINE) as f32);
-    match quarters.to_bits() & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    // Without branches, for any quarter is as likely as another: each has its own signs, and every
+    // other one changes places.
+    let quarter = quarters.to_bits();
+    let signed = |x: f32, minus: u32| f32::from_bits(x.to_bits() ^ (minus & 2) << 30);
+    let odd = quarter & 1 != 0;
+    let (first, second) = (select_unpredictable(odd, cos, sin), select_unpredictable(odd, sin, cos));
+    (signed(first, quarter), signed(second, quarter.wrapping_add(1)))
 }
 
 /// The angle of the point (x, y), both finite, in turns from -1/2 to 1/2; 0 for the origin.

@@ -1,6 +1,7 @@
 //! From the unit square to directions and places.
 
 use crate::math::{Vec2, Vec3, fp};
+use std::hint::select_unpredictable;
 
 /// A point of the unit disc, evenly spread.
 ///
@@ -12,7 +13,10 @@ pub fn disc(u: Vec2) -> Vec2 {
         return Vec2::ZERO;
     }
     // The angle in eighths of a turn.
-    let (radius, eighths) = if p.x.abs() > p.y.abs() { (p.x, p.y / p.x) } else { (p.y, 2.0 - p.x / p.y) };
+    let flat = p.x.abs() > p.y.abs();
+    let (radius, other) = (select_unpredictable(flat, p.x, p.y), select_unpredictable(flat, p.y, p.x));
+    let ratio = other / radius;
+    let eighths = select_unpredictable(flat, ratio, 2.0 - ratio);
     let (sin, cos) = fp::sin_cos_turn(0.125 * eighths);
     radius * Vec2::new(cos, sin)
 }

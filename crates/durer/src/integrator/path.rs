@@ -54,7 +54,7 @@ enum Use {
 }
 
 /// Pairs that a bounce takes.
-const USES: u32 = 4;
+const USES: usize = 4;
 
 /// What is the same all along a path.
 struct Sample {
@@ -69,7 +69,7 @@ struct Sample {
 impl Sample {
     /// The random numbers of a bounce.
     fn bounce(&self, depth: u32) -> SampleId {
-        self.id.at(depth * USES)
+        self.id.at(depth * USES as u32)
     }
 
     /// Light, as a witness is told of it.
@@ -118,7 +118,6 @@ impl Default for State {
 }
 
 /// Where a ray's way ends.
-#[expect(clippy::large_enum_variant)]
 enum End {
     /// Nowhere: what would come of it counts for too little.
     Lost,
@@ -127,7 +126,7 @@ enum End {
     /// In a medium in which lamps can be seen, along a unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
     /// On a surface, and how light goes through it if it does.
-    Surface(Interaction, Option<Passage>),
+    Surface(Option<Passage>),
 }
 
 /// How often light is scattered in a body at most until it gets out.
@@ -139,7 +138,7 @@ impl Integrate for Path<'_> {
         tally.lanes(&sample.lanes);
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let ray = Ray64::from(ray);
-        let (sum, scale) = self.trace(&ray, self.start(ray.origin()), &sample, tally);
+        let (sum, scale) = self.trace(&ray, &mut self.start(ray.origin()), &sample, tally);
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
@@ -200,21 +199,22 @@ impl<'w> Path<'w> {
     }
 
     fn vertex<'a>(&self, place: Place<'a, 'w>, state: &'a State, sample: &Sample) -> Vertex<'a, 'w> {
-        Vertex { place, state, choices: sample.bounce(state.depth).pair(Use::Choices as u32) }
+        Vertex { place, state, numbers: sample.bounce(state.depth).pairs() }
     }
 
     /// The light along a ray: a sum, and what the way to it leaves of it.
     fn trace<T: TraceListener>(
         &self,
         ray: &Ray64,
-        mut state: State,
+        state: &mut State,
         sample: &Sample,
         tally: &mut T,
     ) -> (Spectrum, Spectrum) {
-        let (end, scale) = self.fly(ray, &mut state, sample, tally);
-        let sum = match &end {
+        let mut at = Interaction::NOWHERE;
+        let (end, scale) = self.fly(ray, &mut at, state, sample, tally);
+        let sum = match end {
             End::Lost => Spectrum::ZERO,
-            &End::Sky(dir) => {
+            End::Sky(dir) => {
                 let (sky, pdf) = self.world.emitters().sky(self.world, dir);
                 let mut sky = sample.lanes.light(sky);
                 // Suns are seen from the camera, also in mirrors and through glass; elsewhere they are
@@ -225,23 +225,30 @@ impl<'w> Path<'w> {
                         .map(|(light, color)| sample.lanes.light_of(color, self.world.illuminant(light)))
                         .sum::<Spectrum>();
                 }
-                let weight = self.weight(&state, self.world.environment().is_some(), |_| pdf);
+                let weight = self.weight(state, self.world.environment().is_some(), |_| pdf);
                 tally.begin(|| TermKind::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
             }
-            &End::Medium(point, dir, phase) => {
+            End::Medium(point, dir, phase) => {
                 let place = Place::Medium(point, dir, phase);
-                self.scattered(Spectrum::ZERO, &self.vertex(place, &state, sample), sample, tally)
+                self.scattered(Spectrum::ZERO, &self.vertex(place, state, sample), sample, tally)
             }
-            End::Surface(at, passage) => self.met(at, passage.as_ref(), &mut state, sample, tally),
+            End::Surface(passage) => self.met(&at, passage.as_ref(), state, sample, tally),
         };
         (sum, scale)
     }
 
     /// Follows a ray to where something happens to its light, and says what the way there leaves of
-    /// it.
-    fn fly<T: TraceListener>(&self, ray: &Ray64, state: &mut State, sample: &Sample, tally: &mut T) -> (End, Spectrum) {
+    /// it. What it meets is written where it stays: a copy of what was just written takes long.
+    fn fly<T: TraceListener>(
+        &self,
+        ray: &Ray64,
+        at: &mut Interaction,
+        state: &mut State,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> (End, Spectrum) {
         let mut ray = *ray;
         let mut rest = ray;
         let mut scale = Spectrum::ONE;
@@ -249,7 +256,7 @@ impl<'w> Path<'w> {
         let mut numbers = sample.id.stream(state.depth, 0);
         let whole = state.throughput;
         loop {
-            let hit = self.world.closest(&rest, tally);
+            let hit = self.world.closest_along(&mut rest, tally);
             let stretch = ray.dir().length();
             let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
             if let Some(medium) = self.world.medium(state.media.object()) {
@@ -287,16 +294,16 @@ impl<'w> Path<'w> {
             }
             let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
             walked = length;
-            let mut at = self.world.interaction(ray, hit);
+            self.world.meet(&ray, hit, at);
             if let (Some(cone), Some(before)) = (&self.cone, state.from_camera) {
                 at.width = cone.width_at(before + length);
             }
-            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), &at) {
+            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), at) {
                 rest.rounded.t_min = hit.t;
                 continue;
             }
             if self.world.has_cutouts() {
-                let opacity = self.world.opacity(&at);
+                let opacity = self.world.opacity(at);
                 layers += 1;
                 // What is not there at all does not count as a bounce.
                 if opacity < 1.0 && sample.id.layer(state.depth, layers) >= opacity {
@@ -304,13 +311,13 @@ impl<'w> Path<'w> {
                     continue;
                 }
             }
-            match self.passage(&at, &state.media, &sample.lanes) {
-                Some(passage) if self.is_nothing(&at, &passage) => {
+            match self.passage(at, &state.media, &sample.lanes) {
+                Some(passage) if self.is_nothing(at, &passage) => {
                     (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
                 }
                 passage => {
                     state.from_camera = state.from_camera.map(|before| before + length);
-                    return (End::Surface(at, passage), scale);
+                    return (End::Surface(passage), scale);
                 }
             }
         }
@@ -409,21 +416,20 @@ impl<'w> Path<'w> {
     /// The light from a direction that is chosen.
     fn indirect<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let Vertex { place, state, .. } = vertex;
-        let id = sample.bounce(state.depth);
-        let u = id.pair(Use::Direction as u32);
-        let Some(chosen) = place.sample(vertex.choices.x, u) else { return Spectrum::ZERO };
+        let u = vertex.numbers(Use::Direction);
+        let Some(chosen) = place.sample(vertex.numbers(Use::Choices).x, u) else { return Spectrum::ZERO };
         let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {
             0..3 => 1.0,
             _ => throughput.max_element().min(0.95),
         };
-        if survival < 1.0 && id.pair(Use::Survival as u32).x >= survival {
+        if survival < 1.0 && vertex.numbers(Use::Survival).x >= survival {
             return Spectrum::ZERO;
         }
         let weight = chosen.weight / survival;
         let delta = chosen.pdf == 0.0;
-        let below = State {
+        let mut below = State {
             media: place.media(state, chosen.wi).clone(),
             throughput: throughput / survival,
             depth: state.depth + 1,
@@ -454,7 +460,7 @@ impl<'w> Path<'w> {
             }),
         });
         let indirect = state.depth > 0;
-        let (sum, scale) = self.trace(&ray, below, sample, tally);
+        let (sum, scale) = self.trace(&ray, &mut below, sample, tally);
         let scale = scale * self.clamped(sum * scale * weight * state.throughput, indirect);
         let light = sum * scale;
         tally.end(sample.told(weight), sample.told(scale), sample.told(light));

@@ -193,3 +193,11 @@ fn points_side_by_side_are_those_one_by_one() {
         }
     }
 }
+
+#[test]
+fn pairs_side_by_side_are_those_one_by_one() {
+    for sample in [0, 7, 1000, u32::MAX] {
+        let id = SampleId::new(11, (3, sample), sample).at(12);
+        assert_eq!(id.pairs(), [0, 1, 2, 3].map(|dimension| id.pair(dimension)), "{sample}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::{Shape, ShapeHit, Surface, inset, padded};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
 described! {
@@ -24,6 +24,21 @@ impl Rectangle {
         [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
     }
 
+    /// Where a line meets the plane; infinite or no number where it is parallel.
+    fn plane_at(&self, line: &Line) -> f64 {
+        let [e, f] = self.edges();
+        let n = e.cross(f);
+        n.dot(self.corner.as_dvec3() - line.origin) / n.dot(line.dir)
+    }
+
+    /// The place of a point of the plane, if it is on the rectangle. The shares of what is no point
+    /// are no numbers.
+    fn place(&self, point: DVec3) -> Option<Vec2> {
+        let [u, v] = self.shares(point);
+        let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
+        inside.then(|| Vec2::new(u as f32, v as f32))
+    }
+
     /// The shares of both edges that lead to a point of the plane: Cramer's rule.
     fn shares(&self, point: DVec3) -> [f64; 2] {
         let [e, f] = self.edges();
@@ -40,14 +55,19 @@ impl Shape for Rectangle {
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        let [e, f] = self.edges();
-        let n = e.cross(f);
-        let t = n.dot(self.corner.as_dvec3() - line.origin) / n.dot(line.dir);
-        // A parallel line divides by zero, and its shares are no numbers.
-        let [u, v] = self.shares(line.at(t));
-        if (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v) {
-            offer(t, Vec2::new(u as f32, v as f32));
+        let t = self.plane_at(line);
+        if let Some(uv) = self.place(line.at(t)) {
+            offer(t, uv);
         }
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
+        // Most rays do not meet the plane in their interval: where in it is asked of few.
+        let line = ray.line();
+        let t = self.plane_at(&line);
+        let hit = ray.contains(t as f32) && line.is_sound();
+        let uv = if hit { self.place(line.at(t)) } else { None };
+        uv.map(|uv| ShapeHit { t: t as f32, uv })
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {

@@ -2,6 +2,7 @@
 //! they are.
 
 use crate::math::{Color, Vec2, Vec3, fp};
+use glam::Vec4;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
@@ -20,21 +21,33 @@ struct Place {
 pub struct Environment {
     width: usize,
     height: usize,
-    texels: Arc<[Color]>,
+    /// Colours, and in the last lane for each row the sums of its texels' weights from the left: what
+    /// is asked for together lies together.
+    texels: Arc<[Vec4]>,
     /// How far it is turned about y, as a share of a whole turn from 0 to 1.
     turn: f32,
     scale: Color,
-    /// For each row the sums of its texels' weights from the left.
-    rows: Arc<[f32]>,
-    /// Where to look in them, for each row by steps of what is wanted.
+    rows: Arc<[Row]>,
+    /// Where to look in the sums of a row, by steps of what is wanted.
     hints: Arc<[u32]>,
     /// The sums of the rows from above, and where to look in them.
     columns: Arc<[f32]>,
     column_hints: Arc<[u32]>,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Row {
+    /// The sum of its texels' weights.
+    sum: f32,
+    /// The share of that in the sum of all.
+    share: f32,
+}
+
 /// Entries that have a hint in common.
 const STEP: usize = 4;
+
+/// Entries that are looked at together.
+const AHEAD: usize = 8;
 
 /// For each step of a share from 0 to 1 the entry at which it is reached.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
@@ -59,7 +72,7 @@ impl Environment {
         let texels: Vec<Color> =
             texels.into_iter().map(|c| if c.is_finite() { c.max(Vec3::ZERO) } else { Vec3::ZERO }).collect();
         let brightness = |x: usize, y: usize| texels[y * width + x].dot(Vec3::splat(1.0 / 3.0));
-        let (mut rows, mut columns) = (Vec::with_capacity(width * height), Vec::with_capacity(height));
+        let (mut sums, mut columns) = (Vec::with_capacity(width * height), Vec::with_capacity(height));
         let mut all = 0.0_f64;
         for y in 0..height {
             // Rows near the poles stand for less of the sphere.
@@ -73,7 +86,7 @@ impl Environment {
                     mean([y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| brightness(x, y)))
                 };
                 sum += f64::from(mean([x + width - 1, x, x + 1].map(column)) * sine);
-                rows.push(sum as f32);
+                sums.push(sum as f32);
             }
             all += sum;
             columns.push(all as f32);
@@ -81,16 +94,18 @@ impl Environment {
         let turn = (degrees / 360.0).rem_euclid(1.0);
         let sound = all > 0.0 && (all as f32).is_finite() && turn.is_finite();
         let column_hints = hints(&columns).collect();
+        let share = |y: usize| (columns[y] - if y > 0 { columns[y - 1] } else { 0.0 }) / columns[height - 1];
+        let row = |y: usize| Row { sum: sums[(y + 1) * width - 1], share: share(y) };
         sound.then(|| Environment {
-            hints: rows.chunks(width).flat_map(hints).collect(),
+            rows: (0..height).map(row).collect(),
+            hints: sums.chunks(width).flat_map(hints).collect(),
             column_hints,
             width,
             height,
-            texels: texels.into(),
+            texels: texels.iter().zip(&sums).map(|(color, sum)| color.extend(*sum)).collect(),
             turn,
             scale,
-            rows: rows.into(),
-            columns: columns.into(),
+            columns: columns.as_slice().into(),
         })
     }
 
@@ -102,12 +117,12 @@ impl Environment {
     }
 
     /// Bytes for each texel that making it takes beside the texels that are given: those once more
-    /// where they stay, the sums, and the hints while they grow.
-    pub const MAKING: usize = size_of::<Color>() + size_of::<[f32; 2]>();
+    /// where they stay with their sums, the sums alone, and the hints while they grow.
+    pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Bytes in memory.
     pub fn bytes(&self) -> usize {
-        self.texels.len() * size_of::<[f32; 4]>() + size_of_val(&*self.hints)
+        size_of_val(&*self.texels) + size_of_val(&*self.hints)
     }
 
     fn place(&self, dir: Vec3) -> Place {
@@ -126,12 +141,9 @@ impl Environment {
         let part = Vec2::new(x - right as f32, y - below as f32);
         let left = if right == 0 { self.width - 1 } else { (right - 1).min(self.width - 1) };
         let right = if right >= self.width { 0 } else { right };
-        let row = |y: usize| {
-            let row = &self.texels[y * self.width..(y + 1) * self.width];
-            row[left].lerp(row[right], part.x)
-        };
+        let row = |y: usize| self.row(y)[left].lerp(self.row(y)[right], part.x);
         let last = self.height - 1;
-        self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y)
+        self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y).truncate()
     }
 
     /// The density per solid angle with which a direction there is chosen.
@@ -142,15 +154,17 @@ impl Environment {
 
     /// The same in a texel, at the sine of an angle to the axis.
     fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
-        let row = &self.rows[y * self.width..(y + 1) * self.width];
-        let weight = |sums: &[f32], i: usize| sums[i] - if i > 0 { sums[i - 1] } else { 0.0 };
-        let row_sum = row[self.width - 1];
-        if row_sum <= 0.0 {
+        let (Row { sum, share }, row) = (self.rows[y], self.row(y));
+        if sum <= 0.0 {
             return 0.0;
         }
-        let p = weight(&self.columns, y) / self.columns[self.height - 1] * (weight(row, x) / row_sum);
+        let p = share * ((row[x].w - if x > 0 { row[x - 1].w } else { 0.0 }) / sum);
         let density = p * (self.width * self.height) as f32 / (2.0 * PI * PI * sine);
         if density.is_finite() { density } else { 0.0 }
+    }
+
+    fn row(&self, y: usize) -> &[Vec4] {
+        &self.texels[y * self.width..(y + 1) * self.width]
     }
 
     /// The light from a direction of any length.
@@ -172,9 +186,8 @@ impl Environment {
     /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let steps = self.width.div_ceil(STEP);
-        let (y, v) = choose(&self.columns, &self.column_hints, u.y);
-        let row = &self.rows[y * self.width..(y + 1) * self.width];
-        let (x, h) = choose(row, &self.hints[y * steps..(y + 1) * steps], u.x);
+        let (y, v) = choose(&self.columns, |sum| *sum, &self.column_hints, u.y);
+        let (x, h) = choose(self.row(y), |texel| texel.w, &self.hints[y * steps..(y + 1) * steps], u.x);
         let [across, down] = [x as f32 + h, y as f32 + v];
         let (sine, cosine) = fp::sin_cos_turn(0.5 * down / self.height as f32);
         let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
@@ -185,19 +198,27 @@ impl Environment {
 }
 
 /// The entry at which a share of the whole sum is reached, and how far in it that is.
-fn choose(sums: &[f32], hints: &[u32], u: f32) -> (usize, f32) {
-    let last = sums.len() - 1;
-    let wanted = u * sums[last];
+fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, hints: &[u32], u: f32) -> (usize, f32) {
+    let last = entries.len() - 1;
+    let wanted = u * sum(&entries[last]);
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
     // A hint may be late by a rounding.
-    while i > 0 && sums[i - 1] > wanted {
+    while i > 0 && sum(&entries[i - 1]) > wanted {
         i -= 1;
     }
-    while i < last && sums[i] <= wanted {
+    // Several at once are counted: nobody can foresee where to stop.
+    while let Some(ahead) = entries[i..last].first_chunk::<AHEAD>() {
+        let below = ahead.iter().filter(|entry| sum(entry) <= wanted).count();
+        i += below;
+        if below < AHEAD {
+            break;
+        }
+    }
+    while i < last && sum(&entries[i]) <= wanted {
         i += 1;
     }
-    let before = if i > 0 { sums[i - 1] } else { 0.0 };
-    let inside = (wanted - before) / (sums[i] - before);
+    let before = if i > 0 { sum(&entries[i - 1]) } else { 0.0 };
+    let inside = (wanted - before) / (sum(&entries[i]) - before);
     (i, if inside.is_finite() { inside.clamp(0.0, 1.0 - f32::EPSILON * 0.5) } else { 0.5 })
 }
 

@@ -352,9 +352,14 @@ impl World {
     }
 
     /// The materials that make up a surface point, each with its share.
+    #[inline]
     pub fn parts(&self, at: &Interaction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
-        self.mix(at.material, at.surface.position, 1.0, &mut parts);
+        match &self.materials()[at.material as usize] {
+            // Nearly always.
+            Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
+            Material::Solid(..) => self.mix(at.material, at.surface.position, 1.0, &mut parts),
+        }
         parts
     }
 

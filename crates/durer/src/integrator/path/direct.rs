@@ -36,8 +36,8 @@ impl Path<'_> {
     /// The light of one light that is chosen.
     pub(super) fn direct<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let (world, place) = (self.world, &vertex.place);
-        let choice = vertex.choices.y;
-        let u = sample.bounce(vertex.state.depth).pair(Use::PlaceOnLight as u32);
+        let choice = vertex.numbers(Use::Choices).y;
+        let u = vertex.numbers(Use::PlaceOnLight);
         let choose = |u| world.emitters().sample(world, place.point(), place.normal(), choice, u);
         let chosen = match (choose(u), self.transport.direct) {
             (Some(any), Direct::Middle) => choose(world.emitters().middle(any.light).unwrap_or(u)),

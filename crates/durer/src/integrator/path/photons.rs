@@ -21,7 +21,7 @@ use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
 use crate::world::emitters::LightId;
 use crate::world::emitters::emission::Beams;
-use crate::world::{Shading, World};
+use crate::world::{Interaction, Shading, World};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::collections::VecDeque;
@@ -190,9 +190,10 @@ impl Photons {
         let sample = Sample { id: id.at(3), lanes, photons: None };
         let mut ray = emitted.ray;
         let mut state = path.start(ray.origin());
+        let mut met = Interaction::NOWHERE;
         let mut first = true;
         loop {
-            let (end, _) = path.fly(&ray, &mut state, &sample, &mut ());
+            let (end, _) = path.fly(&ray, &mut met, &mut state, &sample, &mut ());
             // What fog scatters before anything throws it on, paths look for.
             if let End::Medium(point, dir, _) = end
                 && !first
@@ -203,7 +204,7 @@ impl Photons {
                     Spectrum::select(scattering.cmpgt(Spectrum::ZERO), state.throughput / scattering, Spectrum::ZERO);
                 return Photon::new(point.as_vec3(), -dir, power, state.depth, Rest::Medium(object));
             }
-            let End::Surface(met, passage) = end else { return None };
+            let End::Surface(passage) = end else { return None };
             if first {
                 // What photons meet on their way to something else, paths look for.
                 if !self.beams.reaches(met.hit.object) {
@@ -231,7 +232,7 @@ impl Photons {
             }
             let surface = &met.surface;
             let at = Place::Surface(surface, &shading, passage.as_ref());
-            let numbers = id.at(3 + state.depth * USES);
+            let numbers = id.at(3 + state.depth * USES as u32);
             let chosen = at.sample(numbers.pair(0).x, numbers.pair(1))?;
             if chosen.pdf != 0.0 || state.depth > path.settings.bounces {
                 return None;

@@ -1,6 +1,6 @@
 //! The points of a path: surfaces and places in a medium, and what may happen to light there.
 
-use super::State;
+use super::{State, USES, Use};
 use crate::bsdf::Lobe;
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::spawn::{offset_bound, spawn_ray, to_point};
@@ -26,8 +26,14 @@ pub(super) struct Scattered {
 pub(super) struct Vertex<'a, 'w> {
     pub(super) place: Place<'a, 'w>,
     pub(super) state: &'a State,
-    /// Numbers for a lobe and for a light.
-    pub(super) choices: Vec2,
+    /// Its random numbers.
+    pub(super) numbers: [Vec2; USES],
+}
+
+impl Vertex<'_, '_> {
+    pub(super) fn numbers(&self, what: Use) -> Vec2 {
+        self.numbers[what as usize]
+    }
 }
 
 /// What scatters light there.
