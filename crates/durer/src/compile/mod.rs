@@ -192,7 +192,13 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
         loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
     }
     let accel = build_accel(world, kind, boxes)?;
-    (world.packs, world.few, world.loose, world.accel) = (packs, few, loose, accel);
+    let spheres = match &accel {
+        Accel::Bvh(bvh) if spheres > 0 => {
+            bvh.primitive_indices().iter().map(|&i| objects[i as usize].sphere()).collect()
+        }
+        _ => Vec::new(),
+    };
+    (world.packs, world.few, world.loose, world.accel, world.spheres) = (packs, few, loose, accel, spheres);
     Ok(())
 }
 

@@ -143,14 +143,10 @@ impl<'w> Whitted<'w> {
         let mut along = ray.into();
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
         let found = self.world.closest_along(&mut along, tally);
-        let color = self.trace(&along, found, self.camera_path(&Media::default()), tally);
+        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0 };
+        let color = self.trace(&along, found, path, tally);
         tally.end(Color::ONE, Color::ONE, color);
         color
-    }
-
-    /// What a camera ray carries, in the air.
-    fn camera_path<'a>(&self, air: &'a Media) -> Path<'a> {
-        Path { bounces: self.settings.bounces, media: air, weight: 1.0 }
     }
 
     /// The light along a ray that has hit this first.
@@ -249,7 +245,7 @@ impl<'w> Whitted<'w> {
                 }
             }
         }
-        if self.goes_on(path) {
+        if self.goes_on(path.bounces) {
             let blend = Blend::of(all.iter().map(|lit| &lit.part));
             color += match blend.reflective == Color::ZERO && blend.transparent == Color::ZERO {
                 true => Color::ZERO,
@@ -263,8 +259,8 @@ impl<'w> Whitted<'w> {
     }
 
     /// Whether mirrored and transmitted rays are traced yet.
-    fn goes_on(&self, path: Path) -> bool {
-        path.bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
+    fn goes_on(&self, bounces: u32) -> bool {
+        bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
     /// The side of a surface that is shaded.

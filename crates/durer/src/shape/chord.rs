@@ -13,9 +13,8 @@ impl Chord {
     /// The whole line.
     pub(super) const LINE: Chord = Chord { enter: (f64::NEG_INFINITY, 0.0), leave: (f64::INFINITY, 0.0) };
 
-    const NOTHING: Chord = Chord { enter: (f64::INFINITY, 0.0), leave: (f64::NEG_INFINITY, 0.0) };
-
     /// What is left between two places, whose faces have these numbers.
+    #[inline(always)]
     pub(super) fn between(mut self, enter: f64, leave: f64, faces: [u32; 2]) -> Chord {
         if enter > self.enter.0 {
             self.enter = (enter, faces[0] as f32);
@@ -28,36 +27,37 @@ impl Chord {
 
     /// What is left where a coordinate, `o + t d`, lies between two bounds; each has the number of
     /// its face.
-    pub(super) fn slab(self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
-        // What misses one face is not asked for the next.
-        if self.ends().is_none() {
-            return Chord::NOTHING;
-        }
+    #[inline(always)]
+    pub(super) fn slab(mut self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
         if d == 0.0 {
-            return if o < low || o > high { Chord::NOTHING } else { self };
+            // Number by number: what is chosen as a whole is chosen in memory.
+            self.leave.0 = if o < low || o > high { f64::NEG_INFINITY } else { self.leave.0 };
+            return self;
         }
         let (a, b) = ((low - o) / d, (high - o) / d);
         if d > 0.0 { self.between(a, b, faces) } else { self.between(b, a, [faces[1], faces[0]]) }
     }
 
     /// Where a quadratic a t^2 + 2 b t + c is not positive, for a > 0; or where a = b = 0.
-    pub(super) fn quadratic(self, a: f64, b: f64, c: f64, face: u32) -> Chord {
-        if a > 0.0 {
-            let roots = crate::math::roots::quadratic(a, b, c);
-            roots.map_or(Chord::NOTHING, |(enter, leave)| self.between(enter, leave, [face; 2]))
-        } else if c <= 0.0 {
-            self
-        } else {
-            Chord::NOTHING
+    #[inline(always)]
+    pub(super) fn quadratic(mut self, a: f64, b: f64, c: f64, face: u32) -> Chord {
+        if a > 0.0
+            && let Some((enter, leave)) = crate::math::roots::quadratic(a, b, c)
+        {
+            return self.between(enter, leave, [face; 2]);
         }
+        self.leave.0 = if a > 0.0 || c > 0.0 || c.is_nan() { f64::NEG_INFINITY } else { self.leave.0 };
+        self
     }
 
     /// The two ends, if something is left between them.
+    #[inline(always)]
     pub(super) fn ends(self) -> Option<(f64, f64)> {
         (self.enter.0 < self.leave.0).then_some((self.enter.0, self.leave.0))
     }
 
     /// Offers both ends as crossings.
+    #[inline(always)]
     pub(super) fn offer(self, offer: &mut impl FnMut(f64, Vec2)) {
         if self.ends().is_some() {
             for (t, face) in [self.enter, self.leave] {

@@ -98,6 +98,9 @@ impl Cylinder {
         let across = d.length_squared();
         let across = if across > 1e-30 * near.dir.length_squared() { across } else { 0.0 };
         let chord = Chord::LINE.quadratic(across, o.dot(d), o.length_squared() - r * r, SIDE);
+        if chord.ends().is_none() {
+            return;
+        }
         let chord = chord.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
         chord.offer(&mut |t, uv| offer(t + shift, uv));
     }

@@ -2,8 +2,8 @@
 
 pub use super::mesh_data::{MeshData, NO_INDEX, loosened, place_key};
 use super::normals::{Normals, made};
-use super::triangle::{face_normal, interpolate};
-use super::{ShapeHit, Surface, Uv};
+use super::triangle::triangle_surface;
+use super::{ShapeHit, Surface};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
@@ -232,60 +232,6 @@ impl Mesh {
         surface.color = self.color(part, barycentric).unwrap_or([1.0; 4]);
         surface
     }
-}
-
-/// The surface of a triangle at a crossing, without texture and colour. Normals of no length are
-/// none.
-#[inline(always)]
-pub(crate) fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
-    let (position, error, barycentric) = interpolate(corners, uv);
-    let n_geo = face_normal(corners);
-    let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
-    // Not by closures given to `map_or`, which are called like any function.
-    if let Some(normals) = normals {
-        n_shade = mixed(normals, barycentric).normalize_or(n_geo);
-        let [front, back] = offsets_of_corners(position, corners, normals);
-        shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
-    }
-    // Normals in the file say which side is out, whatever way the corners go round.
-    let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
-    Surface {
-        position,
-        rest: Vec3::ZERO,
-        error,
-        curvature: 0.0,
-        n_geo,
-        n_shade,
-        uv: Uv::None,
-        barycentric,
-        shadow_offsets,
-        color: [1.0; 4],
-        solid: None,
-    }
-}
-
-#[inline(always)]
-fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
-    barycentric.x * a + barycentric.y * b + barycentric.z * c
-}
-
-/// For each corner, the way from a point of the triangle up to the plane through the corner across
-/// its normal; none where the point lies above that plane. And the same from the other side.
-///
-/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
-/// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
-/// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
-/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
-#[inline(always)]
-fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
-    let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
-    for i in 0..3 {
-        let n = normals[i].normalize_or_zero();
-        let height = (corners[i] - point).dot(n);
-        let way = height * n;
-        (shadow_offsets[0][i], shadow_offsets[1][i]) = if height < 0.0 { (Vec3::ZERO, way) } else { (way, Vec3::ZERO) };
-    }
-    shadow_offsets
 }
 
 /// An attribute's values at the corners of a triangle, if it has them all.

@@ -59,21 +59,7 @@ impl Shape for Triangle {
     }
 
     fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> Surface {
-        let (position, error, barycentric) = interpolate(self.corners(), crossing.uv);
-        let n_geo = face_normal(self.corners());
-        Surface {
-            position,
-            rest: Vec3::ZERO,
-            error,
-            curvature: 0.0,
-            n_geo,
-            n_shade: n_geo,
-            uv: Uv::At(crossing.uv),
-            barycentric,
-            shadow_offsets: [Vec3::ZERO; 2],
-            color: [1.0; 4],
-            solid: None,
-        }
+        Surface { uv: Uv::At(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
     }
 }
 
@@ -82,7 +68,7 @@ impl Shape for Triangle {
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
 #[inline(always)]
-pub(super) fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
+fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
     let barycentric = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
     let (position, error) = weighted(corners, barycentric);
     match inset(corners, barycentric, error) {
@@ -119,4 +105,58 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
 pub(crate) fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
+}
+
+/// The surface of a triangle at a crossing, without texture and colour. Normals of no length are
+/// none.
+#[inline(always)]
+pub(crate) fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
+    let (position, error, barycentric) = interpolate(corners, uv);
+    let n_geo = face_normal(corners);
+    let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
+    // Not by closures given to `map_or`, which are called like any function.
+    if let Some(normals) = normals {
+        n_shade = mixed(normals, barycentric).normalize_or(n_geo);
+        let [front, back] = offsets_of_corners(position, corners, normals);
+        shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
+    }
+    // Normals in the file say which side is out, whatever way the corners go round.
+    let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
+    Surface {
+        position,
+        rest: Vec3::ZERO,
+        error,
+        curvature: 0.0,
+        n_geo,
+        n_shade,
+        uv: Uv::None,
+        barycentric,
+        shadow_offsets,
+        color: [1.0; 4],
+        solid: None,
+    }
+}
+
+#[inline(always)]
+fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
+    barycentric.x * a + barycentric.y * b + barycentric.z * c
+}
+
+/// For each corner, the way from a point of the triangle up to the plane through the corner across
+/// its normal; none where the point lies above that plane. And the same from the other side.
+///
+/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
+/// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
+/// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
+/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
+#[inline(always)]
+fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+    let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
+    for i in 0..3 {
+        let n = normals[i].normalize_or_zero();
+        let height = (corners[i] - point).dot(n);
+        let way = height * n;
+        (shadow_offsets[0][i], shadow_offsets[1][i]) = if height < 0.0 { (Vec3::ZERO, way) } else { (way, Vec3::ZERO) };
+    }
+    shadow_offsets
 }

@@ -115,9 +115,22 @@ struct Scratch {
 struct State {
     counts: Vec<u32>,
     inside: Vec<bool>,
-    /// For each part, where the last crossings that coincide begin that one of its own is among,
-    /// counted from 1.
-    groups: Vec<usize>,
+    /// For each part, which crossings that coincide one of its own was last among: by a number that
+    /// no others ever have.
+    groups: Vec<u64>,
+    last_group: u64,
+}
+
+impl State {
+    /// Begins outside of all parts.
+    fn begin(&mut self, parts: usize, start: &[u32]) {
+        self.counts.clear();
+        self.counts.extend_from_slice(start);
+        self.inside.clear();
+        self.inside.resize(parts, false);
+        // What other rays and solids left there is of no group to come.
+        self.groups.resize(self.groups.len().max(parts), 0);
+    }
 }
 
 thread_local! {
@@ -296,9 +309,17 @@ impl Csg {
                 return t_max;
             }
             let own = &mut events[from..];
-            own.sort_unstable_by(order);
-            let way_in = own.iter().step_by(2).find(|event| event.t as f32 > ray.rounded.t_min);
-            complete = way_in.map_or(complete, |event| complete.min(event.t as f32));
+            // What was just written is not moved: who did would wait for it.
+            if own.len() > 2 {
+                own.sort_unstable_by(order);
+            }
+            for pair in own.chunks(2) {
+                let way_in = pair.iter().fold(f64::INFINITY, |t, event| t.min(event.t)) as f32;
+                if way_in > ray.rounded.t_min {
+                    complete = complete.min(way_in);
+                    break;
+                }
+            }
             t_max.min(complete.next_up() + 2.0 * pad)
         });
         events.sort_unstable_by(order);
@@ -316,11 +337,7 @@ impl Csg {
         if events.is_empty() {
             return None;
         }
-        state.counts.clone_from(&self.start);
-        state.inside.clear();
-        state.inside.resize(self.leaves.len(), false);
-        state.groups.clear();
-        state.groups.resize(self.leaves.len(), 0);
+        state.begin(self.leaves.len(), &self.start);
         let mut whole = self.joins[0].value(state.counts[0]);
         for &i in &self.unbounded {
             let Geometry::Primitive(shape) = &self.leaves[i as usize].object.geometry else { continue };
@@ -335,10 +352,14 @@ impl Csg {
         // The last crossing behind the origin that leads to the other side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
-        let speed = ray.line().dir.length();
+        let apart = self.apart(ray, events);
         let mut from = 0;
         while from < events.len() {
-            let to = self.coincident((ray, speed), events, from, &mut state.groups);
+            // Most crossings are alone.
+            let to = match events.get(from + 1) {
+                Some(next) if next.t - events[from].t > apart => from + 1,
+                _ => self.coincident(ray, events, from, state),
+            };
             let (group, before) = (&events[from..to], whole);
             from = to;
             for event in group {
@@ -410,23 +431,36 @@ impl Csg {
         }
     }
 
+    /// Of crossings of a ray that coincide, no two are farther apart than this along it, by
+    /// [`Csg::coincide`].
+    fn apart(&self, ray: &Ray64, events: &[Event]) -> f64 {
+        let line = ray.line();
+        let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
+        let reach = line.origin.abs().max_element() + farthest * line.dir.abs().max_element();
+        // A little more, for what is rounded otherwise there.
+        1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach) / line.dir.length()
+    }
+
     /// The end of the crossings that coincide with one, each of another part: see the head of this
-    /// file. The length of the ray's direction is worked out once.
-    fn coincident(&self, ray: (&Ray64, f64), events: &[Event], from: usize, groups: &mut [usize]) -> usize {
-        groups[events[from].leaf as usize] = from + 1;
+    /// file.
+    fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, state: &mut State) -> usize {
+        state.last_group += 1;
+        let State { groups, last_group: group, .. } = state;
+        groups[events[from].leaf as usize] = *group;
         let mut to = from + 1;
         while to < events.len()
-            && groups[events[to].leaf as usize] != from + 1
+            && groups[events[to].leaf as usize] != *group
             && self.coincide(ray, &events[from], &events[to])
         {
-            groups[events[to].leaf as usize] = from + 1;
+            groups[events[to].leaf as usize] = *group;
             to += 1;
         }
         to
     }
 
-    fn coincide(&self, (ray, speed): (&Ray64, f64), a: &Event, b: &Event) -> bool {
+    fn coincide(&self, ray: &Ray64, a: &Event, b: &Event) -> bool {
         let line = ray.line();
+        let speed = line.dir.length();
         let gap = (b.t - a.t) * speed;
         let [s, u] = [a, b].map(|event| self.leaves[event.leaf as usize].slack);
         let slack = f64::from(s + u) + 4.0 * f64::from(f32::EPSILON) * line.at(a.t).abs().max_element();

@@ -17,7 +17,7 @@ use crate::bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use crate::light::{Emitter as _, Illumination, Light};
 use crate::material::Pattern;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
-use crate::shape::ShapeHit;
+use crate::shape::{Shape as _, ShapeHit, Sphere};
 use crate::source::Digest;
 use crate::texture::Texture;
 pub use contents::{Assets, Contents};
@@ -54,6 +54,9 @@ pub struct World {
     /// pays.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
+    /// The spheres of the tree as they lie in its leaves, so that none has to be looked up. Other
+    /// things have a radius of 0 here; there is nothing where no thing is a sphere.
+    pub(crate) spheres: Vec<Sphere>,
 }
 
 /// The structure over all bounded objects.
@@ -111,6 +114,7 @@ impl World {
             few: PrimitivePacks::default(),
             loose: Vec::new(),
             accel: Accel::None,
+            spheres: Vec::new(),
         };
         world.has_cutouts = world.finds_cutouts();
         world.hides_backs = world.finds_hidden_backs();
@@ -200,8 +204,7 @@ impl World {
             Accel::Bvh(bvh) => {
                 let outer = ray.rounded;
                 bvh.traverse(&outer, counter, |item, _, counter| {
-                    let object = bvh.primitive_indices()[item];
-                    let found = self.objects()[object as usize].closest(object, ray, false, counter);
+                    let (object, found) = self.closest_of(bvh, item, ray, false, counter);
                     offer(&mut best, ray, object, found);
                     ray.rounded.t_max
                 });
@@ -227,6 +230,24 @@ impl World {
         best
     }
 
+    /// The number of a thing of the tree, and its first hit in the ray's interval.
+    #[inline(always)]
+    fn closest_of<T: TraversalCounter>(
+        &self,
+        bvh: &Bvh,
+        item: usize,
+        ray: &Ray64,
+        any: bool,
+        counter: &mut T,
+    ) -> (u32, Option<(ShapeHit, u32)>) {
+        let number = bvh.primitive_indices()[item];
+        if let Some(sphere) = self.spheres.get(item).filter(|sphere| sphere.radius > 0.0) {
+            counter.work(0, 1);
+            return (number, sphere.intersect(&ray.rounded).map(|crossing| (crossing, 0)));
+        }
+        (number, self.objects()[number as usize].closest(number, ray, any, counter))
+    }
+
     /// Whether anything is hit in the ray's interval; the first thing found will do.
     pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
         self.occluded_along(&ray.into(), counter)
@@ -248,8 +269,7 @@ impl World {
         match &self.accel {
             Accel::Bvh(bvh) if bvh.is_empty() => {}
             Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
-                let object = bvh.primitive_indices()[item];
-                found |= self.objects()[object as usize].closest(object, ray, true, counter).is_some();
+                found |= self.closest_of(bvh, item, ray, true, counter).1.is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
             Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {

@@ -4,7 +4,7 @@ use super::csg::Csg;
 use crate::bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use crate::dialect::MeshNormals;
 use crate::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
-use crate::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Surface, Uv};
+use crate::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface, Uv};
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
@@ -289,6 +289,14 @@ impl Object {
     pub(crate) fn fits_packs(&self) -> bool {
         self.to_world.is_none()
             && matches!(&self.geometry, Geometry::Primitive(Primitive::Plane(_) | Primitive::Sphere(_)))
+    }
+
+    /// The sphere that it is, where it is written; else one of radius 0.
+    pub(crate) fn sphere(&self) -> Sphere {
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) if self.to_world.is_none() => sphere.clone(),
+            _ => Sphere { center: Vec3::ZERO, radius: 0.0 },
+        }
     }
 
     /// Adds it under a number to those that are tested together, if it can be.

@@ -3,7 +3,7 @@
 use super::{Geometry, Hit, Interaction, Material, Phong, TOGETHER, World};
 use crate::bvh::internal::{PlainKernel, run_plain};
 use crate::math::{Color, Line, Ray64, Vec2, Vec3};
-use crate::shape::{Plane, Primitive, Shape as _, ShapeHit, Sphere, Surface, mesh};
+use crate::shape::{Plane, Primitive, Shape as _, ShapeHit, Sphere, Surface, triangle};
 use glam::DVec3;
 
 /// Hits of each [`Kind`] begin at a multiple of this, so that whole vectors of them are worked out.
@@ -302,7 +302,7 @@ impl PlainKernel for SurfaceKernel<'_> {
             let [a, b, c, na, nb, nc] = &surfaces.given.vectors;
             let [corners, normals] = [[a.get(i), b.get(i), c.get(i)], [na.get(i), nb.get(i), nc.get(i)]];
             let uv = Vec2::new(surfaces.given.numbers[0][i], surfaces.given.numbers[1][i]);
-            surfaces.set(i, &mesh::triangle_surface(corners, Some(normals), uv));
+            surfaces.set(i, &triangle::triangle_surface(corners, Some(normals), uv));
         }
     }
 }

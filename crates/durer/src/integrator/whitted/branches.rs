@@ -1,9 +1,8 @@
 //! Mirrored and transmitted rays of hits that are asked about together, worked out side by side.
 
+use super::Whitted;
 use super::secondary::{Blend, Parted};
-use super::{Path, Whitted};
 use crate::bvh::internal::{PlainKernel, run_plain};
-use crate::integrator::media::{Media, Passage};
 use crate::integrator::spawn::spawn_ray;
 use crate::math::{self, Color, Ray, Ray64};
 use crate::world::{LANES, Met, Numbers, PLACES, Surfaces, Vectors};
@@ -17,12 +16,13 @@ pub(super) struct Branches {
     pub(super) lights: Vec<Color>,
 }
 
-/// What a ray that goes on carries.
+/// What a ray carries from bounce to bounce.
+#[derive(Clone, Copy)]
 pub(super) struct Carried {
     /// The number of the camera ray from which it comes.
-    pub(super) camera: usize,
-    /// What it runs in.
-    pub(super) media: Media,
+    pub(super) camera: u32,
+    /// What it runs in, by number among those that rays which are traced together run in.
+    pub(super) media: u32,
     /// How much it counts for in the pixel.
     pub(super) weight: f32,
 }
@@ -37,8 +37,8 @@ impl Branches {
 
 /// Hits from which light goes on, and how.
 pub(super) struct Partings {
-    /// The hits, with what light runs in behind them.
-    hits: Vec<(Met, Media)>,
+    /// The hits, with the number of what light runs in behind them.
+    hits: Vec<(Met, u32)>,
     given: Given,
     mirrored: Way,
     transmitted: Way,
@@ -93,11 +93,11 @@ impl Partings {
         self.hits.is_empty()
     }
 
-    /// Adds a hit.
+    /// Adds a hit, with the indices of refraction before and behind it and the number of what is
+    /// there.
     #[inline(always)]
-    pub(super) fn push(&mut self, met: Met, blend: Blend, leaving: bool, passage: Option<Passage>) {
+    pub(super) fn push(&mut self, met: Met, blend: Blend, leaving: bool, (here, there, behind): (f32, f32, u32)) {
         let (given, place) = (&mut self.given, met.place());
-        let Passage { here, there, behind, .. } = passage.unwrap_or_default();
         given.reflective.set(place, blend.reflective);
         given.transparent.set(place, blend.transparent);
         given.fresnel[place] = f32::from(u8::from(blend.fresnel));
@@ -109,11 +109,11 @@ impl Partings {
 
 impl Whitted<'_> {
     /// Lists the rays that go on from hits, and for each hit its ray and where those end.
-    pub(super) fn branch<'a>(
+    pub(super) fn branch(
         &self,
         surfaces: &Surfaces,
         partings: &mut Partings,
-        path: impl Fn(usize) -> (usize, Path<'a>),
+        carried: impl Fn(usize) -> Carried,
         branches: &mut Branches,
         mut ends: impl FnMut(usize, usize),
     ) {
@@ -122,16 +122,16 @@ impl Whitted<'_> {
         run_plain(PartingKernel { whitted: self, surfaces, partings, first: first / LANES * LANES, end: last + 1 });
         let epsilon = self.world.rules().epsilon;
         let Partings { hits, mirrored, transmitted, .. } = &*partings;
-        for (met, behind) in hits {
-            let (place, (camera, path)) = (met.place(), path(met.ray()));
-            for (way, media) in [(mirrored, path.media), (transmitted, behind)] {
+        for &(met, behind) in hits {
+            let (place, before) = (met.place(), carried(met.ray()));
+            for (way, media) in [(mirrored, before.media), (transmitted, behind)] {
                 let color = way.color.get(place);
-                let weight = self.weight_after(path.weight, color);
+                let weight = self.weight_after(before.weight, color);
                 let counts = color.max_element() > 0.0 && weight >= self.settings.least_weight;
                 if !counts {
                     continue;
                 }
-                branches.carried.push(Carried { camera, media: media.clone(), weight });
+                branches.carried.push(Carried { media, weight, ..before });
                 branches.lights.push(color);
                 let dir = way.dir.get(place);
                 // Each is written to its place at once: what goes round by another would be waited

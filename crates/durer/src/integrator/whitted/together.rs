@@ -6,7 +6,7 @@ use super::lamps::LampHits;
 use super::secondary::Blend;
 use super::{Path, Whitted};
 use crate::dialect::Compat;
-use crate::integrator::media::Media;
+use crate::integrator::media::{Media, Passage};
 use crate::integrator::trace::TraceListener;
 use crate::math::{Color, Ray, Ray64};
 use crate::sampler::SampleId;
@@ -46,7 +46,19 @@ struct Hits {
     surfaces: Box<Surfaces>,
     lit: LampHits,
     partings: Box<Partings>,
+    /// All that rays run in: what one carries of it is a number. The first is air.
+    media: Vec<Media>,
 }
+
+impl Hits {
+    /// The path that a ray is part of.
+    fn path(&self, Carried { media, weight, .. }: Carried, bounces: u32) -> Path<'_> {
+        Path { bounces, media: &self.media[media as usize], weight }
+    }
+}
+
+/// The number of air among what rays run in.
+const AIR: u32 = 0;
 
 thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
@@ -68,75 +80,86 @@ impl Whitted<'_> {
             }
             return;
         }
-        let air = Media::default();
+        let bounces = self.settings.bounces;
         SCRATCH.with_borrow_mut(|Scratch { levels, hits, camera_rays }| {
-            levels.resize_with(levels.len().max(self.settings.bounces as usize + 1), Level::default);
+            levels.resize_with(levels.len().max(bounces as usize + 1), Level::default);
             for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
                 camera_rays.clear();
                 camera_rays.extend(rays.iter().map(|(ray, _)| Ray64::from(ray)));
-                let path = |i: usize| (TOGETHER * part + i, self.camera_path(&air));
-                self.light_level(camera_rays, path, &begin, (levels, hits), tally, |i, color| colors[i] = color);
+                hits.media.clear();
+                hits.media.push(Media::default());
+                let carried = |i: usize| Carried { camera: (TOGETHER * part + i) as u32, media: AIR, weight: 1.0 };
+                let ways = (bounces, carried, &begin);
+                self.light_level(camera_rays, ways, (levels, hits), tally, |i, color| colors[i] = color);
             }
         });
     }
 
-    /// The light along not more than [`TOGETHER`] rays of one depth. `path` says from which camera
-    /// ray each comes, and what it carries; `take` gets the light of each; `levels` are of this
-    /// depth and those below.
-    fn light_level<'a, T: TraceListener>(
+    /// The light along not more than [`TOGETHER`] rays of one depth. They have so many bounces left;
+    /// then what each carries; `begin` is told the camera ray that is worked for. `take` gets the
+    /// light of each; `levels` are of this depth and those below.
+    fn light_level<T: TraceListener>(
         &self,
         rays: &[Ray64],
-        path: impl Fn(usize) -> (usize, Path<'a>),
-        begin: &impl Fn(usize),
+        (bounces, carried, begin): (u32, impl Fn(usize) -> Carried, &impl Fn(usize)),
         (levels, hits): (&mut [Level], &mut Hits),
         tally: &mut T,
         mut take: impl FnMut(usize, Color),
     ) {
         let Some((Level { waiting, branches }, deeper)) = levels.split_first_mut() else { return };
-        let Hits { surfaces, lit, partings } = hits;
         waiting.clear();
         branches.clear();
-        surfaces.clear();
-        partings.clear();
+        hits.surfaces.clear();
+        hits.partings.clear();
         let (mut found, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
         self.world.closest_together(rays, &mut found[..rays.len()]);
         for (i, ray) in rays.iter().enumerate() {
-            let (camera, path) = path(i);
-            begin(camera);
+            begin(carried(i).camera as usize);
             tally.ray();
             let Some(hit) = &found[i] else {
                 colors[i] = self.world.sky(ray.dir());
                 continue;
             };
             match self.plain(hit) {
-                Some(phong) => self.world.add_met(i, hit, phong, surfaces),
-                None => colors[i] = self.trace(ray, found[i], path, tally),
+                Some(phong) => self.world.add_met(i, hit, phong, &mut hits.surfaces),
+                None => colors[i] = self.trace(ray, found[i], hits.path(carried(i), bounces), tally),
             }
         }
-        self.world.meet_together(rays, &found, surfaces);
-        self.find_sides(surfaces, lit);
-        for &met in surfaces.met() {
+        self.world.meet_together(rays, &found, &mut hits.surfaces);
+        self.find_sides(&hits.surfaces, &mut hits.lit);
+        let goes_on = self.goes_on(bounces);
+        for n in 0..hits.surfaces.met().len() {
+            let met = hits.surfaces.met()[n];
             let (i, place) = (met.ray(), met.place());
             let Some((hit, phong)) = found[i].as_ref().and_then(|hit| Some((hit, self.plain(hit)?))) else { continue };
-            let (ray, (camera, path)) = (&rays[i], path(i));
-            let (blend, leaving) = (Blend::of(&[WeightedMaterial { phong, share: 1.0 }]), lit.sees_back(place));
-            let passage = (blend.transparent != Color::ZERO)
-                .then(|| self.passage_through(hit.object, ray.rounded.origin, blend, leaving, path.media));
-            if passage.as_ref().is_some_and(|passage| passage.hidden) {
-                begin(camera);
-                colors[i] = self.trace(ray, found[i], path, tally);
-                continue;
+            let path = hits.path(carried(i), bounces);
+            let (blend, leaving) = (Blend::of(&[WeightedMaterial { phong, share: 1.0 }]), hits.lit.sees_back(place));
+            let mut passage = (1.0, 1.0, AIR);
+            if blend.transparent != Color::ZERO {
+                let Passage { here, there, behind, hidden } =
+                    self.passage_through(hit.object, rays[i].rounded.origin, blend, leaving, path.media);
+                if hidden {
+                    begin(carried(i).camera as usize);
+                    colors[i] = self.trace(&rays[i], found[i], path, tally);
+                    continue;
+                }
+                passage = (here, there, hits.media.len() as u32);
+                match behind.is_air() {
+                    true => passage.2 = AIR,
+                    false => hits.media.push(behind),
+                }
             }
+            let Hits { surfaces, lit, partings, .. } = hits;
             colors[i] = self.unlit(met, surfaces.diffuse(place, phong), phong, lit);
-            if self.goes_on(path) && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO) {
+            if goes_on && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO) {
                 partings.push(met, blend, leaving, passage);
             }
         }
+        let Hits { surfaces, lit, partings, .. } = hits;
         (0..self.world.lights().len()).for_each(|lamp| self.add_lamp(lamp, surfaces, lit, &mut colors, tally));
         if !partings.is_empty() {
-            let bounces = path(0).1.bounces - 1;
-            self.branch(surfaces, partings, path, branches, |ray, branches| waiting.push(Waiting { ray, branches }));
-            self.follow(branches, begin, (deeper, hits), bounces, tally);
+            self.branch(surfaces, partings, carried, branches, |ray, branches| waiting.push(Waiting { ray, branches }));
+            self.follow(branches, (bounces - 1, begin), (deeper, hits), tally);
         }
         let mut first = 0;
         for &Waiting { ray, branches: end } in waiting.iter() {
@@ -159,26 +182,22 @@ impl Whitted<'_> {
     fn follow<T: TraceListener>(
         &self,
         branches: &mut Branches,
-        begin: &impl Fn(usize),
+        (bounces, begin): (u32, &impl Fn(usize)),
         (levels, hits): (&mut [Level], &mut Hits),
-        bounces: u32,
         tally: &mut T,
     ) {
         let Branches { rays, carried, lights } = branches;
-        for (part, (rays, lights)) in rays.chunks_mut(TOGETHER).zip(lights.chunks_mut(TOGETHER)).enumerate() {
-            let path = |i: usize| {
-                let Carried { camera, media, weight } = &carried[TOGETHER * part + i];
-                (*camera, Path { bounces, media, weight: *weight })
-            };
+        let parts = rays.chunks_mut(TOGETHER).zip(carried.chunks(TOGETHER)).zip(lights.chunks_mut(TOGETHER));
+        for ((rays, carried), lights) in parts {
             if rays.len() >= FEWEST {
-                self.light_level(rays, path, begin, (levels, hits), tally, |i, light| lights[i] *= light);
+                let ways = (bounces, |i: usize| carried[i], begin);
+                self.light_level(rays, ways, (levels, hits), tally, |i, light| lights[i] *= light);
                 continue;
             }
-            for (i, (ray, light)) in rays.iter_mut().zip(lights).enumerate() {
-                let (camera, path) = path(i);
-                begin(camera);
+            for ((ray, carried), light) in rays.iter_mut().zip(carried).zip(lights) {
+                begin(carried.camera as usize);
                 let found = self.world.closest_along(ray, tally);
-                *light *= self.trace(ray, found, path, tally);
+                *light *= self.trace(ray, found, hits.path(*carried, bounces), tally);
             }
         }
     }
