@@ -1,5 +1,8 @@
-//! A picture of all directions around the scene, from which directions are chosen by how bright
-//! they are.
+//! A picture of all directions around the scene, from which directions are chosen by how much
+//! brighter they are than the mean: what is about even is found as well by directions in which
+//! surfaces scatter, and both are weighed (multiple importance sampling), so that points of lights
+//! are best spent on the rest. Source: Karlík, Šik, Vévoda, Skřivan, Křivánek, *MIS Compensation:
+//! Optimizing Sampling Techniques in Multiple Importance Sampling*, SIGGRAPH Asia 2019.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::Vec4;
@@ -27,6 +30,8 @@ pub struct Environment {
     /// How far it is turned about y, as a share of a whole turn from 0 to 1.
     turn: f32,
     scale: Color,
+    /// The mean brightness of all directions, before the scale.
+    mean: f32,
     rows: Arc<[Row]>,
     /// Where to look in the sums of a row, by steps of what is wanted.
     hints: Arc<[u32]>,
@@ -42,6 +47,10 @@ struct Row {
     /// The share of that in the sum of all.
     share: f32,
 }
+
+/// The least share of its brightness that a direction is chosen by: some light is found by points
+/// alone, as that behind panes where paths end.
+const LEAST: f32 = 0.05;
 
 /// Entries that have a hint in common.
 const STEP: usize = 4;
@@ -72,12 +81,12 @@ impl Environment {
         let texels: Vec<Color> =
             texels.into_iter().map(|c| if c.is_finite() { c.max(Vec3::ZERO) } else { Vec3::ZERO }).collect();
         let brightness = |x: usize, y: usize| texels[y * width + x].dot(Vec3::splat(1.0 / 3.0));
-        let (mut sums, mut columns) = (Vec::with_capacity(width * height), Vec::with_capacity(height));
-        let mut all = 0.0_f64;
+        // Rows near the poles stand for less of the sphere.
+        let sines: Vec<f32> = (0..height).map(|y| fp::sin(PI * (y as f32 + 0.5) / height as f32)).collect();
+        let mut sums = Vec::with_capacity(width * height);
+        let mut whole = 0.0_f64;
         for y in 0..height {
-            // Rows near the poles stand for less of the sphere.
-            let sine = fp::sin(PI * (y as f32 + 0.5) / height as f32);
-            let mut sum = 0.0_f64;
+            let mut row = 0.0_f64;
             for x in 0..width {
                 // Colours are mixed between the middles of texels: this is the mean over a texel.
                 let mean = |[before, here, after]: [f32; 3]| 0.125 * (before + after) + 0.75 * here;
@@ -85,14 +94,26 @@ impl Environment {
                     let x = x % width;
                     mean([y.saturating_sub(1), y, (y + 1).min(height - 1)].map(|y| brightness(x, y)))
                 };
-                sum += f64::from(mean([x + width - 1, x, x + 1].map(column)) * sine);
-                sums.push(sum as f32);
+                let light = mean([x + width - 1, x, x + 1].map(column));
+                sums.push(light);
+                row += f64::from(light * sines[y]);
+            }
+            whole += row;
+        }
+        let mean = (whole / (width as f64 * sines.iter().map(|&sine| f64::from(sine)).sum::<f64>())) as f32;
+        let mut columns = Vec::with_capacity(height);
+        let mut all = 0.0_f64;
+        for (row, sine) in sums.chunks_mut(width).zip(&sines) {
+            let mut sum = 0.0_f64;
+            for light in row {
+                sum += f64::from((*light - (1.0 - LEAST) * mean).max(LEAST * *light) * sine);
+                *light = sum as f32;
             }
             all += sum;
             columns.push(all as f32);
         }
         let turn = (degrees / 360.0).rem_euclid(1.0);
-        let sound = all > 0.0 && (all as f32).is_finite() && turn.is_finite();
+        let sound = all > 0.0 && mean.is_finite() && turn.is_finite();
         let column_hints = hints(&columns).collect();
         let share = |y: usize| (columns[y] - if y > 0 { columns[y - 1] } else { 0.0 }) / columns[height - 1];
         let row = |y: usize| Row { sum: sums[(y + 1) * width - 1], share: share(y) };
@@ -105,15 +126,14 @@ impl Environment {
             texels: texels.iter().zip(&sums).map(|(color, sum)| color.extend(*sum)).collect(),
             turn,
             scale,
+            mean,
             columns: columns.as_slice().into(),
         })
     }
 
     /// The mean over all directions, nearly.
     pub fn mean(&self) -> Color {
-        // Weights are means over texels, times the sine of the row.
-        let sum = self.columns[self.height - 1];
-        self.scale * (sum * PI / 2.0 / (self.width * self.height) as f32)
+        self.scale * self.mean
     }
 
     /// Bytes for each texel that making it takes beside the texels that are given: those once more

@@ -5,6 +5,7 @@ use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use crate::shape::Primitive;
+use crate::texture::Environment;
 use crate::world::{Geometry, Material, Object, World};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -153,7 +154,7 @@ impl Beams {
                 Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
             }
             Lamp::Sky => {
-                let (wi, radiance, pdf) = world.environment()?.sample(place)?;
+                let (wi, radiance, pdf) = from_all_around(world.environment()?, place)?;
                 let (ray, density) = self.across(-wi, target, direction);
                 Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
             }
@@ -198,6 +199,20 @@ impl Beams {
         let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
         (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)
     }
+}
+
+/// A direction of the surroundings, its light, and its density per solid angle. No other way finds
+/// what is about even, as others than photons do: half of all directions are chosen evenly.
+fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
+    let (wi, light, pdf) = match u.x < 0.5 {
+        true => sky.sample(Vec2::new(2.0 * u.x, u.y))?,
+        false => {
+            let wi = warp::sphere(Vec2::new(2.0 * u.x - 1.0, u.y));
+            let (light, pdf) = sky.at_with_pdf(wi);
+            (wi, light, pdf)
+        }
+    };
+    Some((wi, light, 0.5 * (pdf + 0.25 / PI)))
 }
 
 fn strength(world: &World, light: u32) -> f32 {
