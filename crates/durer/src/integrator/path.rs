@@ -225,7 +225,8 @@ impl<'w> Path<'w> {
                         .map(|(light, color)| sample.lanes.light_of(color, self.world.illuminant(light)))
                         .sum::<Spectrum>();
                 }
-                let weight = self.weight(state, self.world.environment().is_some(), |_| pdf);
+                let chance = |from: &Scattered| self.world.emitters().chance_of_sky(self.world, from.point, from.n);
+                let weight = self.weight(state, self.world.environment().is_some(), |from| pdf * chance(from));
                 tally.begin(|| TermKind::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky

@@ -85,7 +85,7 @@ impl Environment {
         let sines: Vec<f32> = (0..height).map(|y| fp::sin(PI * (y as f32 + 0.5) / height as f32)).collect();
         let mut sums = Vec::with_capacity(width * height);
         let mut whole = 0.0_f64;
-        for y in 0..height {
+        for (y, sine) in sines.iter().enumerate() {
             let mut row = 0.0_f64;
             for x in 0..width {
                 // Colours are mixed between the middles of texels: this is the mean over a texel.
@@ -96,7 +96,7 @@ impl Environment {
                 };
                 let light = mean([x + width - 1, x, x + 1].map(column));
                 sums.push(light);
-                row += f64::from(light * sines[y]);
+                row += f64::from(light * sine);
             }
             whole += row;
         }
@@ -134,6 +134,12 @@ impl Environment {
     /// The mean over all directions, nearly.
     pub fn mean(&self) -> Color {
         self.scale * self.mean
+    }
+
+    /// The mean of what directions are chosen by: of the light above [`Environment::mean`], nearly.
+    pub fn mean_above(&self) -> Color {
+        // Weights are means over texels, times the sine of the row.
+        self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
     /// Bytes for each texel that making it takes beside the texels that are given: those once more

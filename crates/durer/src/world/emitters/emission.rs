@@ -1,6 +1,6 @@
 //! Light that leaves lamps towards things that mirror or refract it: where photons begin.
 
-use super::{AreaLight, Source, of_light};
+use super::{Apart, AreaLight, Source, of_light};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Ray64, Vec2, Vec3};
@@ -80,7 +80,7 @@ impl Beams {
                 Source::Light(number) => beams.add(Lamp::Near(*number), 4.0 * PI * PI * strength(world, *number)),
             }
         }
-        for &number in &emitters.even {
+        for &Apart { light: number, .. } in &emitters.apart {
             let light = &world.lights()[number as usize];
             let seen = light.illuminate(DVec3::ZERO);
             match seen.distance.is_infinite() {

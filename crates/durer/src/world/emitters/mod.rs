@@ -54,11 +54,64 @@ pub struct Emitters {
     sources: Vec<Source>,
     /// The first source of each object; `u32::MAX` where it has none.
     first: Vec<u32>,
-    /// Lights of the scene that are chosen evenly.
-    even: Vec<u32>,
+    /// Lights of the scene without a place in the tree.
+    apart: Vec<Apart>,
     /// Those of them that are seen under some angle.
     suns: Vec<Sun>,
     tree: LightTree,
+}
+
+/// A light of the scene that is at infinity, or fades otherwise than with the square of the
+/// distance.
+#[derive(Clone, Copy, Debug)]
+struct Apart {
+    light: u32,
+    /// Where it is; zero for one that is not at infinity.
+    way: Vec3,
+    /// The irradiance that it makes across its way, or about that.
+    irradiance: f32,
+}
+
+impl Apart {
+    fn of(world: &World, light: u32) -> Apart {
+        let (seen, color) = (of_light(world, light, DVec3::ZERO, 1.0), world.lights()[light as usize].color());
+        let way = if seen.reach.is_infinite() { seen.wi } else { Vec3::ZERO };
+        Apart { light, way, irradiance: PI * color.max_element().max(0.0) }
+    }
+
+    /// About what it brings to a surface with a normal (zero: any).
+    fn brings(&self, n: Vec3) -> f32 {
+        if n == Vec3::ZERO || self.way == Vec3::ZERO {
+            self.irradiance
+        } else {
+            self.irradiance * self.way.dot(n).max(0.0)
+        }
+    }
+}
+
+/// What chooses among lights apart, the surroundings and the tree for a point: each by about the
+/// irradiance that it brings there.
+struct Chances {
+    choices: f32,
+    /// Of all together.
+    total: f32,
+    sky: f32,
+    tree: f32,
+}
+
+/// Estimates may be wrong: this share of all choices is even.
+const EVENLY: f32 = 0.1;
+
+impl Chances {
+    /// The probability of what brings so much.
+    fn of(&self, brings: f32) -> f32 {
+        if self.choices == 1.0 {
+            return 1.0;
+        }
+        let share = brings / self.total;
+        let even = 1.0 / self.choices;
+        if share.is_finite() { (1.0 - EVENLY) * share + EVENLY * even } else { even }
+    }
 }
 
 /// A light at infinity that is seen as a disc.
@@ -159,7 +212,7 @@ impl Emitters {
                     });
                 }
                 None => {
-                    emitters.even.push(number as u32);
+                    emitters.apart.push(Apart::of(world, number as u32));
                     emitters.suns.extend(Sun::of(world, number as u32));
                 }
             }
@@ -168,36 +221,56 @@ impl Emitters {
         emitters
     }
 
-    /// How many things are chosen evenly: lights without a place, the surroundings, and all that is
-    /// in the tree.
-    fn choices(&self, world: &World) -> usize {
-        self.even.len() + usize::from(world.environment().is_some()) + usize::from(!self.tree.is_empty())
+    /// The chances of all that is chosen for a point with a normal (zero: any); `None` where nothing
+    /// shines.
+    fn chances(&self, world: &World, point: Vec3, n: Vec3) -> Option<Chances> {
+        let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
+        let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
+        let mut chances = Chances { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
+        if choices > 1 {
+            chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
+            chances.tree = self.tree.importance(point, n);
+            let apart: f32 = self.apart.iter().map(|apart| apart.brings(n)).sum();
+            chances.total = apart + chances.sky + chances.tree;
+            // Where it is not known what they bring, they are chosen evenly.
+            chances.total = if chances.total > 0.0 && chances.total.is_finite() { chances.total } else { f32::NAN };
+        }
+        (choices > 0).then_some(chances)
     }
 
     /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by
     /// two more.
     pub fn sample(&self, world: &World, point: DVec3, n: Vec3, choice: f32, u: Vec2) -> Option<LightSample> {
-        let choices = self.choices(world);
-        let scaled = choice * choices as f32;
-        let chosen = (scaled as usize).min(choices.checked_sub(1)?);
-        let even = 1.0 / choices as f32;
-        if let Some(&light) = self.even.get(chosen) {
-            return Some(spread(world, light, of_light(world, light, point, even), u));
+        let chances = self.chances(world, point.as_vec3(), n)?;
+        let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
+        let mut rest = choice;
+        for (i, apart) in self.apart.iter().enumerate() {
+            let chance = chances.of(apart.brings(n));
+            let is_last = i + 1 == self.apart.len() && environment.is_none() && !has_tree;
+            if rest < chance || is_last {
+                return Some(spread(world, apart.light, of_light(world, apart.light, point, chance), u));
+            }
+            rest -= chance;
         }
-        if let (Some(environment), true) = (world.environment(), chosen == self.even.len()) {
-            let (wi, radiance, pdf) = environment.sample(u)?;
-            return Some(LightSample {
-                light: LightId::Environment,
-                wi,
-                reach: f32::INFINITY,
-                error: 0.0,
-                cosine: 1.0,
-                radiance,
-                choice: even,
-                pdf,
-            });
+        if let Some(environment) = environment {
+            let chance = chances.of(chances.sky);
+            if rest < chance || !has_tree {
+                let (wi, radiance, pdf) = environment.sample(u)?;
+                return Some(LightSample {
+                    light: LightId::Environment,
+                    wi,
+                    reach: f32::INFINITY,
+                    error: 0.0,
+                    cosine: 1.0,
+                    radiance,
+                    choice: chance,
+                    pdf,
+                });
+            }
+            rest -= chance;
         }
-        let rest = (scaled - chosen as f32).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let even = chances.of(chances.tree);
+        let rest = (rest / even).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
         let choice = even * probability;
         match &self.sources[source as usize] {
@@ -235,7 +308,8 @@ impl Emitters {
     /// that shines; 0 where it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
-        let choice = self.tree.probability(point.as_vec3(), n, source) / self.choices(world) as f32;
+        let Some(chances) = self.chances(world, point.as_vec3(), n) else { return 0.0 };
+        let choice = chances.of(chances.tree) * self.tree.probability(point.as_vec3(), n, source);
         let pdf = area.form.pdf(area.normal, point, wi, distance);
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
@@ -247,11 +321,15 @@ impl Emitters {
         seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
     }
 
-    /// The light from a direction in which nothing is hit, and the same of that.
+    /// The light from a direction in which nothing is hit, and its density among directions of the
+    /// surroundings.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
-        let Some(environment) = world.environment() else { return (world.sky(wi), 0.0) };
-        let (light, pdf) = environment.at_with_pdf(wi);
-        (light, pdf / self.choices(world) as f32)
+        world.environment().map_or((world.sky(wi), 0.0), |environment| environment.at_with_pdf(wi))
+    }
+
+    /// The probability with which the surroundings are chosen for a point with a normal.
+    pub fn chance_of_sky(&self, world: &World, point: DVec3, n: Vec3) -> f32 {
+        self.chances(world, point.as_vec3(), n).map_or(0.0, |chances| chances.of(chances.sky))
     }
 }
 

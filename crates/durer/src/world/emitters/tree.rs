@@ -245,6 +245,12 @@ impl LightTree {
         self.nodes.is_empty()
     }
 
+    /// About what irradiance all of it brings to a point with a normal (zero: any).
+    pub fn importance(&self, p: Vec3, n: Vec3) -> f32 {
+        let Some(root) = self.nodes.first() else { return 0.0 };
+        (root.importances(0, p, n) + root.importances(1, p, n)).element_sum()
+    }
+
     /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its
     /// probability.
     pub fn sample(&self, p: Vec3, n: Vec3, u: f32) -> Option<(u32, f32)> {
