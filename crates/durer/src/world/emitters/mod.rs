@@ -430,3 +430,51 @@ impl AreaLight {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::testing::read;
+    use crate::sampler::sample_2d;
+
+    #[test]
+    fn each_kind_of_light_is_chosen_as_often_as_it_says_also_where_it_brings_nothing() {
+        let world = read(
+            "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+            Background { sun 0.3 0.8 0.2 turbidity 3 }
+            Lights { PointLight { position 2 3 1 color 9000 9000 9000 } }
+            Materials { PrincipledMaterial { emissionLuminance 5000 emissionColor 1 1 1 } }
+            Group { MaterialIndex 0 Sphere { center -1 1 0 radius 0.3 } }",
+        );
+        let (emitters, point) = (world.emitters(), DVec3::new(0.3, 0.1, 0.2));
+        let is_apart = |light: LightId| emitters.apart.iter().any(|apart| LightId::Light(apart.light) == light);
+        // A point light that does not fade is no thing of the tree.
+        assert_eq!((emitters.apart.len(), emitters.sources.len()), (2, 1));
+        for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
+            let chances = emitters.chances(&world, point.as_vec3(), n).unwrap();
+            let apart: f32 = emitters.apart.iter().map(|apart| chances.of(apart.brings(n))).sum();
+            let said = [apart, chances.of(chances.sky), chances.of(chances.tree)];
+            assert!((said.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{said:?}");
+            assert!(said.iter().all(|&chance| chance > 0.02), "{said:?}");
+            assert_eq!(said[1], emitters.chance_of_sky(&world, point, n));
+            let (mut found, count) = ([0_u32; 3], 1 << 14);
+            for i in 0..count {
+                let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
+                let Some(light) = emitters.sample(&world, point, n, choice.x, u) else { continue };
+                let kind = if is_apart(light.light) {
+                    0
+                } else if light.light == LightId::Environment {
+                    1
+                } else {
+                    2
+                };
+                assert!(kind != 1 || light.choice == said[1]);
+                found[kind] += 1;
+            }
+            // Sobol points are nearly even.
+            for (found, said) in found.iter().zip(said) {
+                assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, not {said}");
+            }
+        }
+    }
+}
