@@ -55,6 +55,15 @@ impl Hits {
     fn path(&self, Carried { media, weight, .. }: Carried, bounces: u32) -> Path<'_> {
         Path { bounces, media: &self.media[media as usize], weight }
     }
+
+    /// Keeps what rays run in; gives its number.
+    fn keep(&mut self, media: Media) -> u32 {
+        if media.is_air() {
+            return AIR;
+        }
+        self.media.push(media);
+        self.media.len() as u32 - 1
+    }
 }
 
 /// The number of air among what rays run in.
@@ -143,11 +152,7 @@ impl Whitted<'_> {
                     colors[i] = self.trace(&rays[i], found[i], path, tally);
                     continue;
                 }
-                passage = (here, there, hits.media.len() as u32);
-                match behind.is_air() {
-                    true => passage.2 = AIR,
-                    false => hits.media.push(behind),
-                }
+                passage = (here, there, hits.keep(behind));
             }
             let Hits { surfaces, lit, partings, .. } = hits;
             colors[i] = self.unlit(met, surfaces.diffuse(place, phong), phong, lit);

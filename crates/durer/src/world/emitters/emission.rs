@@ -80,14 +80,13 @@ impl Beams {
                 Source::Light(number) => beams.add(Lamp::Near(*number), 4.0 * PI * PI * strength(world, *number)),
             }
         }
-        for &Apart { light: number, .. } in &emitters.apart {
-            let light = &world.lights()[number as usize];
-            let seen = light.illuminate(DVec3::ZERO);
-            match seen.distance.is_infinite() {
-                true => beams.add(Lamp::Far(number), PI * light.color().max_element() * area),
+        for &Apart { light, way, .. } in &emitters.apart {
+            let color = world.lights()[light as usize].color().max_element();
+            match way != Vec3::ZERO {
+                true => beams.add(Lamp::Far(light), PI * color * area),
                 // It fades otherwise than with the square: as if it shone over the scene's own
                 // size.
-                false => beams.add(Lamp::Near(number), 4.0 * PI * PI * light.color().max_element() * reach * reach),
+                false => beams.add(Lamp::Near(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
         if let Some(sky) = world.environment() {

@@ -231,9 +231,9 @@ impl Emitters {
             chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
             chances.tree = self.tree.importance(point, n);
             let apart: f32 = self.apart.iter().map(|apart| apart.brings(n)).sum();
-            chances.total = apart + chances.sky + chances.tree;
+            let total = apart + chances.sky + chances.tree;
             // Where it is not known what they bring, they are chosen evenly.
-            chances.total = if chances.total > 0.0 && chances.total.is_finite() { chances.total } else { f32::NAN };
+            chances.total = if total.is_finite() { total } else { f32::NAN };
         }
         (choices > 0).then_some(chances)
     }
@@ -269,10 +269,10 @@ impl Emitters {
             }
             rest -= chance;
         }
-        let even = chances.of(chances.tree);
-        let rest = (rest / even).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let chance = chances.of(chances.tree);
+        let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
-        let choice = even * probability;
+        let choice = chance * probability;
         match &self.sources[source as usize] {
             Source::Light(light) => Some(of_light(world, *light, point, choice)),
             Source::Area(area) => area.sample(point, choice, u),
@@ -324,7 +324,10 @@ impl Emitters {
     /// The light from a direction in which nothing is hit, and its density among directions of the
     /// surroundings.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
-        world.environment().map_or((world.sky(wi), 0.0), |environment| environment.at_with_pdf(wi))
+        match world.environment() {
+            Some(environment) => environment.at_with_pdf(wi),
+            None => (world.sky(wi), 0.0),
+        }
     }
 
     /// The probability with which the surroundings are chosen for a point with a normal.
