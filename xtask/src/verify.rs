@@ -6,9 +6,10 @@ use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
 /// Ways of sampling and rules of stopping; scenes take turns.
-const JOBS: [&str; 5] = [
+const JOBS: [&str; 6] = [
     "--show color,depth,normals,albedo,sample-count,variance",
     "--samples 40 --noise-threshold 0.03",
+    "--samples 20 --adaptive --show color,sample-count",
     "--sampler random --samples 9 --filter gaussian",
     "--jitter --blur --crop 9,3,31x29 --show color,position",
     "--filter mitchell --samples 13",

@@ -12,12 +12,15 @@ use crate::terminal::say;
 use crate::values::{percent, pixel};
 use crate::{output, progress};
 use clap::Args;
+use durer::film::aov::Aov;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
 use durer::integrator::trace::TermKind;
 use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{Explanation, Names, Telling, TextLine, explain, explain_ray, number, ray_text};
+use durer::render::explain::{
+    Explanation, Names, Telling, TextLine, explain, explain_of, explain_ray, number, ray_text,
+};
 use durer::render::{Control, Job};
 use durer::sampler::SampleId;
 use std::collections::BTreeSet;
@@ -106,11 +109,11 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     let page_file = args.html.as_ref().map(|path| guard.writes("--html", path)).transpose()?;
     let opened = open(&args.render.scene, &options, args.render.quiet, &mut guard)?;
     let job = job(&args.render.job, Some(&args.render.view), &opened.loaded, false)?;
-    let picture = match args.brightest || args.worst || args.html.is_some() {
-        true => Some(picture(args, &opened, &job)?),
-        false => None,
+    let (picture, counts) = match args.brightest || args.worst || args.html.is_some() {
+        true => picture(args, &opened, &job)?,
+        false => (None, None),
     };
-    let subject = subject(args, &opened, &job, picture.as_ref())?;
+    let subject = subject(args, &opened, &job, picture.as_ref(), counts.as_ref())?;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
     // All trees of a pixel would hide each other.
     let sample = match &subject {
@@ -147,16 +150,24 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The whole picture.
-fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<Image, Failure> {
-    let job = Job { crop: None, color: true, aovs: Vec::new(), ..job.clone() };
+/// The whole picture, and how many samples each pixel has where noise divides them.
+fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
+    let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
+    let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
     let control = Arc::new(Control { threads: args.render.work.threads.map(usize::from), ..Control::default() });
     let render = || durer::render::render(&opened.world, &job, &control);
-    let mut rendered = progress::watch(&control, args.render.quiet, render).map_err(failed)?;
-    Ok(std::sync::Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image))
+    let rendered = progress::watch(&control, args.render.quiet, render).map_err(failed)?;
+    let mut images = rendered.layers.into_iter().map(|layer| Arc::unwrap_or_clone(layer.image));
+    Ok((images.next(), images.next()))
 }
 
-fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Image>) -> Result<Subject, Failure> {
+fn subject(
+    args: &ExplainArgs,
+    opened: &Opened,
+    job: &Job,
+    picture: Option<&Image>,
+    counts: Option<&Image>,
+) -> Result<Subject, Failure> {
     let pixel = match (&args.ray, args.pixel, picture) {
         (Some(numbers), ..) => {
             let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(bad("--ray needs six numbers")) };
@@ -171,7 +182,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
         (None, None, Some(picture)) if job.method.is_random() => {
-            return worst(opened, job, picture).map(Subject::Pixel);
+            return worst(opened, job, picture, counts).map(Subject::Pixel);
         }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
         (None, None, None) => return Err(bad("say which pixel: --pixel X,Y, --brightest, --worst, or --ray")),
@@ -191,7 +202,7 @@ fn subject(args: &ExplainArgs, opened: &Opened, job: &Job, picture: Option<&Imag
 
 /// The pixel to which one sample adds most, among those that differ most from their neighbours: the
 /// brightest firefly.
-fn worst(opened: &Opened, job: &Job, picture: &Image) -> Result<Explanation, Failure> {
+fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut odd: Vec<(f64, (u32, u32))> = places.map(|(x, y)| (oddness(picture, x, y), (x, y))).collect();
@@ -199,7 +210,8 @@ fn worst(opened: &Opened, job: &Job, picture: &Image) -> Result<Explanation, Fai
     odd.truncate(CANDIDATES);
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
-        let explanation = deep(|| explain(&opened.world, job, x, y))?.map_err(failed)?;
+        let samples = counts.map(|counts| at(counts, x, y).x as u32);
+        let explanation = deep(|| explain_of(&opened.world, job, (x, y), samples))?.map_err(failed)?;
         // A lamp's own border is bright, and no firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);

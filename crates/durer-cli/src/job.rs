@@ -84,6 +84,7 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
         seed: args.seed,
         sampling: sampling(args, asked, timed, plenty)?,
         noise: args.noise,
+        adaptive: args.adaptive,
         method,
         settings: Settings {
             bounces: args.bounces.unwrap_or(bounces),
@@ -140,6 +141,9 @@ fn sampling(args: &JobArgs, asked: bool, timed: bool, plenty: u32) -> Result<Sam
         return Err(bad(
             "--noise-threshold and --time-limit need a sampler whose first samples are spread over the pixel: sobol or random",
         ));
+    }
+    if args.adaptive && timed && args.samples.is_none() {
+        return Err(bad("--adaptive divides a number of samples: with --time-limit, say how many with --samples"));
     }
     let filter = args.filter.as_deref().and_then(Filter::from_name);
     let usual = match (asked, args.noise.is_some(), timed) {

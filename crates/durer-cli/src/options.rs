@@ -162,6 +162,10 @@ pub struct JobArgs {
     /// from black to white
     #[arg(long = "noise-threshold", alias = "noise", value_name = "ERROR", value_parser = noise)]
     pub noise: Option<f32>,
+    /// Take --samples a pixel on average: more where the picture is noisier, as a quarter of them
+    /// tells
+    #[arg(long, conflicts_with_all = ["noise", "jitter", "blur"])]
+    pub adaptive: bool,
     /// Seed of the random numbers
     #[arg(long, default_value_t = 0)]
     pub seed: u64,

@@ -46,6 +46,9 @@ impl Bands {
         if !job.sampling.is_local() {
             return refuse("its samples count for several pixels");
         }
+        if job.adaptive {
+            return refuse("its samples are divided by the noise of all of it");
+        }
         let window = job.window();
         let bytes = |rows: u32| {
             let crop = Crop { height: rows.min(window.height), ..window };

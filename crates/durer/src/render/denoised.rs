@@ -36,7 +36,7 @@ impl PartialRender {
     /// [`RenderError`], as for a picture of one ray a pixel.
     pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<Noisy, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
-        let job = Job { color: false, aovs, noise: None, ..self.job.clone() };
+        let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
         let seen = render(world, &job, &Control { threads, ..Control::default() })?;
         let guide = |name: &str| -> Vec<Vec3> {
             let layer = seen.layers.iter().find(|layer| layer.name == name);

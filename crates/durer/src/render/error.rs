@@ -28,6 +28,9 @@ pub enum RenderError {
     /// The work cannot be split so.
     #[error("{0}")]
     Shard(String),
+    /// Its samples cannot be divided by noise.
+    #[error("{0}")]
+    Adaptive(String),
     /// It is too large to be made at once, and cannot be made in bands.
     #[error("a picture of this size is made in bands of rows, which this one cannot be: {0}")]
     Bands(String),

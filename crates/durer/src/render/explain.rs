@@ -6,10 +6,11 @@ mod firefly;
 mod text;
 
 use super::aim::PixelSample;
+use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
 use super::samples::Samples;
 pub use super::sub_pixels::SubPixels;
-use super::{Blocks, Control, Crop, Job, RenderError, Sampling, center_ray, raster, render};
+use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, center_ray, raster, render};
 use crate::camera::Raster;
 use crate::dialect::Compat;
 use crate::film::Film;
@@ -114,9 +115,23 @@ fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture; [`RenderError`] where samples are counted until noise is
-/// low enough.
+/// The pixel does not lie in the picture; [`RenderError`] where how many samples it has is decided
+/// by noise.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
+    explain_of(world, job, (x, y), None)
+}
+
+/// The same where it may be known how many samples the pixel has: if noise decides that, it takes
+/// some rendering to find out, and of an adaptive picture a quarter of all of it.
+///
+/// # Errors
+/// Those of [`explain`].
+pub fn explain_of(
+    world: &World,
+    job: &Job,
+    (x, y): (u32, u32),
+    samples: Option<u32>,
+) -> Result<Explanation, RenderError> {
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }
@@ -137,7 +152,8 @@ pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, 
             course::sub_pixels(&source, world, grid, account)
         }
         _ => {
-            let own = (0..count(world, job, (x, y))?).map(|sample| account((x, y), sample, source.aim(x, y, sample)));
+            let count = samples.map_or_else(|| count(world, job, (x, y)), Ok)?;
+            let own = (0..count).map(|sample| account((x, y), sample, source.aim(x, y, sample)));
             (Mean::Own, own.collect())
         }
     };
@@ -174,12 +190,20 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
-/// How many samples a pixel has: where noise decides, as many as its block needs.
+/// How many samples a pixel has: where noise decides, as many as its block needs, or as it gets by
+/// the pilot's samples of all of the picture.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
-    if job.noise.is_none() {
-        return Ok(job.sampling.samples());
-    }
+    let samples = job.sampling.samples();
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
+    if job.adaptive {
+        let part = PartialRender::new(world, &Job { crop: Some(window), ..job.clone() }, Shard::WHOLE)?;
+        part.render_to(world, &Control::default(), &mut |_, _| {}, pilot(samples))?;
+        part.allocate();
+        return Ok(part.target(x, y).unwrap_or(samples));
+    }
+    if job.noise.is_none() {
+        return Ok(samples);
+    }
     let blocks = Blocks::new(window);
     let block = blocks.rect(blocks.at(x, y));
     let aovs = Aov::from_name("sample-count").into_iter().collect();

@@ -86,6 +86,10 @@ pub struct Job {
     /// Where the estimated error falls below this, no more samples are taken: see
     /// [`passes::error`]. `None`: nowhere.
     pub noise: Option<f32>,
+    /// Whether the samples are so many a pixel on average: more where the picture is noisier, by
+    /// what a quarter of them tell.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub adaptive: bool,
     /// What computes the light.
     #[serde(default)]
     pub method: Method,
@@ -133,6 +137,7 @@ impl Default for Job {
             seed: 0,
             sampling: Sampling::Center,
             noise: None,
+            adaptive: false,
             method: Method::default(),
             settings,
             color: true,

@@ -96,6 +96,8 @@ fn merge_samples(
             }
             next = piece.to;
             merged.rays += piece.rays;
+            merged.variances = merged.variances.take().or(piece.variances.clone());
+            merged.targets = merged.targets.take().or(piece.targets.clone());
             match (merged.film(rect), piece.film(rect)) {
                 (Some(mut film), Some(other)) => {
                     film.merge(&other).expect("a block of the same picture has the same pixels");

@@ -1,6 +1,7 @@
 //! From a world and a job to pictures.
 
 mod aim;
+mod allocation;
 mod bands;
 mod blocks;
 mod confidence;
@@ -27,6 +28,7 @@ mod sub_pixels;
 mod tests;
 pub mod verify;
 
+pub use allocation::LEAST_ADAPTIVE;
 pub use bands::{Bands, BandsError};
 pub use blocks::{BLOCK, Blocks, Shard, ShardBy};
 pub use confidence::{CONFIDENCE, ErrorBound};

@@ -1,5 +1,6 @@
 //! What is made of a picture so far: exact sums, and which work is in them.
 
+use super::allocation::{self, count, half, pilot};
 use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::passes::{self, Passes};
@@ -51,9 +52,27 @@ pub(super) struct BlockSamples {
     /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as
     /// a count takes.
     pub(super) film: Option<Arc<Packed>>,
+    /// The variances of its pixels' means, once they have the samples of a pilot.
+    pub(super) variances: Option<Arc<[f32]>>,
+    /// How many samples each of its pixels gets, where that was decided: of those, `to` and what
+    /// else says how many there are is the average of the whole picture.
+    pub(super) targets: Option<Arc<[u32]>>,
 }
 
 impl BlockSamples {
+    /// How many samples one of its pixels has when there are `end`, of those of a job.
+    pub(super) fn count(&self, job: &Job, pixel: usize, end: u32) -> u32 {
+        self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
+    }
+
+    /// How many all of its pixels have then together, without those before its first.
+    pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
+        match &self.targets {
+            None => pixels * u64::from(end - self.from),
+            Some(targets) => (0..targets.len()).map(|pixel| u64::from(self.count(job, pixel, end))).sum(),
+        }
+    }
+
     /// The sums of a block of these pixels, if there are any.
     pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
         self.film.as_ref().map(|film| film.film([left, top, width, height]))
@@ -130,6 +149,11 @@ impl PartialRender {
         checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
+        if job.adaptive
+            && let Some(why) = allocation::refusal(&job, shard == Shard::WHOLE)
+        {
+            return Err(RenderError::Adaptive(why));
+        }
         let from = shard.range(job.sampling.samples()).0;
         let count = if job.wants_samples() { blocks.count() } else { 0 };
         let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
@@ -198,8 +222,8 @@ impl PartialRender {
         let state = self.state();
         for (index, block) in state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index)) {
             let pixels = self.blocks.rect(index).pixels();
-            all += pixels * u64::from(range.1 - range.0);
-            done += pixels * u64::from(block.to - block.from);
+            all += block.total(&self.job, pixels, range.1);
+            done += block.total(&self.job, pixels, block.to);
         }
         for (index, block) in state.rays.iter().enumerate().filter(|(index, _)| self.shard.has_rays(*index)) {
             let pixels = self.ray_blocks.rect(index).pixels();
@@ -228,7 +252,7 @@ impl PartialRender {
         let state = self.state();
         let mut statistics = Statistics::default();
         for (index, block) in state.samples.iter().enumerate() {
-            let taken = self.blocks.rect(index).pixels() * u64::from(block.to - block.from);
+            let taken = block.total(&self.job, self.blocks.rect(index).pixels(), block.to);
             statistics.rays += block.rays;
             let Some(film) = &block.film else { continue };
             let Some(film) = film.with_rejected() else {
@@ -283,6 +307,8 @@ impl PartialRender {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
+        // How many samples each pixel gets, and what that follows from.
+        let sums = if job.adaptive { sums + 24 } else { sums };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
         // Numbers and coverage, eight bits, and the file; other pictures than the colours have both
         // values and colours.
@@ -336,9 +362,16 @@ pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = 
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
     let singly = job.method.prepares() && job.sampling.is_local();
-    let ends: Box<dyn Iterator<Item = u32>> =
-        if singly { Box::new(1..=samples) } else { Box::new(passes::ends(samples)) };
+    let decides = if job.adaptive { [half(samples), pilot(samples)] } else { [0; 2] };
+    let ends: Box<dyn Iterator<Item = u32>> = match decides {
+        _ if singly => Box::new(1..=samples),
+        [half, pilot] if job.adaptive => {
+            let rest = passes::ends(samples).filter(move |&end| end > pilot);
+            Box::new(passes::ends(half).chain([pilot]).chain(rest))
+        }
+        _ => Box::new(passes::ends(samples)),
+    };
     let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
     // Where noise decides, it does so at the end of each.
-    Passes::new(ends, from, !singly && job.noise.is_none())
+    Passes::new(ends, from, !singly && job.noise.is_none(), decides)
 }

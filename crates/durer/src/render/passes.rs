@@ -27,6 +27,8 @@ pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
 pub struct Passes<I: Iterator<Item = u32>> {
     ends: Peekable<I>,
     joins: bool,
+    /// Ends that are kept, for something hangs on them.
+    kept: [u32; 2],
     /// Where the pass that was given last ends, how many samples it has, and when it began.
     last: (u32, u32, Instant),
 }
@@ -35,9 +37,10 @@ pub struct Passes<I: Iterator<Item = u32>> {
 const SOON: Duration = Duration::from_millis(100);
 
 impl<I: Iterator<Item = u32>> Passes<I> {
-    /// By their ends, the first from some sample on.
-    pub fn new(ends: I, from: u32, joins: bool) -> Self {
-        Passes { ends: ends.peekable(), joins, last: (from, 0, Instant::now()) }
+    /// By their ends, the first from some sample on; none goes on beyond an end that is
+    /// kept.
+    pub fn new(ends: I, from: u32, joins: bool, kept: [u32; 2]) -> Self {
+        Passes { ends: ends.peekable(), joins, kept, last: (from, 0, Instant::now()) }
     }
 }
 
@@ -50,7 +53,10 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         let mut end = self.ends.next()?;
         if self.joins && samples > 0 {
             let each = (now - began) / samples;
-            while let Some(next) = self.ends.next_if(|next| each.saturating_mul(next - done) < SOON) {
+            let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
+            while !self.kept.contains(&end)
+                && let Some(next) = self.ends.next_if(is_soon)
+            {
                 end = next;
             }
         }
@@ -91,11 +97,12 @@ mod tests {
 
     #[test]
     fn short_passes_are_joined_unless_they_decide_something() {
-        let of = |joins| Passes::new(ends(100), 0, joins).collect::<Vec<_>>();
+        let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
         // Nothing is done in them.
         assert_eq!(of(true), [1, 100]);
-        let mut slow = Passes::new(ends(8), 0, true);
+        assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
+        let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
         let mut next = || {
             std::thread::sleep(SOON);
             slow.next()

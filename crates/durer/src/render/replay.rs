@@ -1,5 +1,6 @@
 //! One pixel or sample alone: to look into an error in this program, or a sample that was left out.
 
+use super::allocation::most;
 use super::error::RenderError;
 use super::samples::{SampleCursor, Samples};
 use super::{Control, Crop, Job, PartialRender, Shard, rays};
@@ -29,8 +30,10 @@ pub fn replay(
     if !job.window().holds(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));
     }
-    if sample.is_some_and(|sample| sample >= job.sampling.samples() && job.sampling.is_local()) {
-        return Err(RenderError::Shard(format!("a pixel has samples from 0 to {}", job.sampling.samples() - 1)));
+    let samples = job.sampling.samples();
+    let samples = if job.adaptive { most(samples) } else { samples };
+    if sample.is_some_and(|sample| sample >= samples && job.sampling.is_local()) {
+        return Err(RenderError::Shard(format!("a pixel has samples from 0 to {}", samples - 1)));
     }
     let work = || {
         let (stop, at): (_, SampleCursor) = (AtomicBool::new(false), Cell::new((x, y, sample)));

@@ -1,5 +1,6 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
+use super::allocation::{half, pilot, variances};
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
@@ -89,6 +90,17 @@ impl PartialRender {
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
     ) -> Result<RenderOutcome, RenderError> {
+        self.render_to(world, control, watch, u32::MAX)
+    }
+
+    /// The same, up to so many samples a pixel.
+    pub(super) fn render_to(
+        &self,
+        world: &World,
+        control: &Control,
+        watch: &mut dyn FnMut(&PartialRender, RenderEvent),
+        last: u32,
+    ) -> Result<RenderOutcome, RenderError> {
         if self.scene != world.digest() || self.look != DisplayRules::of(world) {
             return Err(RenderError::OtherScene);
         }
@@ -126,7 +138,7 @@ impl PartialRender {
                 let work = &work;
                 scope.spawn(move |_| {
                     work.rays(None);
-                    for end in passes_of(&self.job, self.shard) {
+                    for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
                         work.pass(end, None);
                         // Nobody listens after the end.
                         let _ = finished.send(());
@@ -144,7 +156,7 @@ impl PartialRender {
             // The calling thread does it all, and looks up between tiles.
             None => {
                 work.rays(Some(&mut || clock.look(self, watch)));
-                for end in passes_of(&self.job, self.shard) {
+                for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
                     work.pass(end, Some(&mut || clock.look(self, watch)));
                     clock.passed(self, watch);
                 }
@@ -254,6 +266,9 @@ impl Work<'_> {
             self.samples.integrator.prepare(end - 1);
         }
         let (part, gain) = (self.part, self.samples.gain());
+        if part.job.adaptive && end > pilot(part.job.sampling.samples()) && !part.allocate() {
+            return;
+        }
         let open = |(index, block): (usize, &BlockSamples)| {
             let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
             wanted.then_some(index)
@@ -268,16 +283,22 @@ impl Work<'_> {
     /// Adds samples to the blocks of a tile.
     fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Stopped> {
         let part = self.part;
+        let (adaptive, samples) = (part.job.adaptive, part.job.sampling.samples());
         let mut made = Vec::with_capacity(tile.len());
         let (mut taken, mut traced) = (0, 0);
         for (&index, mut block) in tile.iter().zip(self.taken(tile)) {
             let rect = part.blocks.rect(index);
             let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
+            let is_half = adaptive && (block.to, end) == (half(samples), pilot(samples));
+            let before = is_half.then(|| film.clone());
             let mut rays = RayCount::default();
-            self.samples.add(&mut film, rect, block.to..end, at, &mut rays)?;
-            taken += rect.pixels() * u64::from(end - block.to);
+            let range = |pixel| block.count(&part.job, pixel, block.to)..block.count(&part.job, pixel, end);
+            self.samples.add(&mut film, rect, range, at, &mut rays)?;
+            let total = |end| block.total(&part.job, rect.pixels(), end);
+            taken += total(end) - total(block.to);
             traced += rays.0;
             block.rays += rays.0;
+            block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
             (block.to, block.film) = (end, Some(Arc::new(Packed::new(film, part.packed_samples()))));
             made.push(block);
         }
@@ -306,12 +327,8 @@ impl Work<'_> {
             };
             let mut film = film_of(*rect);
             rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
-            made.push(BlockSamples {
-                from: 0,
-                to: 1,
-                rays: rays.0 - before,
-                film: Some(Arc::new(Packed::new(film, 1))),
-            });
+            let film = Some(Arc::new(Packed::new(film, 1)));
+            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film, ..BlockSamples::default() });
             before = rays.0;
         }
         self.keep(tile, made, around.pixels(), rays.0);

@@ -169,20 +169,20 @@ impl<'a> Samples<'a> {
         if self.stop.load(Relaxed) { Err(Stopped) } else { Ok(()) }
     }
 
-    /// Adds samples of every pixel of a film's part.
+    /// Adds samples of every pixel of a film's part, whose pixels are numbered row by row.
     pub(super) fn add(
         &self,
         film: &mut Film,
         part: Crop,
-        range: Range<u32>,
+        ranges: impl Fn(usize) -> Range<u32>,
         at: &SampleCursor,
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
         let mut aimed = AIMED.take();
-        for (x, y) in part.places() {
+        for (index, (x, y)) in part.places().enumerate() {
             let pixel = self.aim.pixel(x, y);
-            for sample in range.clone() {
+            for sample in ranges(index) {
                 at.set((x, y, Some(sample)));
                 if batch.push(&pixel, sample) {
                     self.aim_batch(&mut batch, &mut aimed);

@@ -7,7 +7,7 @@
 //! | text | version of Dürer |
 //! | 32 | hash of the scene |
 //! | text, text, text | job, shard and look, as JSON |
-//! | for each block with samples | its number + 1; first sample, end, rays; sums |
+//! | for each block with samples | its number + 1; first sample, end, rays; of an adaptive job, from the end of its pilot on, variances; sums |
 //! | number | 0 |
 //! | for each block with rays | its number + 1; rays; a byte a pixel: what was found; values |
 //! | number | 0 |
@@ -15,6 +15,7 @@
 //!
 //! Numbers are those of [`crate::film::bytes`]; a text is its length and its bytes.
 
+use super::allocation::{half, most, pilot};
 use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
 use super::{Job, RenderError, Shard};
 use crate::film::Packed;
@@ -22,6 +23,7 @@ use crate::film::bytes::{Bytes, put};
 use crate::image::Content;
 use crate::math::Vec3;
 use crate::source::Digest;
+use std::cmp::Ordering;
 use std::io::{self, Write};
 use std::ops::Range;
 use std::sync::Arc;
@@ -136,6 +138,8 @@ impl PartialRender {
                 [block.from.into(), block.to.into(), u128::from(block.rays)]
                     .iter()
                     .for_each(|&number| put(out, number));
+                let variances = block.variances.iter().flat_map(|variances| variances.iter());
+                out.extend(variances.flat_map(|variance| variance.to_le_bytes()));
                 film.write(out);
             }
         }
@@ -184,6 +188,9 @@ impl PartialRender {
         // A picture for which there are too few bytes would take memory for nothing.
         let part = PartialRender::empty(job, shard, Digest(scene), look)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
+        if part.job.adaptive {
+            part.allocate();
+        }
         // Numbers, texts and orders of blocks could be written in other ways, but never are.
         if part.write() != bytes {
             return Err(malformed("it is not as Dürer writes it"));
@@ -195,12 +202,25 @@ impl PartialRender {
         let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
         while let number @ 1.. = rest.whole::<usize>()? {
             let block = state.samples.get_mut(number - 1).filter(|block| block.film.is_none())?;
-            let (from, to, rays) = (rest.whole()?, rest.whole()?, rest.whole()?);
+            let (from, to, rays): (u32, u32, u64) = (rest.whole()?, rest.whole()?, rest.whole()?);
             if from != range.0 || to <= from || to > range.1 || !self.shard.has_block(number - 1) {
                 return None;
             }
-            let film = film_of(self.blocks.rect(number - 1)).read(&mut rest, to - from)?;
-            *block = BlockSamples { from, to, rays, film: Some(Arc::new(Packed::new(film, self.packed_samples()))) };
+            let (rect, samples) = (self.blocks.rect(number - 1), self.job.sampling.samples());
+            let mut most_samples = to - from;
+            let mut variances = None;
+            if self.job.adaptive && to > half(samples) {
+                let mut variance = || rest.float().filter(|variance| variance.is_finite() && *variance >= 0.0);
+                variances = Some(rect.places().map(|_| variance()).collect::<Option<_>>()?);
+                most_samples = match to.cmp(&pilot(samples)) {
+                    Ordering::Less => return None,
+                    Ordering::Equal => to,
+                    Ordering::Greater => most(samples),
+                };
+            }
+            let film = film_of(rect).read(&mut rest, most_samples)?;
+            let film = Some(Arc::new(Packed::new(film, self.packed_samples())));
+            *block = BlockSamples { from, to, rays, variances, film, targets: None };
         }
         let pictures = self.job.ray_aovs().count();
         while let number @ 1.. = rest.whole::<usize>()? {

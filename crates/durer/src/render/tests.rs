@@ -56,7 +56,10 @@ fn jobs() -> Vec<Job> {
     let mut jobs: Vec<Job> = samplings.map(|sampling| Job { sampling, aovs: aovs.clone(), ..small() }).into();
     let crop = Some(Crop { left: 5, top: 3, width: 20, height: 21 });
     jobs.push(Job { sampling: filtered(3), crop, aovs: aovs.clone(), ..small() });
-    jobs.push(Job { sampling: filtered(64), noise: Some(0.02), aovs, ..small() });
+    jobs.push(Job { sampling: filtered(64), noise: Some(0.02), aovs: aovs.clone(), ..small() });
+    jobs.push(Job { sampling: filtered(40), adaptive: true, crop, aovs: aovs.clone(), ..small() });
+    let random = Sampling::Course2004 { sampler: Sampler::Random, samples: 17, filter: None };
+    jobs.push(Job { sampling: random, adaptive: true, aovs, ..small() });
     jobs
 }
 
@@ -149,7 +152,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
             let [mut together, mut alone] = films;
             let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
             let all = 1..job.sampling.samples().clamp(2, 7);
-            samples.add(&mut together, part, all.clone(), &at, &mut rays[0]).unwrap();
+            samples.add(&mut together, part, |_| all.clone(), &at, &mut rays[0]).unwrap();
             for (x, y) in part.places() {
                 for sample in all.clone() {
                     let (color, weight) = samples.sample(x, y, sample, &mut rays[1]);
@@ -176,7 +179,7 @@ fn a_crop_is_cut_from_the_whole_picture() {
     let world = world();
     let crop = Crop { left: 9, top: 11, width: 13, height: 10 };
     let scale = crate::film::false_color::LightScale { low: 0.01, high: 2.0, logarithmic: true };
-    for job in jobs().into_iter().filter(|job| job.noise.is_none() && job.crop.is_none()) {
+    for job in jobs().into_iter().filter(|job| job.noise.is_none() && !job.adaptive && job.crop.is_none()) {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
         let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();

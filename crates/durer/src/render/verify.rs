@@ -61,7 +61,8 @@ impl Way {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
         let blocks = (job.window().pixels() / 256).max(1);
-        let by_samples = job.sampling.is_local() && job.noise.is_none() && pick(3, 2) == 1;
+        let by_samples = job.sampling.is_local() && job.noise.is_none() && !job.adaptive && pick(3, 2) == 1;
+        let blocks = if job.adaptive { 1 } else { blocks };
         let (by, most) = if by_samples { (ShardBy::Samples, samples) } else { (ShardBy::Tiles, blocks) };
         Way {
             world: pick(0, worlds as u64) as usize,

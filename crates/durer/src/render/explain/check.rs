@@ -9,24 +9,27 @@ use crate::render::{Control, Job, RenderError, Sampling, render};
 use crate::sampler::{Sampler, hash};
 use crate::world::World;
 
-const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> (Sampling, Option<f32>) {
-    (Sampling::Course2004 { sampler, samples, filter }, None)
+/// A way of sampling, the noise at which it ends, and whether samples are divided by noise.
+type Way = (Sampling, Option<f32>, bool);
+
+const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> Way {
+    (Sampling::Course2004 { sampler, samples, filter }, None, false)
 }
 
-const fn filtered(samples: u32, noise: Option<f32>) -> (Sampling, Option<f32>) {
-    (Sampling::Filtered { samples, filter: Filter::BlackmanHarris { radius: 1.5 } }, noise)
+const fn filtered(samples: u32, noise: Option<f32>, adaptive: bool) -> Way {
+    (Sampling::Filtered { samples, filter: Filter::BlackmanHarris { radius: 1.5 } }, noise, adaptive)
 }
 
-const fn sub_pixels(jitter: bool, blur: bool) -> (Sampling, Option<f32>) {
-    (Sampling::Course2012 { jitter, blur }, None)
+const fn sub_pixels(jitter: bool, blur: bool) -> Way {
+    (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Every way in which samples become a pixel, with the noise at which sampling ends. One filter is
-/// so narrow that often no sample counts.
-pub const SAMPLINGS: [(Sampling, Option<f32>); 11] = [
-    (Sampling::Center, None),
-    filtered(3, None),
-    filtered(40, Some(0.02)),
+/// Every way in which samples become a pixel. One filter is so narrow that often no sample counts.
+pub const SAMPLINGS: [Way; 12] = [
+    (Sampling::Center, None, false),
+    filtered(3, None, false),
+    filtered(40, Some(0.02), false),
+    filtered(18, None, true),
     kept(Sampler::Random, 3, None),
     kept(Sampler::Uniform, 4, Some(CourseFilter::Box { radius: 1.0 })),
     kept(Sampler::Jittered, 4, Some(CourseFilter::Gaussian { sigma: 0.5 })),
@@ -45,8 +48,8 @@ pub const SAMPLINGS: [(Sampling, Option<f32>); 11] = [
 pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<String>, RenderError> {
     let mut differences = Vec::new();
     let control = Control { threads: Some(1), ..Control::default() };
-    for (way, (sampling, noise)) in (0..).zip(SAMPLINGS) {
-        let job = Job { sampling, noise, color: true, aovs: Vec::new(), ..job.clone() };
+    for (way, (sampling, noise, adaptive)) in (0..).zip(SAMPLINGS) {
+        let job = Job { sampling, noise, adaptive, color: true, aovs: Vec::new(), ..job.clone() };
         let picture = render(world, &job, &control)?;
         for number in 0..pixels {
             let below = |end: u32, axis| (hash(seed, number, way, 0, axis) % u64::from(end)) as u32;

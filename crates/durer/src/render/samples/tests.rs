@@ -44,7 +44,9 @@ fn no_sample_allocates() {
         let part = job.whole();
         let samples = Samples::new(world, &job, &stop);
         let mut film = Film::window(0, 0, 32, 32);
-        let mut take = |range| samples.add(&mut film, part, range, &at, &mut RayCount::default()).unwrap();
+        let mut take = |range: std::ops::Range<u32>| {
+            samples.add(&mut film, part, |_| range.clone(), &at, &mut RayCount::default()).unwrap()
+        };
         // What a thread makes once; its lists grow to what a block of samples needs.
         take(0..16);
         let made = allocation_counter::measure(|| take(16..32));
