@@ -11,6 +11,7 @@ use super::{Hit, Object, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
+use durer_bvh::internal::room;
 use glam::DVec3;
 use serde::Serialize;
 pub use shape::{Form, Place};
@@ -52,8 +53,10 @@ enum Source {
 #[derive(Clone, Debug, Default)]
 pub struct Emitters {
     sources: Vec<Source>,
-    /// The first source of each object; `u32::MAX` where it has none.
+    /// Where the parts of each object begin in `parts`; `u32::MAX` where it has none.
     first: Vec<u32>,
+    /// The source of each part.
+    parts: Vec<u32>,
     /// Lights of the scene without a place in the tree.
     apart: Vec<Apart>,
     /// Those of them that are seen under some angle.
@@ -209,6 +212,7 @@ impl Emitters {
                         cos_normals: -1.0,
                         cos_emission: 0.0,
                         two_sided: false,
+                        each: PI * most * intensity.max_element().max(0.0),
                     });
                 }
                 None => {
@@ -217,8 +221,26 @@ impl Emitters {
                 }
             }
         }
-        emitters.tree = LightTree::new(&bounds);
+        let (tree, order) = LightTree::new(&bounds);
+        emitters.arrange(&order);
+        emitters.tree = tree;
         emitters
+    }
+
+    /// Puts sources into the order in which the tree counts them, and behind them those that it
+    /// does not hold.
+    fn arrange(&mut self, order: &[u32]) {
+        self.parts = vec![u32::MAX; self.sources.len()];
+        let mut sources = room(self.sources.len());
+        let rest = 0..self.sources.len() as u32;
+        for from in order.iter().copied().chain(rest) {
+            let part = &mut self.parts[from as usize];
+            if *part == u32::MAX {
+                *part = sources.len() as u32;
+                sources.push(self.sources[from as usize]);
+            }
+        }
+        self.sources = sources;
     }
 
     /// The chances of all that is chosen for a point with a normal (zero: any); `None` where nothing
@@ -283,7 +305,7 @@ impl Emitters {
     /// of a triangle and a cylinder they choose some point, always the same. `None` for what is
     /// no surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
-        let source = self.first[light.object()? as usize] as usize;
+        let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
             Source::Area(area) if matches!(area.form, Form::Sphere(..)) => Some(Vec2::ZERO),
             _ => Some(Vec2::splat(0.5)),
@@ -292,7 +314,7 @@ impl Emitters {
 
     /// What was hit, if it can be chosen for the side that a ray met.
     fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
-        let source = self.first[hit.object as usize].checked_add(hit.part)?;
+        let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
             Source::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
             _ => None,
@@ -405,13 +427,15 @@ impl AreaLight {
         // What is seen of what bulges is a quarter of its surface, on the mean.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * self.radiance.max_element();
+        let power = if power.is_finite() { power.max(0.0) } else { 0.0 };
         Bounds {
             bounds: self.form.bounds(),
-            power: if power.is_finite() { power.max(0.0) } else { 0.0 },
+            power,
             axis: if round { Vec3::Z } else { self.normal },
             cos_normals: if round { -1.0 } else { 1.0 },
             cos_emission: 0.0,
             two_sided: self.two_sided,
+            each: power,
         }
     }
 

@@ -3,9 +3,11 @@
 //! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
 //! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
 //! 12.6.3. Nodes have eight children, which are weighed together: fewer steps, and each choice is
-//! among smaller groups.
+//! among smaller groups. What is alike and far away is a group whose members are as likely as each
+//! other: most of many lamps are then chosen in the upper nodes alone, which are near at hand.
 
 use crate::math::{Aabb, Vec3, fp};
+use durer_bvh::internal::room;
 use glam::Vec4;
 use std::f32::consts::PI;
 
@@ -24,11 +26,17 @@ pub struct Bounds {
     pub cos_emission: f32,
     /// Whether they shine to both sides.
     pub two_sided: bool,
+    /// The power of each, if all shine about as the others do: as strongly, and to all sides or
+    /// one way. Else 0.
+    pub each: f32,
 }
 
 impl Bounds {
     fn union(&self, other: &Bounds) -> Bounds {
         let (axis, cos_normals) = cone_union((self.axis, self.cos_normals), (other.axis, other.cos_normals));
+        let share = self.each.min(other.each) / self.each.max(other.each);
+        let one_way = cos_normals >= ONE_WAY && self.two_sided == other.two_sided;
+        let all_ways = self.cos_normals == -1.0 && other.cos_normals == -1.0;
         Bounds {
             bounds: self.bounds.union(other.bounds),
             power: self.power + other.power,
@@ -36,6 +44,7 @@ impl Bounds {
             cos_normals,
             cos_emission: self.cos_emission.min(other.cos_emission),
             two_sided: self.two_sided || other.two_sided,
+            each: if share >= ALIKE && (one_way || all_ways) { self.each.min(other.each) } else { 0.0 },
         }
     }
 }
@@ -68,6 +77,17 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
 /// in it: these alone are far too much for wide nodes that are seen from the side.
 const CENTER: f32 = 0.8;
 
+/// Cosine of the greatest angle to the middle of normals that are about the same.
+const ONE_WAY: f32 = 0.995;
+
+/// The least share of one power that is about the same.
+const ALIKE: f32 = 0.8;
+
+/// A child whose radius is less than this share of its distance, as it looks from where it shines
+/// and where it is seen from, is not looked into if all that it holds is alike: each brings about
+/// as much.
+const FAR: f32 = 0.1;
+
 /// Children of a node.
 const WIDTH: usize = 8;
 
@@ -75,60 +95,51 @@ const WIDTH: usize = 8;
 type Eight = [Vec4; 2];
 
 /// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
+/// It is read from far away, and so is only what cannot be worked out of the rest.
 #[derive(Clone, Debug)]
 struct Node {
     middle: [Eight; 3],
-    /// The square of the radius around the middle, and what of it is added to that of a distance.
+    /// The square of the radius around the middle.
     radius2: Eight,
-    spread2: Eight,
-    /// 0 where there is no child.
+    /// 0 where there is no child; less than 0 where a child shines to both sides.
     power: Eight,
     axis: [Eight; 3],
     cos_normals: Eight,
-    sin_normals: Eight,
     cos_emission: Eight,
-    /// 1 where they shine to both sides, else 0.
-    two_sided: Eight,
     children: [Child; WIDTH],
-    /// The node above, and which of its children this is.
-    parent: (u32, u8),
+    /// A bit for each child of several emitters that shine alike.
+    alike: u8,
 }
 
+/// A node's number, or an emitter's and [`Child::EMITTER`].
 #[derive(Clone, Copy, Debug)]
-enum Child {
-    None,
-    Node(u32),
-    Emitter(u32),
+struct Child(u32);
+
+impl Child {
+    const EMITTER: u32 = 1 << 31;
 }
 
 impl Node {
-    fn new(parent: (u32, u8), held: &[Bounds]) -> Self {
+    fn new(held: &[Bounds]) -> Self {
         let of = |number: &dyn Fn(&Bounds) -> f32| {
             let lanes: [f32; WIDTH] = std::array::from_fn(|i| held.get(i).map_or(0.0, number));
             [Vec4::from_slice(&lanes[..4]), Vec4::from_slice(&lanes[4..])]
         };
-        let radius2 = |b: &Bounds| (0.5 * b.bounds.size()).length_squared();
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
-            radius2: of(&radius2),
-            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 /
-            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the area of such a
-            // disc.
-            spread2: of(&|b| (0.64 * radius2(b)).max(f32::MIN_POSITIVE)),
-            power: of(&|b| b.power),
+            radius2: of(&|b| (0.5 * b.bounds.size()).length_squared()),
+            power: of(&|b| if b.two_sided { -b.power } else { b.power }),
             axis: [0, 1, 2].map(|axis| of(&|b| b.axis[axis])),
             cos_normals: of(&|b| b.cos_normals),
-            sin_normals: of(&|b| sine_of(b.cos_normals)),
             cos_emission: of(&|b| b.cos_emission),
-            two_sided: of(&|b| f32::from(b.two_sided)),
-            children: [Child::None; WIDTH],
-            parent,
+            children: [Child(0); WIDTH],
+            alike: 0,
         }
     }
 
     /// Estimates of what four children bring to a point with a normal; more than zero wherever one
-    /// brings any light.
-    fn importances(&self, half: usize, p: Vec3, n: Vec3) -> Vec4 {
+    /// brings any light. And a bit for each that is far from there.
+    fn importances(&self, half: usize, p: Vec3, n: Vec3) -> (Vec4, u32) {
         let (one, zero) = (Vec4::ONE, Vec4::ZERO);
         let [x, y, z] = [0, 1, 2].map(|axis| Vec4::splat(p[axis]) - self.middle[axis][half]);
         let distance2 = x * x + y * y + z * z;
@@ -136,32 +147,42 @@ impl Node {
         let [x, y, z] = [x, y, z].map(|offset| offset * inverse);
         let dot = |[a, b, c]: [Vec4; 3]| a * x + b * y + c * z;
         let cosine = dot(self.axis.map(|axis| axis[half]));
-        let cosine = Vec4::select(self.two_sided[half].cmpgt(zero), cosine.abs(), cosine);
+        let power = self.power[half];
+        let cosine = Vec4::select(power.cmplt(zero), cosine.abs(), cosine);
         let inside = distance2.cmple(self.radius2[half]);
         let sine2 = Vec4::select(inside, zero, self.radius2[half] / distance2);
         let bounds = (Vec4::select(inside, -one, root(one - sine2)), root(sine2));
         // The least angle to a normal, and from that to the point, over all that the bounds hold.
-        let least = minus((cosine, sine(cosine)), (self.cos_normals[half], self.sin_normals[half]));
+        let least = minus((cosine, sine(cosine)), (self.cos_normals[half], sine(self.cos_normals[half])));
         let (cos_least, _) = minus(least, bounds);
         let usual = |center: Vec4, most: Vec4| CENTER * center.max(zero) + (1.0 - CENTER) * most;
-        let mut importance = self.power[half] * usual(least.0, cos_least) / (distance2 + self.spread2[half]);
+        // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 / (d^2
+        // + r^2). A square whose corners are at the radius has 0.64 of the area of such a disc.
+        let spread2 = (0.64 * self.radius2[half]).max(Vec4::splat(f32::MIN_POSITIVE));
+        let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
+        let mut across = least.0.max(zero);
         if n != Vec3::ZERO {
             let arriving = dot(n.to_array().map(Vec4::splat)).abs();
             let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
             importance *= usual(arriving, cos_arriving.max(zero));
+            across = across.min(arriving);
         }
-        Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero))
+        let far = self.radius2[half].cmplt(FAR * FAR * distance2 * across * across);
+        (Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero)), far.bitmask())
     }
 
-    /// The probabilities of its children; `None` where none brings any light.
-    fn shares(&self, p: Vec3, n: Vec3) -> Option<[f32; WIDTH]> {
-        let few = matches!(self.children[WIDTH / 2], Child::None);
-        let high = if few { Vec4::ZERO } else { self.importances(1, p, n) };
-        let importances = [self.importances(0, p, n), high];
-        let sum = (importances[0] + importances[1]).element_sum();
+    /// The probabilities of its children, and a bit for each of which all emitters are as likely;
+    /// `None` where none brings any light.
+    fn shares(&self, p: Vec3, n: Vec3) -> Option<([f32; WIDTH], u8)> {
+        let few = self.power[1].x == 0.0;
+        let high = if few { (Vec4::ZERO, 0) } else { self.importances(1, p, n) };
+        let (low, low_far) = self.importances(0, p, n);
+        let (high, high_far) = high;
+        let sum = (low + high).element_sum();
         (sum > 0.0 && sum.is_finite()).then(|| {
-            let [low, high] = importances.map(|four| (four / sum).to_array());
-            std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] })
+            let [low, high] = [low, high].map(|four| (four / sum).to_array());
+            let far = (high_far << 4 | low_far) as u8;
+            (std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] }), far & self.alike)
         })
     }
 }
@@ -186,27 +207,33 @@ fn minus((cos_a, sin_a): (Vec4, Vec4), (cos_b, sin_b): (Vec4, Vec4)) -> (Vec4, V
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// The node that holds each emitter, and which of its children it is; `None` where it has no
-    /// power.
-    leaves: Vec<Option<(u32, u8)>>,
+    /// The node above each, and which of its children it is.
+    parents: Vec<(u32, u8)>,
+    /// The node that holds each emitter, and which of its children it is.
+    leaves: Vec<(u32, u8)>,
+    /// What each child of each node holds, in the order of the tree.
+    ranges: Vec<[(u32, u32); WIDTH]>,
 }
 
 /// A node of the tree of two children that is built first: they follow each other from `first` on,
-/// or it is the emitter `first`.
+/// or it is one emitter.
 struct Half {
     bounds: Bounds,
     first: usize,
     is_leaf: bool,
+    /// What it holds, in the order of the tree.
+    range: (u32, u32),
 }
 
 const BUCKETS: usize = 12;
 
 impl LightTree {
-    /// Over emitters; those without power are never chosen.
-    pub fn new(emitters: &[Bounds]) -> Self {
-        let mut tree = LightTree { nodes: Vec::new(), leaves: vec![None; emitters.len()] };
-        let halves = halved(emitters);
-        let Some(root) = halves.first() else { return tree };
+    /// Over emitters; those without power are never chosen. And the numbers of the others as given,
+    /// in the order of the tree, by which the tree counts them.
+    pub fn new(emitters: &[Bounds]) -> (Self, Vec<u32>) {
+        let (halves, order) = halved(emitters);
+        let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
+        let Some(root) = halves.first() else { return (tree, order) };
         let mut open = vec![(if root.is_leaf { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
         while let Some((mut held, parent)) = open.pop() {
             // The largest are opened until there is no more room.
@@ -222,22 +249,31 @@ impl LightTree {
             }
             let number = tree.nodes.len() as u32;
             let bounds: Vec<Bounds> = held.iter().map(|&half| halves[half].bounds).collect();
-            let mut node = Node::new(parent, &bounds);
+            let mut node = Node::new(&bounds);
+            let mut ranges = [(0, 0); WIDTH];
             for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
+                ranges[usize::from(slot)] = half.range;
+                node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf) << slot;
                 if half.is_leaf {
-                    node.children[usize::from(slot)] = Child::Emitter(half.first as u32);
-                    tree.leaves[half.first] = Some((number, slot));
+                    node.children[usize::from(slot)] = Child(Child::EMITTER | half.range.0);
+                    tree.leaves[half.range.0 as usize] = (number, slot);
                 } else {
                     open.push((vec![half.first, half.first + 1], (number, slot)));
                 }
             }
             if number > 0 {
-                let (above, slot) = node.parent;
-                tree.nodes[above as usize].children[usize::from(slot)] = Child::Node(number);
+                let (above, slot) = parent;
+                tree.nodes[above as usize].children[usize::from(slot)] = Child(number);
             }
             tree.nodes.push(node);
+            tree.parents.push(parent);
+            tree.ranges.push(ranges);
         }
-        tree
+        // They are read faster there.
+        let mut placed = room(tree.nodes.len());
+        placed.append(&mut tree.nodes);
+        tree.nodes = placed;
+        (tree, order)
     }
 
     /// Whether there is nothing to choose.
@@ -248,15 +284,16 @@ impl LightTree {
     /// About what irradiance all of it brings to a point with a normal (zero: any).
     pub fn importance(&self, p: Vec3, n: Vec3) -> f32 {
         let Some(root) = self.nodes.first() else { return 0.0 };
-        (root.importances(0, p, n) + root.importances(1, p, n)).element_sum()
+        (root.importances(0, p, n).0 + root.importances(1, p, n).0).element_sum()
     }
 
     /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its
     /// probability.
     pub fn sample(&self, p: Vec3, n: Vec3, u: f32) -> Option<(u32, f32)> {
-        let (mut node, mut rest, mut probability) = (self.nodes.first()?, u, 1.0);
+        let (mut place, mut rest, mut probability) = (0, u, 1.0);
         loop {
-            let shares = node.shares(p, n)?;
+            let node = self.nodes.get(place)?;
+            let (shares, alike) = node.shares(p, n)?;
             // The last that has a share takes what rounding leaves.
             let last = shares.iter().rposition(|&share| share > 0.0)?;
             let (mut slot, mut before) = (0, 0.0);
@@ -266,57 +303,73 @@ impl LightTree {
             }
             rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
             probability *= shares[slot];
-            match node.children[slot] {
-                Child::Node(next) => node = &self.nodes[next as usize],
-                Child::Emitter(emitter) => return Some((emitter, probability)),
-                Child::None => return None,
+            if alike >> slot & 1 == 1 {
+                let (from, to) = self.ranges[place][slot];
+                let count = (to - from) as f32;
+                return Some(((from + (rest * count) as u32).min(to - 1), probability / count));
+            }
+            let Child(next) = node.children[slot];
+            match next & !Child::EMITTER {
+                emitter if emitter != next => return Some((emitter, probability)),
+                next => place = next as usize,
             }
         }
     }
 
     /// The probability with which [`LightTree::sample`] chooses an emitter.
     pub fn probability(&self, p: Vec3, n: Vec3, emitter: u32) -> f32 {
-        let Some((mut place, mut slot)) = self.leaves.get(emitter as usize).copied().flatten() else { return 0.0 };
-        let mut probability = 1.0;
-        loop {
-            let node = &self.nodes[place as usize];
-            let Some(shares) = node.shares(p, n) else { return 0.0 };
-            probability *= shares[usize::from(slot)];
-            if place == 0 || probability == 0.0 {
-                return probability;
+        self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, p, n).0)
+    }
+
+    /// The probability with which a child of a node is chosen, and whether it is all that is chosen
+    /// before an emitter is: each of a child further up is as likely.
+    fn reached(&self, place: u32, slot: u8, p: Vec3, n: Vec3) -> (f32, bool) {
+        let mut before = 1.0;
+        if place > 0 {
+            let (above, slot) = self.parents[place as usize];
+            let (probability, is_last) = self.reached(above, slot, p, n);
+            if is_last || probability == 0.0 {
+                return (probability, is_last);
             }
-            (place, slot) = node.parent;
+            before = probability;
         }
+        let slot = usize::from(slot);
+        let Some((shares, alike)) = self.nodes[place as usize].shares(p, n) else { return (0.0, true) };
+        let probability = before * shares[slot];
+        if alike >> slot & 1 == 0 {
+            return (probability, false);
+        }
+        let (from, to) = self.ranges[place as usize][slot];
+        (probability / (to - from) as f32, true)
     }
 }
 
-/// A tree of two children a node.
-fn halved(emitters: &[Bounds]) -> Vec<Half> {
+/// A tree of two children a node, and the emitters in its order.
+fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
-        return Vec::new();
+        return (Vec::new(), order);
     }
-    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, is_leaf: true }];
+    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, is_leaf: true, range: (0, 0) }];
     let mut open = vec![(0_usize, 0_usize, order.len())];
     while let Some((node, start, end)) = open.pop() {
         let range = &mut order[start..end];
         let whole = range.iter().map(|&i| emitters[i as usize]).reduce(|a, b| a.union(&b));
         let Some(whole) = whole else { continue };
-        halves[node].bounds = whole;
-        if let [one] = *range {
-            halves[node].first = one as usize;
+        (halves[node].bounds, halves[node].range) = (whole, (start as u32, end as u32));
+        if range.len() == 1 {
             continue;
         }
         let middle = start + split(emitters, range, &whole);
         let first = halves.len();
         (halves[node].first, halves[node].is_leaf) = (first, false);
         for _ in 0..2 {
-            halves.push(Half { bounds: whole, first: 0, is_leaf: true });
+            halves.push(Half { bounds: whole, first: 0, is_leaf: true, range: (0, 0) });
         }
         open.push((first + 1, middle, end));
         open.push((first, start, middle));
     }
-    halves
+    (halves, order)
 }
 
 /// Divides emitters so that both sides are small, weak and point one way; returns how many come
@@ -391,27 +444,39 @@ mod tests {
                     cos_normals: if i % 3 == 0 { -1.0 } else { 1.0 },
                     cos_emission: 0.0,
                     two_sided: i % 5 == 0,
+                    each: 1.0,
                 }
             })
             .collect()
     }
 
+    fn all_ways() -> Bounds {
+        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ZERO };
+        let (axis, cos_normals, cos_emission) = (Vec3::Z, -1.0, 0.0);
+        Bounds { bounds, power: 1.0, axis, cos_normals, cos_emission, two_sided: false, each: 1.0 }
+    }
+
     #[test]
     fn probabilities_are_those_of_sampling_and_sum_to_one() {
         let mut random = Random(5);
-        for count in [1, 2, 3, 17, 400] {
-            let all = lights(&mut random, count);
-            let tree = LightTree::new(&all);
+        for (count, alike) in [(1, false), (2, false), (3, false), (17, false), (400, false), (400, true)] {
+            let mut all = lights(&mut random, count);
+            if alike {
+                // So near each other that many are far from most points.
+                let of = |Bounds { bounds, .. }: Bounds| Aabb { min: 0.1 * bounds.min, max: 0.1 * bounds.max };
+                all.iter_mut().for_each(|light| *light = Bounds { bounds: of(*light), power: 1.0, ..all_ways() });
+            }
+            let (tree, order) = LightTree::new(&all);
             for _ in 0..20 {
                 let (p, n) = (12.0 * random.point(), random.direction());
-                let sum: f32 = (0..count as u32).map(|i| tree.probability(p, n, i)).sum();
+                let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(p, n, i)).sum();
                 // Where a node's children both bring nothing, nothing is chosen.
-                assert!(sum < 1.0 + 1e-4, "{sum}");
+                assert!(sum < 1.0 + 1e-4 && (!alike || sum > 1.0 - 1e-4), "{sum}");
                 for _ in 0..50 {
                     let Some((i, probability)) = tree.sample(p, n, random.between(0.0, 1.0)) else { continue };
                     let again = tree.probability(p, n, i);
                     assert!((again - probability).abs() <= 1e-5 * probability, "{again} {probability}");
-                    assert!(all[i as usize].power > 0.0);
+                    assert!(all[order[i as usize] as usize].power > 0.0);
                 }
             }
         }
@@ -421,7 +486,7 @@ mod tests {
     fn whatever_can_shine_on_a_point_can_be_chosen() {
         let mut random = Random(6);
         let all = lights(&mut random, 300);
-        let tree = LightTree::new(&all);
+        let (tree, order) = LightTree::new(&all);
         for _ in 0..50 {
             let p = 12.0 * random.point();
             for (i, light) in all.iter().enumerate().filter(|(_, light)| light.power > 0.0) {
@@ -429,7 +494,8 @@ mod tests {
                 let shines = light.cos_normals < 0.0
                     || light.axis.dot(to_point) > 0.2
                     || (light.two_sided && light.axis.dot(to_point).abs() > 0.2);
-                let probability = tree.probability(p, Vec3::ZERO, i as u32);
+                let place = order.iter().position(|&number| number as usize == i).unwrap();
+                let probability = tree.probability(p, Vec3::ZERO, place as u32);
                 assert!(!shines || probability > 0.0, "{i} of {light:?} at {p}");
             }
         }
