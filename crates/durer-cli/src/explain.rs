@@ -18,9 +18,7 @@ use durer::image::{Image, Transfer};
 use durer::integrator::trace::TermKind;
 use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, Ray, Vec3};
-use durer::render::explain::{
-    Explanation, Names, Telling, TextLine, explain, explain_of, explain_ray, number, ray_text,
-};
+use durer::render::explain::{Explanation, Names, Telling, TextLine, explain_of, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
 use durer::sampler::SampleId;
 use std::collections::BTreeSet;
@@ -192,12 +190,19 @@ fn subject(
         return Err(bad(format!("pixel {x},{y} lies outside the picture of {} x {} pixels", job.width, job.height)));
     }
     let world = &opened.world;
-    let explanation = deep(|| explain(world, job, pixel.0, pixel.1))?.map_err(failed)?;
+    // A part of a picture divides its samples otherwise than the whole.
+    let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
+    let explanation = deep(|| explain_of(world, job, pixel, samples))?.map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
         return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
     }
     Ok(Subject::Pixel(explanation))
+}
+
+/// How many samples a pixel has, where that is known.
+fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
+    counts.map(|counts| at(counts, x, y).x as u32)
 }
 
 /// The pixel to which one sample adds most, among those that differ most from their neighbours: the
@@ -210,7 +215,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
     odd.truncate(CANDIDATES);
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
-        let samples = counts.map(|counts| at(counts, x, y).x as u32);
+        let samples = counted(counts, (x, y));
         let explanation = deep(|| explain_of(&opened.world, job, (x, y), samples))?.map_err(failed)?;
         // A lamp's own border is bright, and no firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };

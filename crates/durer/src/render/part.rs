@@ -362,16 +362,16 @@ pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = 
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
     let singly = job.method.prepares() && job.sampling.is_local();
-    let decides = if job.adaptive { [half(samples), pilot(samples)] } else { [0; 2] };
+    let decides = job.adaptive.then(|| [half(samples), pilot(samples)]);
     let ends: Box<dyn Iterator<Item = u32>> = match decides {
         _ if singly => Box::new(1..=samples),
-        [half, pilot] if job.adaptive => {
+        Some([half, pilot]) => {
             let rest = passes::ends(samples).filter(move |&end| end > pilot);
             Box::new(passes::ends(half).chain([pilot]).chain(rest))
         }
-        _ => Box::new(passes::ends(samples)),
+        None => Box::new(passes::ends(samples)),
     };
     let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
     // Where noise decides, it does so at the end of each.
-    Passes::new(ends, from, !singly && job.noise.is_none(), decides)
+    Passes::new(ends, from, !singly && job.noise.is_none(), decides.unwrap_or_default())
 }

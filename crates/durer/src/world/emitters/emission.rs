@@ -71,7 +71,7 @@ impl Beams {
         }
         let area: f32 = beams.targets.iter().map(|target| PI * target.radius * target.radius).sum();
         let emitters = world.emitters();
-        for source in &emitters.sources {
+        for source in emitters.as_given() {
             match source {
                 Source::Area(area) => {
                     let sides = if area.two_sided { 2.0 } else { 1.0 };

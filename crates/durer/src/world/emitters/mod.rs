@@ -204,15 +204,16 @@ impl Emitters {
                 Some((position, intensity)) => {
                     let profile = world.profiles().get(number).and_then(Option::as_ref);
                     let most = profile.map_or(1.0, |profile| profile.most());
+                    let power = PI * most * intensity.max_element().max(0.0);
                     emitters.sources.push(Source::Light(number as u32));
                     bounds.push(Bounds {
                         bounds: Aabb { min: position, max: position },
-                        power: PI * most * intensity.max_element().max(0.0),
+                        power,
                         axis: Vec3::Z,
                         cos_normals: -1.0,
                         cos_emission: 0.0,
                         two_sided: false,
-                        each: PI * most * intensity.max_element().max(0.0),
+                        each: power,
                     });
                 }
                 None => {
@@ -241,6 +242,11 @@ impl Emitters {
             }
         }
         self.sources = sources;
+    }
+
+    /// Its sources in the order of the scene.
+    fn as_given(&self) -> impl Iterator<Item = &Source> {
+        self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
     /// The chances of all that is chosen for a point with a normal (zero: any); `None` where nothing

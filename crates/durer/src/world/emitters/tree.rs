@@ -171,18 +171,22 @@ impl Node {
         (Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero)), far.bitmask())
     }
 
+    /// [`Node::importances`] of all its children.
+    fn all_importances(&self, p: Vec3, n: Vec3) -> (Eight, u32) {
+        let few = self.power[1].x == 0.0;
+        let (high, high_far) = if few { (Vec4::ZERO, 0) } else { self.importances(1, p, n) };
+        let (low, low_far) = self.importances(0, p, n);
+        ([low, high], high_far << 4 | low_far)
+    }
+
     /// The probabilities of its children, and a bit for each of which all emitters are as likely;
     /// `None` where none brings any light.
     fn shares(&self, p: Vec3, n: Vec3) -> Option<([f32; WIDTH], u8)> {
-        let few = self.power[1].x == 0.0;
-        let high = if few { (Vec4::ZERO, 0) } else { self.importances(1, p, n) };
-        let (low, low_far) = self.importances(0, p, n);
-        let (high, high_far) = high;
-        let sum = (low + high).element_sum();
+        let (importances, far) = self.all_importances(p, n);
+        let sum = (importances[0] + importances[1]).element_sum();
         (sum > 0.0 && sum.is_finite()).then(|| {
-            let [low, high] = [low, high].map(|four| (four / sum).to_array());
-            let far = (high_far << 4 | low_far) as u8;
-            (std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] }), far & self.alike)
+            let [low, high] = importances.map(|four| (four / sum).to_array());
+            (std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] }), far as u8 & self.alike)
         })
     }
 }
@@ -220,9 +224,14 @@ pub struct LightTree {
 struct Half {
     bounds: Bounds,
     first: usize,
-    is_leaf: bool,
     /// What it holds, in the order of the tree.
     range: (u32, u32),
+}
+
+impl Half {
+    fn is_leaf(&self) -> bool {
+        self.range.1 - self.range.0 == 1
+    }
 }
 
 const BUCKETS: usize = 12;
@@ -234,11 +243,11 @@ impl LightTree {
         let (halves, order) = halved(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
         let Some(root) = halves.first() else { return (tree, order) };
-        let mut open = vec![(if root.is_leaf { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
+        let mut open = vec![(if root.is_leaf() { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
         while let Some((mut held, parent)) = open.pop() {
             // The largest are opened until there is no more room.
             while held.len() < WIDTH {
-                let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf);
+                let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf());
                 let largest = inner.max_by(|&a, &b| {
                     let [a, b] = [a, b].map(|i| cost(&halves[held[i]].bounds));
                     a.total_cmp(&b)
@@ -253,8 +262,8 @@ impl LightTree {
             let mut ranges = [(0, 0); WIDTH];
             for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
                 ranges[usize::from(slot)] = half.range;
-                node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf) << slot;
-                if half.is_leaf {
+                node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf()) << slot;
+                if half.is_leaf() {
                     node.children[usize::from(slot)] = Child(Child::EMITTER | half.range.0);
                     tree.leaves[half.range.0 as usize] = (number, slot);
                 } else {
@@ -284,7 +293,8 @@ impl LightTree {
     /// About what irradiance all of it brings to a point with a normal (zero: any).
     pub fn importance(&self, p: Vec3, n: Vec3) -> f32 {
         let Some(root) = self.nodes.first() else { return 0.0 };
-        (root.importances(0, p, n).0 + root.importances(1, p, n).0).element_sum()
+        let ([low, high], _) = root.all_importances(p, n);
+        (low + high).element_sum()
     }
 
     /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its
@@ -350,24 +360,22 @@ fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
     if order.is_empty() {
         return (Vec::new(), order);
     }
-    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, is_leaf: true, range: (0, 0) }];
-    let mut open = vec![(0_usize, 0_usize, order.len())];
-    while let Some((node, start, end)) = open.pop() {
-        let range = &mut order[start..end];
+    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, range: (0, order.len() as u32) }];
+    let mut open = vec![0];
+    while let Some(node) = open.pop() {
+        let (start, end) = halves[node].range;
+        let range = &mut order[start as usize..end as usize];
         let whole = range.iter().map(|&i| emitters[i as usize]).reduce(|a, b| a.union(&b));
         let Some(whole) = whole else { continue };
-        (halves[node].bounds, halves[node].range) = (whole, (start as u32, end as u32));
-        if range.len() == 1 {
+        halves[node].bounds = whole;
+        if halves[node].is_leaf() {
             continue;
         }
-        let middle = start + split(emitters, range, &whole);
+        let middle = start + split(emitters, range, &whole) as u32;
         let first = halves.len();
-        (halves[node].first, halves[node].is_leaf) = (first, false);
-        for _ in 0..2 {
-            halves.push(Half { bounds: whole, first: 0, is_leaf: true, range: (0, 0) });
-        }
-        open.push((first + 1, middle, end));
-        open.push((first, start, middle));
+        halves[node].first = first;
+        halves.extend([(start, middle), (middle, end)].map(|range| Half { bounds: whole, first: 0, range }));
+        open.extend([first + 1, first]);
     }
     (halves, order)
 }
