@@ -27,6 +27,17 @@ pub enum BuildError {
         /// Its length.
         len: usize,
     },
+    /// There are fewer than two lines either way, or not as many heights as crossings.
+    NoGrid {
+        /// How many lines go along z.
+        columns: usize,
+        /// How many lines go along x.
+        rows: usize,
+        /// How many heights were given.
+        heights: usize,
+    },
+    /// A grid of heights has numbers that are not finite.
+    NotFinite,
     /// A tree is refitted to another number of triangles than it was built over.
     OtherTriangles {
         /// How many it was built over.
@@ -46,6 +57,13 @@ impl fmt::Display for BuildError {
                 write!(f, "{triangles} triangles: a tree holds less than 2^28")
             }
             BuildError::NotInThrees { list, len } => write!(f, "{list} has {len} numbers, which is no multiple of 3"),
+            BuildError::NoGrid { columns, rows, heights } => {
+                write!(
+                    f,
+                    "{columns} times {rows} lines need two at least either way, and as many heights: not {heights}"
+                )
+            }
+            BuildError::NotFinite => write!(f, "a grid of heights has numbers that are not finite"),
             BuildError::OtherTriangles { built, given } => {
                 write!(f, "the tree was built over {built} triangles, but {given} were given")
             }

@@ -27,7 +27,7 @@ pub use grid::Grid;
 pub use instances::{Instance, InstanceBvh, InstanceHit};
 pub use lanes::{SimdLevel, UnknownSimdLevel};
 pub use packs::{PackHit, PrimitivePacks};
-pub use triangles::{Facing, NearestPoint, TriangleBvh, TriangleHit};
+pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
 /// Counts the work of rays. `()` counts nothing, at no cost.
 pub trait TraversalCounter {

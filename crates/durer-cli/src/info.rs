@@ -182,7 +182,7 @@ impl Counted {
                 Geometry::Primitive(shape) => shape.keywords()[0].0,
                 Geometry::Mesh(tree) => {
                     count.mesh(tree, &mut seen);
-                    "TriangleMesh"
+                    if tree.mesh.is_terrain() { "HeightField" } else { "TriangleMesh" }
                 }
                 Geometry::Solid(solid) => {
                     count.bytes += solid.bytes();

@@ -59,6 +59,12 @@ impl BuildSettings {
         ((count as f32 * self.splits) as usize).min(MAX_ITEMS - count)
     }
 
+    /// For blocks of triangles, each of which is a leaf.
+    pub fn blocks(quality: BuildQuality) -> BuildSettings {
+        let of_triangles = BuildSettings { splits: 0.0, ..BuildSettings::triangles(quality) };
+        BuildSettings { whole: 1, leaf_size: 1, ..of_triangles }
+    }
+
     pub fn triangles(quality: BuildQuality) -> BuildSettings {
         // A leaf is tested at once, whatever it holds.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;

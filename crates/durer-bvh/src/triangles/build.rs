@@ -6,6 +6,7 @@ use crate::build::{self, BuildQuality, BuildSettings, is_finite};
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
 use crate::math::{Aabb, Vec3};
 use crate::{node, parallel};
+use std::mem::MaybeUninit;
 use std::sync::OnceLock;
 
 /// Rows of about so many triangles are written at once.
@@ -90,6 +91,7 @@ impl TriangleBvh {
             culls_slivers: false,
             count: triangles.len(),
             leaf_of: OnceLock::new(),
+            heights: None,
         };
         bvh.pack(Some(&tree.order), vertices, triangles);
         bvh
@@ -115,10 +117,14 @@ impl TriangleBvh {
             return Err(BuildError::OtherTriangles { built: self.count, given: triangles.len() });
         }
         check_indices(vertices, triangles)?;
+        if self.heights.is_some() {
+            *self = self.expanded();
+        }
         self.pack(None, vertices, triangles);
         let mut nodes = std::mem::take(&mut self.nodes);
         node::refit(&mut nodes, |leaf| {
-            let (rows, count) = self.rows(leaf);
+            let mut room = MaybeUninit::uninit();
+            let (rows, count) = self.rows(leaf, &mut room);
             let numbers = (0..count).map(|lane| number(rows, count, lane));
             let corners = numbers.map(|number| triangles[number as usize].map(|i| vertices[i as usize]));
             Aabb::around(corners.filter(is_finite).flatten())

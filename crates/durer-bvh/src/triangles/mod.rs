@@ -3,6 +3,7 @@
 
 mod build;
 mod fetch;
+mod heights;
 mod leaf;
 mod nearest;
 mod packet;
@@ -16,9 +17,11 @@ use super::node;
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
+pub use heights::HeightGrid;
 pub use nearest::NearestPoint;
 use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
 use std::cell::Cell;
+use std::mem::MaybeUninit;
 use tree::number;
 pub use tree::{Facing, TriangleBvh, TriangleHit};
 
@@ -228,10 +231,15 @@ impl TriangleBvh {
     /// The first call notes where each triangle lies, in four bytes for each.
     #[inline]
     pub fn corners(&self, triangle: u32) -> Option<[Vec3; 3]> {
+        let grid = self.heights.as_ref().filter(|grid| (triangle as usize) < grid.triangle_count());
+        if let Some(grid) = grid {
+            return Some(grid.corners(triangle as usize));
+        }
         let leaf_of = self.leaf_of.get_or_init(|| self.note_leaves());
         // A triangle that is in no leaf has 0, which is none.
         let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
-        let (rows, count) = self.rows(leaf);
+        let mut room = MaybeUninit::uninit();
+        let (rows, count) = self.rows(leaf, &mut room);
         let lane = (0..count).find(|lane| number(rows, count, *lane) == triangle)?;
         let at = |row: usize| rows[row * count + lane];
         let corners = [0, 3, 6].map(|row| Vec3::new(at(row), at(row + 1), at(row + 2)));
@@ -243,7 +251,8 @@ impl TriangleBvh {
         let mut leaf_of = vec![0; self.count];
         for (_, _, leaf) in self.nodes.iter().flat_map(|node| node.children()) {
             if leaf & node::LEAF != 0 {
-                let (rows, count) = self.rows(leaf);
+                let mut room = MaybeUninit::uninit();
+                let (rows, count) = self.rows(leaf, &mut room);
                 (0..count).for_each(|lane| leaf_of[number(rows, count, lane) as usize] = leaf);
             }
         }
@@ -269,7 +278,8 @@ impl TriangleBvh {
     /// Bytes in memory.
     pub fn memory_usage(&self) -> usize {
         let leaf_of = self.leaf_of.get().map_or(0, |leaf_of| size_of_val(&**leaf_of));
-        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of
+        let heights = self.heights.as_ref().map_or(0, |grid| grid.memory_usage());
+        size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of + heights
     }
 
     /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node,

@@ -5,6 +5,7 @@ use crate::lanes::{ROWS, Rows, WIDTH};
 use crate::math::Vec3;
 use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
+use std::mem::MaybeUninit;
 
 /// A point of a mesh, the nearest to another one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +59,8 @@ impl TriangleBvh {
                 // The nearest is next.
                 stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
             } else {
-                let (rows, count) = self.rows(child);
+                let mut room = MaybeUninit::uninit();
+                let (rows, count) = self.rows(child, &mut room);
                 (0..count).for_each(|lane| best.offer(point, corners(rows, count, lane), number(rows, count, lane)));
             }
         }

@@ -4,11 +4,12 @@ use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
 use super::tree::{Facing, TriangleBvh, TriangleHit, number};
 use crate::TraversalCounter;
-use crate::lanes::{Columns, Kernel, Lanes, WIDTH};
+use crate::lanes::{Columns, Kernel, Lanes, Rows, WIDTH};
 use crate::math::{Ray, Vec2};
 use crate::traverse::{FAST_RANGE, TraversalRay, Visitor, traverse};
 use crate::watertight::{Exact, Plane, WatertightRay, turn};
 use glam::Vec3A;
+use std::mem::MaybeUninit;
 
 /// A question, whose answer is an `F`.
 pub struct Query<'a, T, F> {
@@ -145,8 +146,7 @@ impl<F: HitCollector> HitCollector for Filtered<'_, F> {
 impl RayInTree<'_> {
     /// The corners of a triangle, turned as the ray is, and its number.
     #[inline(always)]
-    fn triangle(&self, leaf: u32, lane: usize) -> ([Vec3A; 3], u32) {
-        let (rows, count) = self.bvh.rows(leaf);
+    fn triangle(&self, (rows, count): (&Rows, usize), lane: usize) -> ([Vec3A; 3], u32) {
         (Columns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
     }
 
@@ -237,7 +237,8 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
 
     #[inline(always)]
     fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, mut t_max: f32) -> f32 {
-        let (rows, count) = self.ray_in_tree.bvh.rows(leaf);
+        let mut room = MaybeUninit::uninit();
+        let (rows, count) = self.ray_in_tree.bvh.rows(leaf, &mut room);
         self.counter.work(0, count as u64);
         if !FAST && !self.side_by_side {
             return self.one_by_one(leaf, (1 << count) - 1, t_max);
@@ -297,8 +298,10 @@ impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
     #[cold]
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         let sheared = self.ray_in_tree.sheared.least_volume(self.ray_in_tree.bvh.least_volume);
+        let mut room = MaybeUninit::uninit();
+        let rows = self.ray_in_tree.bvh.rows(leaf, &mut room);
         for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
-            let (corners, triangle) = self.ray_in_tree.triangle(leaf, lane);
+            let (corners, triangle) = self.ray_in_tree.triangle(rows, lane);
             if sheared.crosses(corners)
                 && let Some(t) = sheared.t(corners).filter(|t| self.ray_in_tree.is_wanted(*t, t_max))
             {

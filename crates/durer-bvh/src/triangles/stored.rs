@@ -33,6 +33,9 @@ impl TriangleBvh {
     /// assert_eq!(loaded.closest(&ray), built.closest(&ray));
     /// ```
     pub fn to_bytes(&self) -> Vec<u8> {
+        if self.heights.is_some() {
+            return self.expanded().to_bytes();
+        }
         let items = self.items();
         let mut to = Vec::with_capacity(HEAD + NODE * self.nodes.len() + 4 * ROWS * items + CHECKSUM);
         to.extend(NAME);
@@ -101,6 +104,7 @@ impl TriangleBvh {
             culls_slivers: least_volume != 0.0,
             count,
             leaf_of: OnceLock::new(),
+            heights: None,
         })
     }
 }

@@ -7,6 +7,7 @@ use crate::math::{Vec2, Vec3};
 use crate::tests::codes_are_right;
 use crate::traverse::is_sound;
 
+mod heights;
 mod queries;
 mod reference;
 

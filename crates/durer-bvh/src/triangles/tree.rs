@@ -1,11 +1,13 @@
 //! What a tree of triangles is, and what it answers with.
 
-use crate::lanes::{Available, ROWS, Rows};
+use super::heights::HeightGrid;
+use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
 use crate::math::{Aabb, Vec2};
 use crate::node::{self, WideNode};
 use crate::watertight::WatertightRay;
 use glam::Vec3A;
-use std::sync::OnceLock;
+use std::mem::MaybeUninit;
+use std::sync::{Arc, OnceLock};
 
 /// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is
 /// computed with, and tiny numbers are slow.
@@ -69,6 +71,8 @@ pub struct TriangleBvh {
     pub(super) count: usize,
     /// For each triangle a leaf that holds it, once that was asked for.
     pub(super) leaf_of: OnceLock<Vec<u32>>,
+    /// What leaves are made of whose rows are not in memory.
+    pub(super) heights: Option<Arc<HeightGrid>>,
 }
 
 /// The side of a triangle that a ray meets.
@@ -100,13 +104,28 @@ impl Facing {
 }
 
 impl TriangleBvh {
-    /// The rows of a leaf, and the count of its triangles.
+    /// The rows of a leaf, and the count of its triangles. Rows that are not in memory are written
+    /// into the room.
     #[inline(always)]
-    pub(super) fn rows(&self, leaf: u32) -> (&Rows, usize) {
+    pub(super) fn rows<'a>(&'a self, leaf: u32, room: &'a mut MaybeUninit<Rows>) -> (&'a Rows, usize) {
         let (first, count) = node::items(leaf);
-        match self.leaves[ROWS * first..].first_chunk() {
+        // Leaves have a leaf's room behind them, and blocks of heights have greater numbers.
+        let rows = match self.leaves.get(ROWS * first..) {
+            Some(rest) => rest.first_chunk(),
+            None => None,
+        };
+        match rows {
             Some(rows) => (rows, count),
-            None => unreachable!("leaves have a leaf's room behind them"),
+            None => (self.block(first, room), count),
         }
+    }
+
+    /// The rows of a block of heights.
+    #[inline(never)]
+    fn block<'a>(&self, first: usize, room: &'a mut MaybeUninit<Rows>) -> &'a Rows {
+        let Some(heights) = &self.heights else { unreachable!("all leaves have rows") };
+        let rows = room.write([0.0; ROOM_OF_ROWS]);
+        heights.write_rows(first - self.first_block(), rows);
+        rows
     }
 }

@@ -7,8 +7,7 @@ use crate::dialect::CompatSet;
 use crate::material::{ColorNoise, Solid};
 use crate::math::Vec3;
 use crate::scene::Material as Written;
-use crate::world::{Geometry, Material, MeshTree, World};
-use std::sync::Arc;
+use crate::world::{Geometry, Material, World};
 
 /// Steps within a pixel in which a pattern is looked at.
 const STEPS: u32 = 24;
@@ -137,11 +136,8 @@ pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
         let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
         let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
         let own = || world.objects().iter().filter(|object| object.material as usize == number);
-        let still = |mesh: &Arc<MeshTree>| {
-            let data = mesh.mesh.data();
-            !data.uvs.is_empty() && data.uvs.iter().all(|uv| (*uv - data.uvs[0]).abs().max_element() < 1e-6)
-        };
-        let one_place = own().find(|object| matches!(&object.geometry, Geometry::Mesh(mesh) if still(mesh)));
+        let is_still = |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.only_uv().is_some());
+        let one_place = own().find(|object| is_still(&object.geometry));
         let (message, help) = if scout.material_rays()[number] == 0 {
             continue;
         } else if texture.is_flat() {

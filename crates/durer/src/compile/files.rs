@@ -23,10 +23,11 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the tree and its building take for a while for each triangle, and the triangle itself with
-/// it: its corners' places in the lists of positions and texture coordinates.
+/// What the tree and its building take for a while for each triangle.
 const TREE_BYTES: u64 = 200;
-const TRIANGLE_BYTES: u64 = TREE_BYTES + size_of::<[[u32; 3]; 2]>() as u64;
+/// What a height takes while normals are made: of its two triangles the normals at the corners, and
+/// these in the order of the crossings, three times four bytes each.
+const HEIGHT_BYTES: u64 = 112;
 
 /// Columns of the picture of a sky.
 const SKY_WIDTH: u32 = 512;
@@ -72,7 +73,7 @@ impl<'r> Loader<'r> {
     /// A mesh with its tree. For fewer rays than there are triangles a better one would take longer
     /// than it saves; what rays hit is the same to the bit.
     pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
-        let few = self.resources.rays < mesh.triangles().len() as u64;
+        let few = self.resources.rays < mesh.len() as u64;
         MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
     }
 
@@ -87,7 +88,7 @@ impl<'r> Loader<'r> {
         if let Some(known) = known {
             self.remember(&name.path, origin.as_ref(), known.digest);
             let mesh = &known.thing.mesh;
-            let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.triangles().len() as u64;
+            let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.len() as u64;
             let tree = self.charge(name, needed, diagnostics).then_some(known.thing);
             self.meshes.insert(name.path.clone(), tree.clone());
             return tree;
@@ -192,13 +193,13 @@ impl<'r> Loader<'r> {
             refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
             return None;
         }
-        // Two triangles a pixel, with their corners' places and tree.
-        let needed = heights.len() as u64 * (size_of::<[f32; 5]>() as u64 + 2 * TRIANGLE_BYTES);
-        if !self.charge(name, needed, diagnostics) {
-            return None;
+        let needed = HEIGHT_BYTES * heights.len() as u64;
+        let terrain = field.terrain(width, heights);
+        if terrain.is_none() {
+            refuse(format!("the heights of `{}` leave the range of numbers", name.path));
         }
-        let data = field.mesh(width, &heights);
-        Some(Arc::new(self.tree(self.centered(Mesh::new(data, self.rules.mesh_normals, true)))))
+        let terrain = terrain.filter(|_| self.charge(name, needed, diagnostics))?;
+        Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
     }
 
     /// The mesh about the origin, if it lies far away; the official programs leave it there.

@@ -202,6 +202,8 @@ const MOST_SMALL: u64 = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
 const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
+/// A weight of 1 in units.
+pub(super) const WEIGHT_ONE: i64 = WEIGHT_SCALE as i64;
 const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;

@@ -1,6 +1,6 @@
 //! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
 
-use super::film::{Film, Pixel};
+use super::film::{Film, Pixel, WEIGHT_ONE};
 use crate::math::Color;
 
 /// A film that nothing is added to for a while. It is the same film: what comes out is what went
@@ -10,6 +10,9 @@ pub enum Packed {
     /// Each pixel has one sample of weight 1, which saw something, and of which its colour tells
     /// all.
     Single(Box<[Color]>),
+    /// As in [`Packed::Small`], of samples of weight 1, as filters that are nowhere negative make
+    /// them.
+    Even(Box<[Even]>),
     /// Sums of 64 bits are enough, and all samples saw something.
     Small(Box<[Small]>),
     /// All that a film can hold.
@@ -57,6 +60,43 @@ impl Small {
     }
 }
 
+/// The same without the weight, in words, so that nothing lies empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Even {
+    color: [[u32; 2]; 3],
+    squares: [u32; 3],
+    luminance: [u32; 2],
+    samples: u32,
+}
+
+impl Even {
+    fn of(pixel: &Pixel) -> Option<Self> {
+        let Small { color, squares: [low, high], luminance, weight, samples } = Small::of(pixel)?;
+        let [low, middle] = halves(low);
+        let squares = [low, middle, high.try_into().ok()?];
+        (weight == i64::from(samples) * WEIGHT_ONE).then_some(())?;
+        Some(Even { color: color.map(|sum| halves(sum as u64)), squares, luminance: halves(luminance as u64), samples })
+    }
+
+    fn pixel(&self) -> Pixel {
+        let whole = |[low, high]: [u32; 2]| u64::from(high) << 32 | u64::from(low);
+        let [low, middle, high] = self.squares;
+        Small {
+            color: self.color.map(|sum| whole(sum) as i64),
+            squares: [whole([low, middle]), high.into()],
+            luminance: whole(self.luminance) as i64,
+            weight: i64::from(self.samples) * WEIGHT_ONE,
+            samples: self.samples,
+        }
+        .pixel()
+    }
+}
+
+/// The lower and the upper half.
+fn halves(number: u64) -> [u32; 2] {
+    [number as u32, (number >> 32) as u32]
+}
+
 /// All of a film's pixels made smaller, if all can be.
 fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
     let mut made = Vec::with_capacity(film.pixels.len());
@@ -83,6 +123,9 @@ impl Packed {
         {
             return Packed::Single(singles.into());
         }
+        if let Some(even) = all(&film, Even::of) {
+            return Packed::Even(even.into());
+        }
         match all(&film, Small::of) {
             Some(small) => Packed::Small(small.into()),
             None => Packed::Whole(Box::new(film)),
@@ -98,6 +141,7 @@ impl Packed {
         };
         match self {
             Packed::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
+            Packed::Even(pixels) => film(pixels.iter().map(Even::pixel).collect()),
             Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
             Packed::Whole(film) => Film::clone(film),
         }
@@ -109,6 +153,7 @@ impl Packed {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
         match self {
             Packed::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
+            Packed::Even(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
             Packed::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
             Packed::Whole(film) => film.pixels.iter().for_each(offer_pixel),
         }
@@ -117,7 +162,7 @@ impl Packed {
     /// Whether all of each pixel saw something.
     pub fn is_covered(&self) -> bool {
         match self {
-            Packed::Single(_) | Packed::Small(_) => true,
+            Packed::Single(_) | Packed::Even(_) | Packed::Small(_) => true,
             Packed::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
         }
     }
@@ -126,11 +171,11 @@ impl Packed {
     pub fn with_rejected(&self) -> Option<&Film> {
         match self {
             Packed::Whole(film) => Some(film),
-            Packed::Single(..) | Packed::Small(_) => None,
+            Packed::Single(..) | Packed::Even(_) | Packed::Small(_) => None,
         }
     }
 
-    /// Bytes that a pixel of so many samples takes, where light is not stronger than usual.
+    /// Bytes that a pixel of so many samples takes at most, where light is not stronger than usual.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
     }

@@ -20,7 +20,6 @@ pub use rows::{RowFormat, RowWriter, Strip};
 use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::diag;
-use crate::math::Vec3;
 use crate::panics::caught;
 use rayon::prelude::*;
 use std::path::Path;
@@ -211,33 +210,17 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
     }
 }
 
-/// The bytes of an eight-bit picture with alpha: red, green, blue and alpha, the top row first;
-/// `None` where it is opaque.
-fn eight_bit_alpha(layer: &Layer, options: &WriteOptions) -> Option<Vec<u8>> {
-    Some(side_by_side(&Strip::of(layer, options), &layer.image.pixels, layer.coverage.as_ref()?, |rgba| rgba))
-}
-
-/// The bytes of an eight-bit picture: red, green and blue, the top row first.
+/// The bytes of an eight-bit picture: red, green and blue, the top row first. They are made by all
+/// threads.
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
-    let strip = Strip { alpha: false, ..Strip::of(layer, options) };
-    side_by_side(&strip, &layer.image.pixels, &[], |[r, g, b, _]| [r, g, b])
-}
-
-/// The bytes of all pixels, made by all threads.
-fn side_by_side<const N: usize>(
-    strip: &Strip,
-    pixels: &[Vec3],
-    coverage: &[f32],
-    of: impl Fn([u8; 4]) -> [u8; N] + Sync,
-) -> Vec<u8> {
     const STEP: usize = 1 << 14;
-    let mut bytes = vec![0_u8; N * pixels.len()];
-    bytes.as_chunks_mut::<N>().0.par_chunks_mut(STEP).enumerate().for_each(|(i, made)| {
-        let range = i * STEP..i * STEP + made.len();
+    let (strip, pixels) = (Strip { alpha: false, ..Strip::of(layer, options) }, &layer.image.pixels);
+    let mut bytes = vec![0_u8; 3 * pixels.len()];
+    bytes.as_chunks_mut::<3>().0.par_chunks_mut(STEP).enumerate().for_each(|(i, made)| {
         let mut made = made.iter_mut();
-        strip.eight_bit(&pixels[range.clone()], coverage.get(range).unwrap_or_default(), |rgba| {
+        strip.eight_bit(&pixels[i * STEP..i * STEP + made.len()], &[], |[r, g, b, _]| {
             if let Some(pixel) = made.next() {
-                *pixel = of(rgba);
+                *pixel = [r, g, b];
             }
         });
     });

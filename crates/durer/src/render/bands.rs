@@ -100,7 +100,7 @@ impl Bands {
         // Whether the camera sees all is not known before the end: where it may not, there is
         // alpha.
         let (width, height, display) = (window.width, window.height, options.display);
-        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display, whole: false };
+        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
         control.all.store(window.pixels().saturating_mul(samples), Relaxed);
         let mut crops = self.crops();

@@ -14,8 +14,9 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Rows of blocks whose colours are in memory at once where they are offered in strips.
-const AT_ONCE: usize = 16;
+/// So many rows of blocks for each thread have their colours in memory at once where they are
+/// offered in strips.
+const AT_ONCE: usize = 4;
 
 /// Pictures and what was counted on the way.
 #[derive(Debug)]
@@ -102,7 +103,7 @@ impl PartialRender {
         mut look: impl FnMut(&[Color]),
     ) -> Result<(), BandsError> {
         let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
-        let strip = Strip { width, height, alpha, display, whole: true };
+        let strip = Strip { width, height, alpha, display };
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
         format.write_rows(strip, out, |rows| {
             self.try_strips(bottom_up, |pixels, coverage| {
@@ -133,7 +134,7 @@ impl PartialRender {
             let (colors, coverage) = self.colors_of(&state, rows, is_seen);
             strip(&colors, &coverage)
         };
-        let mut parts = rows.chunks(AT_ONCE);
+        let mut parts = rows.chunks(AT_ONCE * rayon::current_num_threads());
         if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
     }
 

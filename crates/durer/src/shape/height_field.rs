@@ -1,9 +1,13 @@
-//! The height field: a picture as a landscape, made into a closed mesh.
+//! The height field: a picture as a landscape, in a closed mesh.
 
 use super::MeshData;
+use super::mesh_data::Triangles;
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Aabb, Vec2, Vec3};
+use crate::source::Digest;
+use durer_bvh::{BuildQuality, HeightGrid, TriangleBvh};
+use std::sync::Arc;
 
 described! {
     /// A block whose top is a landscape: a picture's greys are heights, its lower edge is towards
@@ -23,7 +27,7 @@ described! {
 
 impl HeightField {
     /// At most this many pixels.
-    pub const MAX_PIXELS: usize = 1 << 22;
+    pub const MAX_PIXELS: usize = 1 << 24;
 
     /// What is wrong with the values of its fields taken together, if anything.
     pub fn flaw(&self) -> Option<&'static str> {
@@ -31,56 +35,194 @@ impl HeightField {
         (!wide).then_some("`min` of a `HeightField` must be less than its `max` in x, y and z")
     }
 
-    /// Two triangles between each four neighbouring pixels, with walls around them and a floor
-    /// below.
+    /// The landscape: two triangles between each four neighbouring pixels, with walls around them
+    /// and a floor below.
     ///
-    /// `heights` are rows from the top, `columns` wide; both sides must be at least 2.
-    pub fn mesh(&self, columns: usize, heights: &[f32]) -> MeshData {
+    /// `heights` are rows from the top, `columns` wide; both sides must be at least 2. `None` where
+    /// coordinates leave the range of single precision.
+    pub fn terrain(&self, columns: usize, mut heights: Vec<f32>) -> Option<Terrain> {
         let rows = heights.len() / columns;
         let size = self.max - self.min;
-        let share = |i: usize, count: usize| i as f32 / (count - 1) as f32;
-        // The border's points and the middle of the floor are added, and three triangles for each.
-        let around = 2 * (rows + columns) - 4;
-        let mut data = MeshData {
-            positions: Vec::with_capacity(heights.len() + around + 1),
-            uvs: Vec::with_capacity(heights.len() + around + 1),
-            triangles: Vec::with_capacity(2 * (rows - 1) * (columns - 1) + 3 * around),
-            ..MeshData::default()
-        };
-        for (i, height) in heights.iter().enumerate() {
-            let (u, v) = (share(i % columns, columns), share(i / columns, rows));
-            data.positions.push(self.min + size * Vec3::new(u, *height, v));
-            data.uvs.push(Vec2::new(u, 1.0 - v));
+        let line =
+            |axis: usize, count: usize| (0..count).map(|i| self.min[axis] + size[axis] * share(i, count)).collect();
+        heights.iter_mut().for_each(|height| *height = self.min.y + size.y * *height);
+        let middle = (self.min + 0.5 * size).with_y(self.min.y - self.depth);
+        let grid = HeightGrid::new(line(0, columns), line(2, rows), heights).ok()?;
+        middle.is_finite().then(|| Terrain { grid: Arc::new(grid), middle })
+    }
+}
+
+/// A place among so many, from 0 for the first to 1 for the last.
+fn share(i: usize, count: usize) -> f32 {
+    i as f32 / (count - 1) as f32
+}
+
+/// A landscape, walls down from its border, and a floor: a closed mesh whose triangles are not in
+/// memory.
+///
+/// Its vertices are those of the landscape, one at the floor below each of the border's, and the
+/// middle of the floor. Its triangles are those of the landscape, then two of the walls for each
+/// step along the border, then one of the floor for each.
+#[derive(Clone, Debug)]
+pub struct Terrain {
+    /// The landscape.
+    grid: Arc<HeightGrid>,
+    /// The middle of the floor.
+    middle: Vec3,
+}
+
+impl Terrain {
+    /// The landscape without walls and floor.
+    pub fn grid(&self) -> &HeightGrid {
+        &self.grid
+    }
+
+    /// A tree over its triangles.
+    pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
+        let others = self.grid.triangle_count()..self.len();
+        let others: Vec<[Vec3; 3]> = others.map(|i| self.corners(i)).collect();
+        match TriangleBvh::over_heights(self.grid.clone(), &others, quality) {
+            Ok(tree) => tree,
+            Err(error) => unreachable!("{error}"),
         }
-        let at = |column: usize, row: usize| (row * columns + column) as u32;
-        for row in 0..rows - 1 {
-            for column in 0..columns - 1 {
-                let [a, b] = [at(column, row), at(column, row + 1)];
-                data.triangles.extend([[a, b, b + 1], [a, b + 1, a + 1]]);
+    }
+
+    /// The box around it.
+    pub fn bounds(&self) -> Aabb {
+        let bounds = self.grid.bounds();
+        Aabb { min: bounds.min.min(self.middle), ..bounds }
+    }
+
+    /// By axis, whether something holds for all coordinates along it.
+    pub fn all_along(&self, holds: impl Fn(usize, f32) -> bool) -> [bool; 3] {
+        let lists = [self.grid.xs(), self.grid.heights(), self.grid.zs()];
+        [0, 1, 2].map(|axis| holds(axis, self.middle[axis]) && lists[axis].iter().all(|x| holds(axis, *x)))
+    }
+
+    /// The same about another origin.
+    pub fn moved(&self, by: Vec3) -> Self {
+        Terrain { grid: Arc::new(self.grid.map(|axis, x| x - by[axis])), middle: self.middle - by }
+    }
+
+    fn sides(&self) -> [usize; 2] {
+        [self.grid.xs().len(), self.grid.zs().len()]
+    }
+
+    /// How many vertices the border has.
+    fn around(&self) -> usize {
+        let [columns, rows] = self.sides();
+        2 * (columns + rows) - 4
+    }
+
+    /// The number of a vertex of the border, counted counter-clockwise as seen from above.
+    fn border(&self, i: usize) -> u32 {
+        let [columns, rows] = self.sides();
+        let [wide, deep] = [columns - 1, rows - 1];
+        let (column, row) = match i {
+            _ if i < deep => (0, i),
+            _ if i < deep + wide => (i - deep, deep),
+            _ if i < 2 * deep + wide => (wide, 2 * deep + wide - i),
+            _ => (2 * (deep + wide) - i, 0),
+        };
+        (row * columns + column) as u32
+    }
+
+    /// Its texture coordinates at a vertex: from 0 to 1 over the picture, of walls as above them.
+    pub fn uv(&self, vertex: u32) -> Vec2 {
+        let [columns, rows] = self.sides();
+        let vertex = match (vertex as usize).checked_sub(columns * rows) {
+            None => vertex as usize,
+            Some(below) if below < self.around() => self.border(below) as usize,
+            Some(_) => return Vec2::splat(0.5),
+        };
+        Vec2::new(share(vertex % columns, columns), 1.0 - share(vertex / columns, rows))
+    }
+
+    /// The same in lists.
+    pub fn to_data(&self) -> MeshData {
+        let triangles: Vec<[u32; 3]> = (0..self.len()).map(|i| self.triangle(i)).collect();
+        let vertices = 0..self.vertices() as u32;
+        MeshData {
+            positions: vertices.clone().map(|i| self.position(i)).collect(),
+            uvs: vertices.map(|i| self.uv(i)).collect(),
+            triangle_uvs: triangles.clone(),
+            triangles,
+            ..MeshData::default()
+        }
+    }
+
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let mut hasher = Digest::hasher();
+        for list in [self.grid.xs(), self.grid.zs(), self.grid.heights(), &self.middle.to_array()] {
+            hasher.count(list.len() as u64);
+            list.iter().for_each(|x| hasher.word(x.to_bits()));
+        }
+        hasher.finish()
+    }
+}
+
+impl Triangles for Terrain {
+    fn len(&self) -> usize {
+        self.grid.triangle_count() + 3 * self.around()
+    }
+
+    fn vertices(&self) -> usize {
+        self.grid.heights().len() + self.around() + 1
+    }
+
+    #[inline]
+    fn triangle(&self, number: usize) -> [u32; 3] {
+        let (crossings, around) = (self.grid.heights().len(), self.around());
+        let Some(other) = number.checked_sub(self.grid.triangle_count()) else { return self.grid.triangle(number) };
+        // One step along the border, and the vertices below its ends.
+        let step = if other < 2 * around { other / 2 } else { other - 2 * around };
+        let ends = [step, (step + 1) % around];
+        let ([p, q], [below_p, below_q]) = (ends.map(|i| self.border(i)), ends.map(|i| (crossings + i) as u32));
+        match other {
+            _ if other >= 2 * around => [(crossings + around) as u32, below_q, below_p],
+            _ if other % 2 == 0 => [p, below_p, below_q],
+            _ => [p, below_q, q],
+        }
+    }
+
+    #[inline]
+    fn position(&self, vertex: u32) -> Vec3 {
+        match (vertex as usize).checked_sub(self.grid.heights().len()) {
+            None => self.grid.point(vertex as usize),
+            Some(below) if below < self.around() => self.grid.point(self.border(below) as usize).with_y(self.middle.y),
+            Some(_) => self.middle,
+        }
+    }
+
+    #[inline]
+    fn corners(&self, number: usize) -> [Vec3; 3] {
+        match number < self.grid.triangle_count() {
+            true => self.grid.corners(number),
+            false => self.triangle(number).map(|vertex| self.position(vertex)),
+        }
+    }
+
+    fn ordered(&self) -> usize {
+        self.grid.triangle_count()
+    }
+
+    fn ordered_around(&self, vertex: u32, mut offer: impl FnMut(u32)) {
+        let ([columns, rows], vertex) = (self.sides(), vertex as usize);
+        let (column, row) = (vertex % columns, vertex / columns);
+        // By the cell, how far before the vertex it lies, and the corner that the vertex is of each
+        // of its triangles.
+        for (across, down, corners) in
+            [(1, 1, [Some(2), Some(1)]), (0, 1, [Some(1), None]), (1, 0, [None, Some(2)]), (0, 0, [Some(0); 2])]
+        {
+            if let (Some(x), Some(y)) = (column.checked_sub(across), row.checked_sub(down))
+                && x + 1 < columns
+                && y + 1 < rows
+            {
+                let cell = y * (columns - 1) + x;
+                let both = corners.into_iter().enumerate();
+                both.for_each(|(half, corner)| _ = corner.map(|k| offer((3 * (2 * cell + half) + k) as u32)));
             }
         }
-        // The border, counter-clockwise seen from above.
-        let border: Vec<u32> = (0..rows - 1)
-            .map(|row| at(0, row))
-            .chain((0..columns - 1).map(|column| at(column, rows - 1)))
-            .chain((1..rows).rev().map(|row| at(columns - 1, row)))
-            .chain((1..columns).rev().map(|column| at(column, 0)))
-            .collect();
-        let below = data.positions.len() as u32;
-        let floor = self.min.y - self.depth;
-        for &i in &border {
-            data.positions.push(data.positions[i as usize].with_y(floor));
-            data.uvs.push(data.uvs[i as usize]);
-        }
-        let middle = data.positions.len() as u32;
-        data.positions.push((self.min + 0.5 * size).with_y(floor));
-        data.uvs.push(Vec2::splat(0.5));
-        for (i, &p) in border.iter().enumerate() {
-            let next = (i + 1) % border.len();
-            let (q, p_below, q_below) = (border[next], below + i as u32, below + next as u32);
-            data.triangles.extend([[p, p_below, q_below], [p, q_below, q], [middle, q_below, p_below]]);
-        }
-        data.triangle_uvs = data.triangles.clone();
-        data
     }
 }

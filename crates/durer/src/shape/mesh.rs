@@ -1,13 +1,16 @@
 //! Triangle meshes: indexed triangles with optional normals and texture coordinates.
 
-pub use super::mesh_data::{MeshData, NO_INDEX, loosened, place_key};
-use super::normals::{Normals, made};
+use super::height_field::Terrain;
+pub use super::mesh_data::{MeshData, NO_INDEX, Triangles, loosened, place_key};
+use super::normals::{Normals, made, of_terrain};
 use super::triangle::triangle_surface;
 use super::{ShapeHit, Surface};
 use crate::describe::{FileName, Rule, described};
 use crate::dialect::{MeshNormals, set};
 use crate::math::{Aabb, Vec2, Vec3};
 use crate::source::Digest;
+use durer_bvh::{BuildQuality, TriangleBvh};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 described! {
@@ -21,11 +24,24 @@ described! {
 /// A mesh ready to be hit: every triangle has its corners, and normals if it is smooth.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
-    /// Shared with the description that it is of, unless that had to be changed.
-    data: Arc<MeshData>,
-    /// In place of those of `data`.
+    form: Form,
+    /// In place of those of the form.
     made: Option<Normals>,
     center: Vec3,
+}
+
+/// What triangles are taken from.
+#[derive(Clone, Debug)]
+enum Form {
+    /// Shared with the description that it is of, unless that had to be changed.
+    Lists(Arc<MeshData>),
+    Terrain(Terrain),
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Form::Lists(Arc::default())
+    }
 }
 
 impl Mesh {
@@ -34,22 +50,34 @@ impl Mesh {
     pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
         let data = data.into();
         let made = made(&data, rule, file_normals);
-        Mesh { data, made, center: Vec3::ZERO }
+        Mesh { form: Form::Lists(data), made, center: Vec3::ZERO }
+    }
+
+    /// Takes a landscape, with normals made by `rule`.
+    pub fn of_terrain(terrain: Terrain, rule: MeshNormals) -> Self {
+        let made = of_terrain(&terrain, rule);
+        Mesh { form: Form::Terrain(terrain), made, center: Vec3::ZERO }
     }
 
     /// The same about the origin, along the axes where single precision holds that exactly, if it
     /// lies [far](Aabb::is_far).
     pub fn centered(mut self) -> Self {
-        let bounds = Aabb::around(self.data.positions.iter().copied());
+        let bounds = match &self.form {
+            Form::Lists(data) => Aabb::around(data.positions.iter().copied()),
+            Form::Terrain(terrain) => terrain.bounds(),
+        };
         if bounds.is_far() {
             let middle = bounds.center();
-            for axis in 0..3 {
-                let moved =
-                    |p: &Vec3| f64::from(p[axis] - middle[axis]) == f64::from(p[axis]) - f64::from(middle[axis]);
-                if self.data.positions.iter().all(moved) {
-                    let positions = &mut Arc::make_mut(&mut self.data).positions;
-                    positions.iter_mut().for_each(|p| p[axis] -= middle[axis]);
-                    self.center[axis] = middle[axis];
+            let stays = |axis: usize, x: f32| f64::from(x - middle[axis]) == f64::from(x) - f64::from(middle[axis]);
+            let by = match &self.form {
+                Form::Lists(data) => [0, 1, 2].map(|axis| data.positions.iter().all(|p| stays(axis, p[axis]))),
+                Form::Terrain(terrain) => terrain.all_along(stays),
+            };
+            self.center = Vec3::from_array([0, 1, 2].map(|axis| if by[axis] { middle[axis] } else { 0.0 }));
+            if self.center != Vec3::ZERO {
+                match &mut self.form {
+                    Form::Lists(data) => Arc::make_mut(data).positions.iter_mut().for_each(|p| *p -= self.center),
+                    Form::Terrain(terrain) => *terrain = terrain.moved(self.center),
                 }
             }
         }
@@ -58,28 +86,34 @@ impl Mesh {
 
     /// Whether it has one normal a triangle.
     pub fn is_flat(&self) -> bool {
-        self.normals().1.is_empty()
+        (0..self.len() as u32).all(|part| self.corner_normals(part).is_none())
     }
 
     /// Normals of its corners, and three of them for each triangle; both may be empty.
-    pub fn normals(&self) -> (&[Vec3], &[[u32; 3]]) {
-        match &self.made {
-            Some(made) => (&made.values, &made.triangles),
-            None => (&self.data.normals, &self.data.triangle_normals),
+    pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
+        match (&self.made, &self.form) {
+            (Some(made), Form::Lists(data)) => (&made.values, made.listed(&**data)),
+            (Some(made), Form::Terrain(terrain)) => (&made.values, made.listed(terrain)),
+            (None, Form::Lists(data)) => (&data.normals, Cow::Borrowed(&data.triangle_normals)),
+            (None, Form::Terrain(_)) => (&[], Cow::Borrowed(&[])),
         }
     }
 
     /// The same with normals that a rule makes, whatever normals it had.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
-        Mesh { center: self.center, ..Mesh::new(self.data.clone(), rule, false) }
+        let mesh = match &self.form {
+            Form::Lists(data) => Mesh::new(data.clone(), rule, false),
+            Form::Terrain(terrain) => Mesh::of_terrain(terrain.clone(), rule),
+        };
+        Mesh { center: self.center, ..mesh }
     }
 
     /// The same with the other half of every triangle's parallelogram, whose normals go on as those
     /// of the triangle do.
     pub fn parallelograms(&self) -> Mesh {
-        let mut data = MeshData::clone(&self.data);
+        let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
-        (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.to_vec());
+        (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.into_owned());
         fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
             for i in 0..triangles.len() {
                 let [a, b, c] = triangles[i];
@@ -93,20 +127,59 @@ impl Mesh {
         halves(&mut data.triangle_normals, &mut data.normals);
         (data.triangle_uvs, data.vertices) = Default::default();
         (data.colors, data.second_uvs, data.tangents) = Default::default();
-        Mesh { data: data.into(), made: None, center: self.center }
+        Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
     }
 
     /// The hash of all that it holds.
     pub fn digest(&self) -> Digest {
         let (normals, triangles) = self.normals();
-        let (normals, triangles) = (normals.to_vec(), triangles.to_vec());
+        let (normals, triangles) = (normals.to_vec(), triangles.into_owned());
         let own = MeshData { normals, triangles, ..MeshData::default() };
-        Digest::of(format!("{} {} {:?}", self.data.digest(), own.digest(), self.center).as_bytes())
+        let of_form = match &self.form {
+            Form::Lists(data) => data.digest(),
+            Form::Terrain(terrain) => terrain.digest(),
+        };
+        Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
     }
 
-    /// What it is made of; its normals may be [others](Mesh::normals).
-    pub fn data(&self) -> &MeshData {
-        &self.data
+    /// What it is made of, in lists; its normals may be [others](Mesh::normals).
+    pub fn to_data(&self) -> Cow<'_, MeshData> {
+        match &self.form {
+            Form::Lists(data) => Cow::Borrowed(data),
+            Form::Terrain(terrain) => Cow::Owned(terrain.to_data()),
+        }
+    }
+
+    /// A tree over its triangles.
+    pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
+        match &self.form {
+            Form::Lists(data) => TriangleBvh::build(&data.positions, &data.triangles, quality),
+            Form::Terrain(terrain) => terrain.tree(quality),
+        }
+    }
+
+    /// The vertices' colours and opacity, by the number of the position; may be empty.
+    pub fn colors(&self) -> &[[f32; 4]] {
+        self.lists().map_or(&[], |data| &data.colors)
+    }
+
+    /// The texture coordinates of all corners, if they are one.
+    pub fn only_uv(&self) -> Option<Vec2> {
+        let uvs = &self.lists()?.uvs;
+        let first = *uvs.first()?;
+        uvs.iter().all(|uv| (*uv - first).abs().max_element() < 1e-6).then_some(first)
+    }
+
+    /// Whether it is a landscape.
+    pub fn is_terrain(&self) -> bool {
+        matches!(self.form, Form::Terrain(_))
+    }
+
+    fn lists(&self) -> Option<&MeshData> {
+        match &self.form {
+            Form::Lists(data) => Some(data),
+            Form::Terrain(_) => None,
+        }
     }
 
     /// How far it was moved by [`Mesh::centered`].
@@ -114,19 +187,12 @@ impl Mesh {
         self.center
     }
 
-    /// Corners' positions.
-    pub fn positions(&self) -> &[Vec3] {
-        &self.data.positions
-    }
-
-    /// Three positions a triangle.
-    pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.data.triangles
-    }
-
     /// How many triangles it has.
     pub fn len(&self) -> usize {
-        self.data.triangles.len()
+        match &self.form {
+            Form::Lists(data) => data.triangles.len(),
+            Form::Terrain(terrain) => terrain.len(),
+        }
     }
 
     /// Whether it has no triangle.
@@ -137,13 +203,19 @@ impl Mesh {
     /// Bytes that it takes in memory, its acceleration structure not counted.
     pub fn bytes(&self) -> usize {
         let made = self.made.as_ref();
-        self.data.bytes() + made.map_or(0, |made| size_of_val(&*made.values) + size_of_val(&*made.triangles))
+        let own = match &self.form {
+            Form::Lists(data) => data.bytes(),
+            Form::Terrain(terrain) => terrain.grid().memory_usage(),
+        };
+        own + made.map_or(0, Normals::bytes)
     }
 
     /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh
     /// an even number of times; else the ends of one that does not. Corners at the same place
     /// are one.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+        // A landscape with walls and floor is closed.
+        self.lists()?;
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for part in 0..self.len() as u32 {
             let [a, b, c] = self.corners(part);
@@ -161,9 +233,10 @@ impl Mesh {
     /// The corners of a triangle.
     #[inline]
     pub fn corners(&self, part: u32) -> [Vec3; 3] {
-        // Not by `map`, which is called like any function.
-        let ([a, b, c], at) = (self.data.triangles[part as usize], |i: u32| self.data.positions[i as usize]);
-        [at(a), at(b), at(c)]
+        match &self.form {
+            Form::Lists(data) => data.corners(part as usize),
+            Form::Terrain(terrain) => terrain.corners(part as usize),
+        }
     }
 
     /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
@@ -176,27 +249,43 @@ impl Mesh {
     /// The normals at a triangle's corners, if it has any.
     #[inline]
     pub(crate) fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
-        let (normals, triangles) = self.normals();
-        attribute(triangles, normals, part)
+        match (&self.made, &self.form) {
+            (Some(made), Form::Lists(data)) => made.of_triangle(&**data, part as usize),
+            (Some(made), Form::Terrain(terrain)) => made.of_triangle(terrain, part as usize),
+            (None, Form::Lists(data)) => attribute(&data.triangle_normals, &data.normals, part),
+            (None, Form::Terrain(_)) => None,
+        }
+    }
+
+    /// The texture coordinates of a triangle's corners, if it has any.
+    #[inline]
+    fn corner_uvs(&self, part: u32) -> Option<[Vec2; 3]> {
+        match &self.form {
+            Form::Lists(data) => attribute(&data.triangle_uvs, &data.uvs, part),
+            Form::Terrain(terrain) => Some(terrain.triangle(part as usize).map(|vertex| terrain.uv(vertex))),
+        }
     }
 
     /// The vertices' colours and opacity, mixed at a point of a triangle.
     fn color(&self, part: u32, barycentric: Vec3) -> Option<[f32; 4]> {
-        let [a, b, c] = attribute(&self.data.triangles, &self.data.colors, part)?;
+        let data = self.lists()?;
+        let [a, b, c] = attribute(&data.triangles, &data.colors, part)?;
         let Vec3 { x, y, z } = barycentric;
         Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
     }
 
     /// The second texture coordinates at a point of a triangle.
     pub fn second_uv(&self, part: u32, barycentric: Vec3) -> Option<Vec2> {
-        let [a, b, c] = attribute(&self.data.triangles, &self.data.second_uvs, part)?;
+        let data = self.lists()?;
+        let [a, b, c] = attribute(&data.triangles, &data.second_uvs, part)?;
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
     /// The directions in which u and v grow at a point of a triangle: those of the file, or those
     /// of the triangle.
     pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
-        if let Some(corners) = attribute(&self.data.triangles, &self.data.tangents, part).filter(|_| !second) {
+        let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, part));
+        if let Some(corners) = tangents.filter(|_| !second) {
             let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
             let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
             if tangent != Vec3::ZERO {
@@ -209,8 +298,8 @@ impl Mesh {
     /// How a point of a triangle moves as its texture coordinates grow by 1.
     pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
-            true => attribute(&self.data.triangles, &self.data.second_uvs, part)?,
-            false => attribute(&self.data.triangle_uvs, &self.data.uvs, part)?,
+            true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, part))?,
+            false => self.corner_uvs(part)?,
         };
         let [p, q, r] = self.corners(part);
         let (along, across) = (b - a, c - a);
@@ -225,7 +314,7 @@ impl Mesh {
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
         // All that lies far away in memory is asked for before anything waits for it.
         let (corners, normals) = (self.corners(part), self.corner_normals(part));
-        let uvs = attribute(&self.data.triangle_uvs, &self.data.uvs, part);
+        let uvs = self.corner_uvs(part);
         let mut surface = triangle_surface(corners, normals, crossing.uv);
         let barycentric = surface.barycentric;
         surface.uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c).into();

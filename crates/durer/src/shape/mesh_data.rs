@@ -41,6 +41,65 @@ pub struct MeshData {
     pub flat: bool,
 }
 
+/// Triangles by number, however they are kept.
+pub trait Triangles: Sync {
+    /// How many triangles there are.
+    fn len(&self) -> usize;
+
+    /// Whether there are none.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// How many vertices there are.
+    fn vertices(&self) -> usize;
+
+    /// The vertices at the corners of a triangle, counter-clockwise seen from outside.
+    fn triangle(&self, number: usize) -> [u32; 3];
+
+    /// Where a vertex is.
+    fn position(&self, vertex: u32) -> Vec3;
+
+    /// Where the corners of a triangle are.
+    #[inline]
+    fn corners(&self, number: usize) -> [Vec3; 3] {
+        // Not by `map`, which is called like any function.
+        let [a, b, c] = self.triangle(number);
+        [self.position(a), self.position(b), self.position(c)]
+    }
+
+    /// How many of the first triangles are found around a vertex without lists.
+    fn ordered(&self) -> usize {
+        0
+    }
+
+    /// Offers the corners of those triangles at a vertex, in their order: corner k of triangle i
+    /// as 3 i + k.
+    fn ordered_around(&self, _vertex: u32, _offer: impl FnMut(u32)) {}
+}
+
+impl Triangles for MeshData {
+    #[inline]
+    fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    #[inline]
+    fn vertices(&self) -> usize {
+        self.positions.len()
+    }
+
+    #[inline]
+    fn triangle(&self, number: usize) -> [u32; 3] {
+        self.triangles[number]
+    }
+
+    #[inline]
+    fn position(&self, vertex: u32) -> Vec3 {
+        self.positions[vertex as usize]
+    }
+}
+
 impl MeshData {
     /// Bytes that it takes in memory.
     pub fn bytes(&self) -> usize {

@@ -32,7 +32,7 @@ pub use disc::Disc;
 pub use durer_bvh::watertight;
 pub use ellipsoid::Ellipsoid;
 use glam::DVec3;
-pub use height_field::HeightField;
+pub use height_field::{HeightField, Terrain};
 pub use mesh::{Mesh, MeshData, TriangleMesh};
 pub use plane::Plane;
 pub use quadric::Quadric;

@@ -1,18 +1,82 @@
 //! Normals at the corners of a mesh that brings none.
 
-use super::mesh_data::{MeshData, NO_INDEX};
+use super::height_field::Terrain;
+use super::mesh_data::{MeshData, NO_INDEX, Triangles};
 use crate::dialect::MeshNormals;
 use crate::math::{Vec3, fp};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::borrow::Cow;
+use std::ops::Range;
+
+/// At most so many faces of a vertex are compared with each other.
+const MANY: usize = 64;
+/// So many vertices are looked at by one thread, at least.
+const AT_ONCE: usize = 256;
+/// And so many in parallel: not all, which would take much memory for a while.
+const TOGETHER: usize = 64 * AT_ONCE;
 
 /// Normals of the corners of triangles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Normals {
     /// Normals, not necessarily of length 1; may be empty.
     pub values: Vec<Vec3>,
-    /// Three of them a triangle, or [`NO_INDEX`]; empty where no triangle has any.
-    pub triangles: Vec<[u32; 3]>,
+    /// Which of them corners have.
+    pub corners: Corners,
+}
+
+/// Which normals the corners of triangles have.
+#[derive(Clone, Debug)]
+pub(super) enum Corners {
+    /// Three a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    Listed(Vec<[u32; 3]>),
+    /// The first one of each vertex, and for each corner how far behind that its own is: in a third
+    /// of the memory, and slower.
+    ByVertex(Vec<u32>, Vec<[u8; 3]>),
+}
+
+impl Default for Corners {
+    fn default() -> Self {
+        Corners::Listed(Vec::new())
+    }
+}
+
+impl Normals {
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&*self.values)
+            + match &self.corners {
+                Corners::Listed(triangles) => size_of_val(&**triangles),
+                Corners::ByVertex(firsts, behind) => size_of_val(&**firsts) + size_of_val(&**behind),
+            }
+    }
+
+    /// Three a triangle of a mesh.
+    pub fn listed(&self, mesh: &impl Triangles) -> Cow<'_, [[u32; 3]]> {
+        match &self.corners {
+            Corners::Listed(triangles) => Cow::Borrowed(triangles),
+            Corners::ByVertex(..) => (0..mesh.len()).map(|i| self.at_corners(mesh, i)).collect(),
+        }
+    }
+
+    /// Those of a triangle, where any are listed.
+    #[inline]
+    fn at_corners(&self, mesh: &impl Triangles, triangle: usize) -> [u32; 3] {
+        match &self.corners {
+            Corners::Listed(triangles) => triangles.get(triangle).copied().unwrap_or([NO_INDEX; 3]),
+            Corners::ByVertex(firsts, behind) => {
+                let ([a, b, c], [i, j, k]) = (mesh.triangle(triangle), behind[triangle].map(u32::from));
+                [firsts[a as usize] + i, firsts[b as usize] + j, firsts[c as usize] + k]
+            }
+        }
+    }
+
+    /// The normals at the corners of a triangle, if it has any.
+    #[inline]
+    pub fn of_triangle(&self, mesh: &impl Triangles, triangle: usize) -> Option<[Vec3; 3]> {
+        let [a, b, c] = self.at_corners(mesh, triangle);
+        Some([*self.values.get(a as usize)?, *self.values.get(b as usize)?, *self.values.get(c as usize)?])
+    }
 }
 
 /// The normals of all triangles, with those that a rule makes for such as have none, or for all
@@ -28,111 +92,173 @@ pub(super) fn made(data: &MeshData, rule: MeshNormals, file_normals: bool) -> Op
     if data.flat || (0..data.triangles.len()).all(|i| !missing(i)) {
         return as_they_are();
     }
-    let rule = match rule {
-        MeshNormals::SmoothAbove(count) if data.positions.len() > count => MeshNormals::SmoothByArea,
-        MeshNormals::SmoothAbove(_) => MeshNormals::Flat,
-        other => other,
-    };
-    let mut made = match rule {
-        MeshNormals::SmoothByArea => smooth(data, |cross| cross),
-        MeshNormals::SmoothByFace => smooth(data, DVec3::normalize_or_zero),
-        MeshNormals::Crease(degrees) => creased(data, degrees),
-        MeshNormals::Flat | MeshNormals::SmoothAbove(_) => return as_they_are(),
-    };
+    let Some(mut made) = by_rule(data, &data.vertices, rule, false) else { return as_they_are() };
     if !own.0.is_empty() {
         let base = own.0.len() as u32;
         made.values.splice(..0, own.0.iter().copied());
-        for (i, triangle) in made.triangles.iter_mut().enumerate() {
+        let Corners::Listed(triangles) = &mut made.corners else { unreachable!("rules list") };
+        for (i, triangle) in triangles.iter_mut().enumerate() {
             *triangle = if missing(i) { triangle.map(|n| n + base) } else { own.1[i] };
         }
     }
     Some(made)
 }
 
+/// The normals of a landscape. Of each vertex there are few, for few triangles meet there, or all
+/// in one plane.
+pub(super) fn of_terrain(terrain: &Terrain, rule: MeshNormals) -> Option<Normals> {
+    by_rule(terrain, &[], rule, true)
+}
+
+/// The normals that a rule makes for all triangles, if they are not flat. Where `vertices` are not
+/// empty, triangles that share them are smooth beside each other. Creases are told by
+/// vertex where that is wanted.
+fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_vertex: bool) -> Option<Normals> {
+    match rule {
+        MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
+        MeshNormals::SmoothByArea | MeshNormals::SmoothAbove(_) => Some(smooth(mesh, vertices, |cross| cross)),
+        MeshNormals::SmoothByFace => Some(smooth(mesh, vertices, DVec3::normalize_or_zero)),
+        MeshNormals::Crease(degrees) => Some(creased(mesh, degrees, by_vertex)),
+        MeshNormals::Flat => None,
+    }
+}
+
 /// Twice the area of a triangle times its normal. Tiny areas are beyond single precision.
-fn cross(data: &MeshData, triangle: [u32; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
+fn cross(mesh: &impl Triangles, triangle: usize) -> DVec3 {
+    let [a, b, c] = mesh.corners(triangle).map(|p| p.as_dvec3());
     (b - a).cross(c - a)
 }
 
 /// One normal a vertex: the sum over its faces, each weighted by a function of its cross product.
-fn smooth(data: &MeshData, weigh: impl Fn(DVec3) -> DVec3) -> Normals {
-    let vertices = if data.vertices.is_empty() { &data.triangles } else { &data.vertices };
-    let count = vertices.iter().flatten().max().map_or(0, |&last| last as usize + 1);
+fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) -> DVec3) -> Normals {
+    let triangles = match vertices.is_empty() {
+        true => (0..mesh.len()).map(|i| mesh.triangle(i)).collect(),
+        false => vertices.to_vec(),
+    };
+    let count = triangles.iter().flatten().max().map_or(0, |&last| last as usize + 1);
     let mut sums = vec![DVec3::ZERO; count];
-    for (&triangle, vertices) in data.triangles.iter().zip(vertices) {
-        let normal = weigh(cross(data, triangle));
+    for (i, vertices) in triangles.iter().enumerate() {
+        let normal = weigh(cross(mesh, i));
         for &i in vertices {
             sums[i as usize] += normal;
         }
     }
     let values = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
-    Normals { values, triangles: vertices.clone() }
+    Normals { values, corners: Corners::Listed(triangles) }
 }
 
 /// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a
-/// crease.
+/// crease. Those of one vertex are mostly the same, and kept once.
 ///
 /// Source of the weights: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*,
 /// JGT 3(1), 1998.
-fn creased(data: &MeshData, degrees: f32) -> Normals {
+fn creased(mesh: &impl Triangles, degrees: f32, by_vertex: bool) -> Normals {
     let least_cosine = fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
-    let face = |&triangle: &[u32; 3]| cross(data, triangle).normalize_or_zero().as_vec3();
-    let faces: Vec<Vec3> = data.triangles.par_iter().map(face).collect();
-    // For each vertex the corners that meet there, as one flat list: corner 3i + k is corner k of
-    // triangle i.
-    let mut starts = vec![0u32; data.positions.len() + 1];
-    for i in data.triangles.iter().flatten() {
-        starts[*i as usize + 1] += 1;
-    }
-    for i in 1..starts.len() {
-        starts[i] += starts[i - 1];
-    }
-    let mut next = starts.clone();
-    let mut corners = vec![0u32; data.triangles.len() * 3];
-    for (corner, i) in data.triangles.iter().flatten().enumerate() {
-        corners[next[*i as usize] as usize] = corner as u32;
-        next[*i as usize] += 1;
-    }
-    // A vertex with very many faces stays faceted, lest the time be quadratic.
-    const MANY: usize = 64;
+    let around = Around::new(mesh);
+    let face = |corner: u32| cross(mesh, corner as usize / 3).normalize_or_zero().as_vec3();
     let angle = |corner: u32| {
-        let [triangle, k] = [corner as usize / 3, corner as usize % 3];
-        let at = |k: usize| data.positions[data.triangles[triangle][k % 3] as usize].as_dvec3();
+        let (corners, k) = (mesh.corners(corner as usize / 3), corner as usize);
+        let at = |k: usize| corners[k % 3].as_dvec3();
         let edge = |to: usize| (at(to) - at(k)).normalize_or_zero().as_vec3();
         let (e, f) = (edge(k + 1), edge(k + 2));
         fp::atan2(e.cross(f).length(), e.dot(f))
     };
-    let angles: Vec<f32> = (0..corners.len() as u32).into_par_iter().map(angle).collect();
-    let normal = |i: usize, vertex: u32| {
-        let around = &corners[starts[vertex as usize] as usize..starts[vertex as usize + 1] as usize];
-        let sum: Vec3 = if around.len() > MANY {
-            faces[i]
-        } else {
-            let near = around.iter().filter(|&&c| faces[c as usize / 3].dot(faces[i]) >= least_cosine);
-            near.map(|&c| angles[c as usize] * faces[c as usize / 3]).sum()
-        };
-        sum.normalize_or(faces[i])
-    };
-    let of_triangle = |(i, triangle): (usize, &[u32; 3])| triangle.map(|vertex| normal(i, vertex));
-    let own: Vec<[Vec3; 3]> = data.triangles.par_iter().enumerate().map(of_triangle).collect();
-    // Corners of one vertex mostly have one normal, which is kept once.
-    let (mut values, mut triangles): (Vec<Vec3>, _) = (Vec::new(), vec![[0; 3]; own.len()]);
-    for ends in starts.windows(2) {
-        let first = values.len();
-        for &corner in &corners[ends[0] as usize..ends[1] as usize] {
-            let [triangle, k] = [corner as usize / 3, corner as usize % 3];
-            let normal = own[triangle][k];
-            let known = values[first..]
-                .iter()
-                .take(MANY)
-                .position(|v| v.to_array().map(f32::to_bits) == normal.to_array().map(f32::to_bits));
-            triangles[triangle][k] = (first + known.unwrap_or(values.len() - first)) as u32;
-            if known.is_none() {
-                values.push(normal);
+    // The normals of some vertices, the first of each, and for each corner there which it has.
+    let some = |vertices: Range<usize>| {
+        let (mut values, mut firsts, mut numbers): (Vec<Vec3>, Vec<u32>, Vec<[u32; 2]>) = Default::default();
+        let (mut corners, mut faces): (Vec<u32>, Vec<(Vec3, f32)>) = Default::default();
+        for vertex in vertices {
+            corners.clear();
+            around.offer(mesh, vertex as u32, |corner| corners.push(corner));
+            faces.clear();
+            // A vertex with very many faces stays faceted, lest the time be quadratic.
+            let is_faceted = corners.len() > MANY;
+            if !is_faceted {
+                faces.extend(corners.iter().map(|&corner| (face(corner), angle(corner))));
             }
+            let first = values.len();
+            firsts.push(first as u32);
+            for (i, &corner) in corners.iter().enumerate() {
+                let own = if is_faceted { face(corner) } else { faces[i].0 };
+                let near = faces.iter().filter(|(face, _)| face.dot(own) >= least_cosine);
+                let sum: Vec3 = if is_faceted { own } else { near.map(|(face, angle)| angle * face).sum() };
+                let normal = sum.normalize_or(own);
+                let same = |v: &Vec3| v.to_array().map(f32::to_bits) == normal.to_array().map(f32::to_bits);
+                let known = values[first..].iter().take(MANY).position(same);
+                numbers.push([corner, (first + known.unwrap_or(values.len() - first)) as u32]);
+                if known.is_none() {
+                    values.push(normal);
+                }
+            }
+        }
+        (values, firsts, numbers)
+    };
+    let count = mesh.vertices();
+    let mut values = Vec::with_capacity(count);
+    let mut of_corners = match by_vertex {
+        true => Corners::ByVertex(Vec::with_capacity(count), vec![[0; 3]; mesh.len()]),
+        false => Corners::Listed(vec![[0; 3]; mesh.len()]),
+    };
+    for first in (0..count).step_by(TOGETHER) {
+        let starts = (first..count.min(first + TOGETHER)).into_par_iter().step_by(AT_ONCE);
+        let made: Vec<_> = starts.map(|start| some(start..count.min(start + AT_ONCE))).collect();
+        for (own, of_vertices, numbers) in made {
+            let base = values.len() as u32;
+            if let Corners::ByVertex(firsts, _) = &mut of_corners {
+                firsts.extend(of_vertices.iter().map(|first| base + first));
+            }
+            for [corner, number] in numbers {
+                let (i, k) = (corner as usize / 3, corner as usize % 3);
+                match &mut of_corners {
+                    Corners::Listed(triangles) => triangles[i][k] = base + number,
+                    Corners::ByVertex(firsts, behind) => {
+                        behind[i][k] = (base + number - firsts[mesh.triangle(i)[k] as usize]) as u8;
+                    }
+                }
+            }
+            values.extend(own);
         }
     }
     values.shrink_to_fit();
-    Normals { values, triangles }
+    Normals { values, corners: of_corners }
+}
+
+/// The corners at each vertex, as one flat list, of triangles that are not
+/// [found without](Triangles::ordered): corner k of triangle i as 3 i + k.
+struct Around {
+    /// Where those of each vertex begin, and where the last one's end.
+    starts: Vec<u32>,
+    corners: Vec<u32>,
+}
+
+impl Around {
+    fn new(mesh: &impl Triangles) -> Self {
+        let listed = mesh.ordered()..mesh.len();
+        let mut starts = vec![0; mesh.vertices() + 1];
+        for vertex in listed.clone().flat_map(|i| mesh.triangle(i)) {
+            starts[vertex as usize + 1] += 1;
+        }
+        for i in 1..starts.len() {
+            starts[i] += starts[i - 1];
+        }
+        let mut corners = vec![0; 3 * listed.len()];
+        for i in listed {
+            for (k, vertex) in mesh.triangle(i).into_iter().enumerate() {
+                let next = &mut starts[vertex as usize];
+                corners[*next as usize] = (3 * i + k) as u32;
+                *next += 1;
+            }
+        }
+        // Each start has moved on to the next one's.
+        starts.rotate_right(1);
+        starts[0] = 0;
+        Around { starts, corners }
+    }
+
+    /// All corners at a vertex, in the order of the triangles.
+    fn offer(&self, mesh: &impl Triangles, vertex: u32, mut offer: impl FnMut(u32)) {
+        mesh.ordered_around(vertex, &mut offer);
+        let [start, end] = [0, 1].map(|next| self.starts[vertex as usize + next] as usize);
+        self.corners[start..end].iter().for_each(|&corner| offer(corner));
+    }
 }

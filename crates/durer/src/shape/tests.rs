@@ -5,6 +5,7 @@ mod inside;
 mod leaving;
 mod mesh_rules;
 mod tangents;
+mod terrain;
 
 use super::*;
 use crate::describe::DescribedList;

@@ -14,7 +14,7 @@ impl World {
                 left_out += 1;
                 continue;
             };
-            let (data, (normals, triangle_normals)) = (tree.mesh.data(), tree.mesh.normals());
+            let (data, (normals, triangle_normals)) = (tree.mesh.to_data(), tree.mesh.normals());
             let point = |p: &Vec3| object.world_point(*p);
             let normal = |n: &Vec3| object.to_world.as_ref().map_or(*n, |to_world| to_world.normal(*n));
             let bases = [&all.positions.len(), &all.uvs.len(), &all.normals.len()].map(|count| *count as u32);
@@ -37,7 +37,7 @@ impl World {
             all.triangles.extend(turned(&data.triangles, bases[0]));
             for (list, own, base) in [
                 (&mut all.triangle_uvs, &data.triangle_uvs[..], bases[1]),
-                (&mut all.triangle_normals, triangle_normals, bases[2]),
+                (&mut all.triangle_normals, &triangle_normals, bases[2]),
             ] {
                 if !own.is_empty() {
                     list.resize(before, [NO_INDEX; 3]);

@@ -62,7 +62,7 @@ pub struct MeshTree {
 impl MeshTree {
     /// Builds the tree.
     pub fn new(mesh: Mesh, quality: BuildQuality) -> Self {
-        let bvh = TriangleBvh::build(mesh.positions(), mesh.triangles(), quality);
+        let bvh = mesh.tree(quality);
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 

@@ -226,7 +226,7 @@ impl World {
     pub(crate) fn finds_cutouts(&self) -> bool {
         let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
         let clear = |object: &Object| match &object.geometry {
-            Geometry::Mesh(tree) => tree.mesh.data().colors.iter().any(|color| color[3] < 1.0),
+            Geometry::Mesh(tree) => tree.mesh.colors().iter().any(|color| color[3] < 1.0),
             _ => false,
         };
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))

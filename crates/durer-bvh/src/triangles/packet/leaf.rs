@@ -6,6 +6,7 @@ use crate::lanes::{Columns, Lanes, Numbers, WIDE, WIDTH, Wide};
 use crate::node;
 use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
 use crate::triangles::number;
+use std::mem::MaybeUninit;
 
 /// The triangles of a leaf, as they are or as seen from a point, by corner and axis.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
@@ -92,7 +93,8 @@ impl Packet<'_> {
     #[inline(always)]
     fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
-        let (rows, count) = self.bvh.rows(leaf);
+        let mut room = MaybeUninit::uninit();
+        let (rows, count) = self.bvh.rows(leaf, &mut room);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);
@@ -163,7 +165,8 @@ impl Packet<'_> {
     /// All triangles at once with each ray.
     #[inline(always)]
     fn ray_by_ray<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
-        let (rows, count) = self.bvh.rows(leaf);
+        let mut room = MaybeUninit::uninit();
+        let (rows, count) = self.bvh.rows(leaf, &mut room);
         let [x, y, z] = self.axes.turned();
         let columns = Columns::new(&self.axes.turn, count);
         let triangles = lanes.corners(rows, columns);

@@ -34,7 +34,8 @@ proptest! {
         let usual = samples.iter().copied().filter(|s| s.3.is_finite() && s.2 % 4 != 3);
         let usual: Vec<Sample> = usual.map(|s| Sample(s.0, s.1, s.2, s.3.clamp(Vec3::splat(-7.0), Vec3::splat(7.0)), 1.0)).collect();
         let single: Vec<Sample> = (0..6).zip(&usual).map(|(i, &Sample(_, _, s, color, weight))| Sample(i % 3, i / 3, s, color, weight)).collect();
-        for (samples, count) in [(&samples, 50), (&usual, 120), (&single, 1)] {
+        let negative: Vec<Sample> = usual.iter().map(|s| Sample(s.0, s.1, s.2, s.3, if s.2 % 2 == 0 { 1.25 } else { -1.25 })).collect();
+        for (samples, count) in [(&samples, 50), (&usual, 120), (&negative, 121), (&single, 1)] {
             let film = film(samples);
             let packed = Packed::new(film.clone(), count);
             prop_assert_eq!(&packed.film([0, 0, 3, 2]), &film);
@@ -44,7 +45,8 @@ proptest! {
             prop_assert_eq!(means, whole.collect::<Vec<_>>());
             match (samples.len(), count) {
                 (6, 1) => prop_assert!(matches!(packed, Packed::Single(..))),
-                (_, 120) => prop_assert!(matches!(packed, Packed::Small(..) | Packed::Single(..))),
+                (_, 120) => prop_assert!(matches!(packed, Packed::Even(..))),
+                (1.., 121) => prop_assert!(matches!(packed, Packed::Small(..))),
                 _ => {}
             }
         }

@@ -251,7 +251,7 @@ mod tests {
     #[test]
     fn rows_are_read_by_others() {
         for alpha in [false, true] {
-            let strip = Strip { width: 3, height: 2, alpha, display: Default::default(), whole: false };
+            let strip = Strip { width: 3, height: 2, alpha, display: Default::default() };
             let rows = [[Vec3::X, Vec3::new(f32::MAX, -2.0, 1e-30), Vec3::ZERO], [Vec3::Y, Vec3::Z, Vec3::ONE]];
             let shares = if alpha { &[0.25, 0.5, 1.0][..] } else { &[] };
             let mut bytes = Vec::new();
@@ -271,7 +271,7 @@ mod tests {
             let expected = alpha.then(|| FlatSamples::F32([shares, shares].concat()));
             assert_eq!(values("A"), expected);
         }
-        let strip = Strip { width: 1 << 30, height: 1, alpha: false, display: Default::default(), whole: false };
+        let strip = Strip { width: 1 << 30, height: 1, alpha: false, display: Default::default() };
         assert!(head_of_rows(&strip).is_err());
     }
 

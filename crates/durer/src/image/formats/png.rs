@@ -1,10 +1,8 @@
 //! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not
 //! see everything.
 
-use super::{
-    Depth, Format, Head, ImageError, Layer, Raster, RowFormat, WriteOptions, codec, eight_bit, eight_bit_alpha,
-};
-use ::image::{ExtendedColorType, ImageFormat, codecs::png::PngEncoder};
+use super::{Depth, Format, Head, ImageError, Raster, RowFormat, codec, rows};
+use ::image::ImageFormat;
 use std::borrow::Cow;
 
 const NAME: &str = "PNG";
@@ -19,7 +17,7 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(MARK),
     head,
     decode,
-    encode,
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
     rows: Some(&ROWS),
 };
 
@@ -71,8 +69,6 @@ fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
     }
 }
 
-/// For pictures that are too large for memory. The library packs rows that come one by one less
-/// quickly.
 static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |_| Ok(Vec::new()),
@@ -82,14 +78,3 @@ static ROWS: RowFormat = RowFormat {
     },
     png: true,
 };
-
-fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
-    layers.iter().try_for_each(|layer| {
-        let size = (layer.image.width, layer.image.height);
-        let encoder = PngEncoder::new(&mut *out);
-        match eight_bit_alpha(layer, options) {
-            Some(rgba) => codec::encode(NAME, encoder, &rgba, ExtendedColorType::Rgba8, size),
-            None => codec::encode(NAME, encoder, &eight_bit(layer, options), ExtendedColorType::Rgb8, size),
-        }
-    })
-}

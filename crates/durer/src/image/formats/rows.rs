@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use std::io::{self, Write};
 
 /// Rows that are made side by side, and then written.
-const AT_ONCE: usize = 128;
+const AT_ONCE: usize = 32;
 
 /// How a format writes rows.
 #[derive(Debug)]
@@ -32,8 +32,6 @@ pub struct Strip {
     pub alpha: bool,
     /// What makes eight bits of a colour.
     pub display: Display,
-    /// Whether memory is there for all of it in eight bits: PNG is packed quicker so.
-    pub whole: bool,
 }
 
 impl Strip {
@@ -41,7 +39,7 @@ impl Strip {
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
         let Image { width, height, .. } = *layer.image;
-        Strip { width, height, alpha, display: super::display(layer, options), whole: true }
+        Strip { width, height, alpha, display: super::display(layer, options) }
     }
 
     /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where
@@ -86,29 +84,32 @@ impl Format {
         let head = (format.head)(&strip)?;
         if !format.png {
             out.write_all(&head)?;
-            return rows(&mut RowWriter { format, strip, next: 0, out });
         }
-        let mut encoder = png::Encoder::new(out, strip.width, strip.height);
-        encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_compression(png::Compression::Fast);
-        encoder.set_filter(png::Filter::Adaptive);
-        let mut file = encoder.write_header().map_err(io::Error::from)?;
-        let made = if strip.whole {
-            let channels = if strip.alpha { 4 } else { 3 };
-            let mut bytes = Vec::with_capacity(channels * strip.width as usize * strip.height as usize);
-            let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut bytes })?;
-            file.write_image_data(&bytes).map_err(io::Error::from)?;
-            made
-        } else {
-            let mut packed = file.stream_writer().map_err(io::Error::from)?;
-            let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed })?;
-            packed.finish().map_err(io::Error::from)?;
-            made
-        };
-        file.finish().map_err(io::Error::from)?;
-        Ok(made)
+        packed(format, strip, out, rows)
     }
+}
+
+/// Writes rows, packed where that is the format's way.
+fn packed<T, E: From<io::Error>>(
+    format: &'static RowFormat,
+    strip: Strip,
+    out: &mut dyn Write,
+    rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
+) -> Result<T, E> {
+    if !format.png {
+        return rows(&mut RowWriter { format, strip, next: 0, out });
+    }
+    let mut encoder = png::Encoder::new(out, strip.width, strip.height);
+    encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut file = encoder.write_header().map_err(io::Error::from)?;
+    let mut packed = file.stream_writer().map_err(io::Error::from)?;
+    let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed })?;
+    packed.finish().map_err(io::Error::from)?;
+    file.finish().map_err(io::Error::from)?;
+    Ok(made)
 }
 
 impl RowWriter<'_> {
@@ -147,9 +148,11 @@ pub(super) fn encode(
 ) -> Result<(), ImageError> {
     for layer in layers {
         let strip = Strip::of(layer, options);
-        out.extend((format.head)(&strip)?);
+        if !format.png {
+            out.extend((format.head)(&strip)?);
+        }
         let coverage = layer.coverage.as_deref().unwrap_or_default();
-        let written = RowWriter { format, strip, next: 0, out }.rows(&layer.image.pixels, coverage);
+        let written = packed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
         // Memory takes whatever is written.
         debug_assert!(written.is_ok());
     }

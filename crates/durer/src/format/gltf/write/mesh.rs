@@ -42,8 +42,8 @@ impl Writer<'_> {
             return None;
         }
         let smooth = Mesh::new(data.clone(), self.output.normals, true);
-        let (data, (normals, triangle_normals)) = (smooth.data(), smooth.normals());
-        let (order, vertices) = welded(data, triangle_normals);
+        let (normals, triangle_normals) = smooth.normals();
+        let (order, vertices) = welded(data, &triangle_normals);
         let mut attributes = json!({});
         let list = |get: &dyn Fn(&[u32; 3]) -> Vec<f32>| -> Vec<f32> { vertices.iter().flat_map(get).collect() };
         let positions = list(&|v| data.positions[v[0] as usize].to_array().into());
