@@ -95,7 +95,7 @@ impl TraversalCounter for TraversalStats {
 /// version.
 #[doc(hidden)]
 pub mod internal {
-    pub use crate::lanes::{PlainKernel, room, run_plain};
+    pub use crate::lanes::{PlainKernel, bring_near, room, run_plain};
     pub use crate::math::random;
     pub use crate::traverse::is_sound;
 }

@@ -108,7 +108,10 @@ fn back(v: Vec3) -> Vec3 {
 
 fn of_lights(world: &World, cells: Cells) -> Verdict {
     let (point, n) = (Vec3::ZERO.as_dvec3(), Vec3::ZERO);
-    let sample = |choice: f32, u: Vec2| Some(turned(world.emitters().sample(world, point, n, choice, u)?.wi));
+    let sample = |choice: f32, u: Vec2| {
+        let choice = world.emitters().choose(world, point, n, choice)?;
+        Some(turned(world.emitters().sample(world, &choice, point, u)?.wi))
+    };
     let pdf = |wi: Vec3| {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);

@@ -24,7 +24,7 @@ pub(crate) use level::Available;
 pub use level::{PlainKernel, SimdLevel, UnknownSimdLevel, run_plain};
 pub(crate) use operations::{Columns, Kernel, Lanes, Numbers, ROOM_OF_ROWS, ROWS, Rows, Sides, WIDE, Wide, numbers_of};
 pub(crate) use pages::listed;
-pub use pages::room;
+pub use pages::{bring_near, room};
 pub(crate) use stack::{Stack, StackStorage};
 
 pub(crate) use crate::node::WIDTH;

@@ -1,4 +1,4 @@
-//! Large pages of memory.
+//! Memory: large pages, and what is brought near.
 
 use crate::parallel;
 
@@ -16,6 +16,23 @@ pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync
     let mut all = room(count + more);
     parallel::extend(&mut all, count, AT_ONCE, of);
     all
+}
+
+/// Has something that lies far away in memory brought near, where the processor can do that while
+/// it goes on.
+#[inline]
+pub fn bring_near<T>(thing: &T) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // It may begin in the middle of a line.
+        for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>().saturating_sub(1)]) {
+            // SAFETY: the instruction takes any address, and every processor has it.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(thing).cast::<i8>().wrapping_add(byte)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = thing;
 }
 
 /// Asks the system to put room for so many things, in which nothing has been written yet, on large

@@ -22,7 +22,7 @@ pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{Gathered, PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use vertex::{Place, Scattered, Vertex};
+use vertex::{Chosen, Place, Scattered, Vertex};
 
 /// The integrator over one world.
 #[derive(Clone, Debug)]
@@ -188,9 +188,7 @@ impl<'w> Path<'w> {
         let sample = self.sample(id);
         let state = State { from_camera: None, ..self.start(surface.point()) };
         let vertex = self.vertex(Place::Surface(surface, &shading, None), &state, &sample);
-        let near = self.direct(&vertex, &sample, tally) + self.caustic(&vertex, &sample, tally);
-        let light = near + self.indirect(&vertex, &sample, tally);
-        std::f32::consts::PI * sample.lanes.color(light)
+        std::f32::consts::PI * sample.lanes.color(self.scattered(Spectrum::ZERO, &vertex, &sample, tally))
     }
 
     /// What a ray carries from a point where it is given no other.
@@ -222,7 +220,7 @@ impl<'w> Path<'w> {
                 if state.from_camera.is_some() {
                     let suns = self.world.emitters().suns(dir);
                     sky += suns
-                        .map(|(light, color)| sample.lanes.light_of(color, self.world.illuminant(light)))
+                        .map(|(light, color)| sample.lanes.light_of(color, || self.world.illuminant(light)))
                         .sum::<Spectrum>();
                 }
                 let chance = |from: &Scattered| self.world.emitters().chance_of_sky(self.world, from.point, from.n);
@@ -353,7 +351,7 @@ impl<'w> Path<'w> {
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(at);
         if emitted != Color::ZERO {
-            let emitted = sample.lanes.light_of(emitted, self.world.own_illuminant(at.material));
+            let emitted = sample.lanes.light_of(emitted, || self.world.own_illuminant(at.material));
             let carried = self.world.emitters().chooses(&at.hit, at.ray.dir());
             let weight = self.weight(state, carried, |from| self.pdf_of_hit(at, from));
             tally.begin(|| TermKind::Emission { mis: weight });
@@ -390,11 +388,20 @@ impl<'w> Path<'w> {
             return sum;
         }
         let mut sum = sum;
-        if vertex.place.is_broad() {
-            sum += self.direct(vertex, sample, tally);
+        let is_broad = vertex.place.is_broad();
+        // A light is waited for, in many it lies far away in memory: meanwhile a direction is chosen.
+        let light = if is_broad { self.choose(vertex) } else { None };
+        let direction = vertex.place.sample(vertex.numbers(Use::Choices).x, vertex.numbers(Use::Direction));
+        if let Some(light) = light {
+            sum += self.direct(&light, vertex, sample, tally);
+        }
+        if is_broad {
             sum += self.caustic(vertex, sample, tally);
         }
-        sum + self.indirect(vertex, sample, tally)
+        match direction {
+            Some(chosen) => sum + self.indirect(&chosen, vertex, sample, tally),
+            None => sum,
+        }
     }
 
     /// The light of lamps that mirrors and glass throw on a surface, or into a medium.
@@ -415,10 +422,8 @@ impl<'w> Path<'w> {
     }
 
     /// The light from a direction that is chosen.
-    fn indirect<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    fn indirect<T: TraceListener>(&self, chosen: &Chosen, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let Vertex { place, state, .. } = vertex;
-        let u = vertex.numbers(Use::Direction);
-        let Some(chosen) = place.sample(vertex.numbers(Use::Choices).x, u) else { return Spectrum::ZERO };
         let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {

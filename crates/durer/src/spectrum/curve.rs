@@ -21,12 +21,14 @@ impl Curve {
         Some(Curve { rows, color })
     }
 
-    /// The light of a lamp, of any strength: it is made as bright as 1. `None` without light.
+    /// The light of a lamp, of any strength: it is made as bright as 1. `None` without light, or with
+    /// so little beside what is not seen that this leaves the range of numbers.
     pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
         let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
         rows.iter_mut().for_each(|row| row[1] /= bright);
         let color = seen(&rows, |_| 1.0);
-        (bright > 0.0 && bright.is_finite()).then_some(Curve { rows, color })
+        let in_range = color.is_finite() && rows.iter().all(|row| row[1].is_finite());
+        (bright > 0.0 && bright.is_finite() && in_range).then_some(Curve { rows, color })
     }
 
     /// Its colour: of a thing that under daylight, of a lamp that of its light when it is as bright

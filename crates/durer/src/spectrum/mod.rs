@@ -108,9 +108,13 @@ impl Lanes {
         }
     }
 
-    /// Light of a colour: with the spectrum that was measured, or a smooth one.
-    pub fn light_of(&self, color: Color, measured: Option<&Curve>) -> Spectrum {
-        measured.map_or_else(|| self.light(color), |curve| self.measured(color, curve))
+    /// Light of a colour: with the spectrum that was measured, or a smooth one. The former is asked
+    /// for only by what has wavelengths.
+    pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
+        match self {
+            Lanes::Rgb => self.light(color),
+            Lanes::Waves(_) => measured().map_or_else(|| self.light(color), |curve| self.measured(color, curve)),
+        }
     }
 
     /// What something without bounds is, such as how much a medium absorbs: smooth, and grey where

@@ -102,6 +102,15 @@ fn illuminants_have_their_published_chromaticities() {
     assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));
 }
 
+/// What is seen is nothing beside the rest: made as bright as 1, the rest would be no number.
+#[test]
+fn a_lamp_of_next_to_no_visible_light_is_none() {
+    assert_eq!(Curve::light(vec![[791.0, 0.0], [1e36, 2.0]]), None);
+    assert_eq!(Curve::light(vec![[400.0, 0.0], [700.0, 0.0]]), None);
+    assert!(Curve::light(vec![[791.0, 0.0], [1e30, 2.0]]).is_none_or(|lamp| lamp.color().is_finite()));
+    assert!(Curve::light(vec![[400.0, 1e-30], [700.0, 1e-30]]).unwrap().color().is_finite());
+}
+
 #[test]
 fn measured_things_have_the_colour_of_their_product() {
     // Something that passes light beyond 560 nm only, under a bulb: what is seen is the integral of

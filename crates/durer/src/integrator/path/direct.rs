@@ -12,7 +12,7 @@ use crate::math::{Color, Ray64};
 use crate::medium::Way;
 use crate::spectrum::Spectrum;
 use crate::world::Interaction;
-use crate::world::emitters::LightSample;
+use crate::world::emitters::{Choice, LightSample};
 
 impl Path<'_> {
     /// How much a light counts that a ray met by its direction, where it could have been found in
@@ -33,14 +33,25 @@ impl Path<'_> {
         self.world.emitters().pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
     }
 
-    /// The light of one light that is chosen.
-    pub(super) fn direct<T: TraceListener>(&self, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
+    /// Chooses a light to be connected with.
+    pub(super) fn choose(&self, vertex: &Vertex) -> Option<Choice> {
         let (world, place) = (self.world, &vertex.place);
-        let choice = vertex.numbers(Use::Choices).y;
+        world.emitters().choose(world, place.point(), place.normal(), vertex.numbers(Use::Choices).y)
+    }
+
+    /// The light of one light that was chosen.
+    pub(super) fn direct<T: TraceListener>(
+        &self,
+        choice: &Choice,
+        vertex: &Vertex,
+        sample: &Sample,
+        tally: &mut T,
+    ) -> Spectrum {
+        let (world, place) = (self.world, &vertex.place);
         let u = vertex.numbers(Use::PlaceOnLight);
-        let choose = |u| world.emitters().sample(world, place.point(), place.normal(), choice, u);
-        let chosen = match (choose(u), self.transport.direct) {
-            (Some(any), Direct::Middle) => choose(world.emitters().middle(any.light).unwrap_or(u)),
+        let at = |u| world.emitters().sample(world, choice, place.point(), u);
+        let chosen = match (at(u), self.transport.direct) {
+            (Some(any), Direct::Middle) => at(world.emitters().middle(any.light).unwrap_or(u)),
             (chosen, _) => chosen,
         };
         let Some(light) = chosen else { return Spectrum::ZERO };
@@ -71,7 +82,7 @@ impl Path<'_> {
             mis: weight,
             shadow: self.settings.shadows.then(|| self.shadow(place, &light, sample.told(visible))),
         });
-        let radiance = sample.lanes.light_of(light.radiance, world.illuminant(light.light));
+        let radiance = sample.lanes.light_of(light.radiance, || world.illuminant(light.light));
         tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
         factor * radiance
     }

@@ -218,9 +218,9 @@ impl Photons {
                     }
                     None => Color::ONE,
                 };
-                let of_light = emitted.light.and_then(|light| path.world.illuminant(LightId::Light(light)));
+                let of_light = || emitted.light.and_then(|light| path.world.illuminant(LightId::Light(light)));
                 let of_material = || emitted.material.and_then(|material| path.world.own_illuminant(material));
-                state.throughput *= lanes.light_of(power * color, of_light.or_else(of_material));
+                state.throughput *= lanes.light_of(power * color, || of_light().or_else(of_material));
             }
             let eta = passage.as_ref().map_or(1.0, Passage::eta);
             let shading = path.world.shading(&met, eta, &lanes);

@@ -11,7 +11,7 @@ use super::{Hit, Object, World};
 use crate::bsdf::{Frame, warp};
 use crate::light::Emitter as _;
 use crate::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
-use durer_bvh::internal::room;
+use durer_bvh::internal::{bring_near, room};
 use glam::DVec3;
 use serde::Serialize;
 pub use shape::{Form, Place};
@@ -150,6 +150,22 @@ impl LightId {
     }
 }
 
+/// A light that was chosen for a point, and the probability of that.
+pub struct Choice {
+    of: Of,
+    probability: f32,
+}
+
+/// What can be chosen.
+enum Of {
+    /// A light of the scene that is not in the tree, by number.
+    Apart(u32),
+    /// The surroundings.
+    Sky,
+    /// One of the sources.
+    Source(u32),
+}
+
 /// A light that was chosen, as seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
@@ -266,44 +282,58 @@ impl Emitters {
         (choices > 0).then_some(chances)
     }
 
-    /// Chooses a light for a point with a normal (zero: any) by a number, and a direction to it by
-    /// two more.
-    pub fn sample(&self, world: &World, point: DVec3, n: Vec3, choice: f32, u: Vec2) -> Option<LightSample> {
+    /// Chooses a light for a point with a normal (zero: any) by a number. What is read of it next is
+    /// on its way then.
+    pub fn choose(&self, world: &World, point: DVec3, n: Vec3, u: f32) -> Option<Choice> {
         let chances = self.chances(world, point.as_vec3(), n)?;
-        let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
-        let mut rest = choice;
+        let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
+        let mut rest = u;
         for (i, apart) in self.apart.iter().enumerate() {
             let chance = chances.of(apart.brings(n));
-            let is_last = i + 1 == self.apart.len() && environment.is_none() && !has_tree;
+            let is_last = i + 1 == self.apart.len() && !has_sky && !has_tree;
             if rest < chance || is_last {
-                return Some(spread(world, apart.light, of_light(world, apart.light, point, chance), u));
+                return Some(Choice { of: Of::Apart(apart.light), probability: chance });
             }
             rest -= chance;
         }
-        if let Some(environment) = environment {
+        if has_sky {
             let chance = chances.of(chances.sky);
             if rest < chance || !has_tree {
-                let (wi, radiance, pdf) = environment.sample(u)?;
-                return Some(LightSample {
-                    light: LightId::Environment,
-                    wi,
-                    reach: f32::INFINITY,
-                    error: 0.0,
-                    cosine: 1.0,
-                    radiance,
-                    choice: chance,
-                    pdf,
-                });
+                return Some(Choice { of: Of::Sky, probability: chance });
             }
             rest -= chance;
         }
         let chance = chances.of(chances.tree);
         let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
         let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
-        let choice = chance * probability;
-        match &self.sources[source as usize] {
-            Source::Light(light) => Some(of_light(world, *light, point, choice)),
-            Source::Area(area) => area.sample(point, choice, u),
+        if let Some(source) = self.sources.get(source as usize) {
+            bring_near(source);
+        }
+        Some(Choice { of: Of::Source(source), probability: chance * probability })
+    }
+
+    /// Chooses a direction to a light that was chosen for a point, by two numbers.
+    pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
+        let probability = choice.probability;
+        match choice.of {
+            Of::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
+            Of::Sky => {
+                let (wi, radiance, pdf) = world.environment()?.sample(u)?;
+                Some(LightSample {
+                    light: LightId::Environment,
+                    wi,
+                    reach: f32::INFINITY,
+                    error: 0.0,
+                    cosine: 1.0,
+                    radiance,
+                    choice: probability,
+                    pdf,
+                })
+            }
+            Of::Source(source) => match &self.sources[source as usize] {
+                Source::Light(light) => Some(of_light(world, *light, point, probability)),
+                Source::Area(area) => area.sample(point, probability, u),
+            },
         }
     }
 
@@ -493,7 +523,9 @@ mod tests {
             let (mut found, count) = ([0_u32; 3], 1 << 14);
             for i in 0..count {
                 let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
-                let Some(light) = emitters.sample(&world, point, n, choice.x, u) else { continue };
+                let chosen = emitters.choose(&world, point, n, choice.x);
+                let light = chosen.and_then(|choice| emitters.sample(&world, &choice, point, u));
+                let Some(light) = light else { continue };
                 let kind = if is_apart(light.light) {
                     0
                 } else if light.light == LightId::Environment {

@@ -107,6 +107,9 @@ struct Node {
     cos_normals: Eight,
     cos_emission: Eight,
     children: [Child; WIDTH],
+    /// Where the emitters of each child begin, in the order of the tree, and after it where they
+    /// end.
+    ends: [u32; WIDTH + 1],
     /// A bit for each child of several emitters that shine alike.
     alike: u8,
 }
@@ -133,6 +136,7 @@ impl Node {
             cos_normals: of(&|b| b.cos_normals),
             cos_emission: of(&|b| b.cos_emission),
             children: [Child(0); WIDTH],
+            ends: [0; WIDTH + 1],
             alike: 0,
         }
     }
@@ -215,8 +219,6 @@ pub struct LightTree {
     parents: Vec<(u32, u8)>,
     /// The node that holds each emitter, and which of its children it is.
     leaves: Vec<(u32, u8)>,
-    /// What each child of each node holds, in the order of the tree.
-    ranges: Vec<[(u32, u32); WIDTH]>,
 }
 
 /// A node of the tree of two children that is built first: they follow each other from `first` on,
@@ -259,9 +261,8 @@ impl LightTree {
             let number = tree.nodes.len() as u32;
             let bounds: Vec<Bounds> = held.iter().map(|&half| halves[half].bounds).collect();
             let mut node = Node::new(&bounds);
-            let mut ranges = [(0, 0); WIDTH];
             for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
-                ranges[usize::from(slot)] = half.range;
+                (node.ends[usize::from(slot)], node.ends[usize::from(slot) + 1]) = half.range;
                 node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf()) << slot;
                 if half.is_leaf() {
                     node.children[usize::from(slot)] = Child(Child::EMITTER | half.range.0);
@@ -276,7 +277,6 @@ impl LightTree {
             }
             tree.nodes.push(node);
             tree.parents.push(parent);
-            tree.ranges.push(ranges);
         }
         // They are read faster there.
         let mut placed = room(tree.nodes.len());
@@ -314,7 +314,7 @@ impl LightTree {
             rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
             probability *= shares[slot];
             if alike >> slot & 1 == 1 {
-                let (from, to) = self.ranges[place][slot];
+                let [from, to] = [node.ends[slot], node.ends[slot + 1]];
                 let count = (to - from) as f32;
                 return Some(((from + (rest * count) as u32).min(to - 1), probability / count));
             }
@@ -344,12 +344,13 @@ impl LightTree {
             before = probability;
         }
         let slot = usize::from(slot);
-        let Some((shares, alike)) = self.nodes[place as usize].shares(p, n) else { return (0.0, true) };
+        let node = &self.nodes[place as usize];
+        let Some((shares, alike)) = node.shares(p, n) else { return (0.0, true) };
         let probability = before * shares[slot];
         if alike >> slot & 1 == 0 {
             return (probability, false);
         }
-        let (from, to) = self.ranges[place as usize][slot];
+        let [from, to] = [node.ends[slot], node.ends[slot + 1]];
         (probability / (to - from) as f32, true)
     }
 }
