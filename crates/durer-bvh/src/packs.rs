@@ -207,10 +207,15 @@ impl Kernel for Together<'_> {
 #[inline(always)]
 fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
-    let [x, y, z, dx, dy, dz] = numbers.map(|number| lanes.abs(number));
-    let finite = [x, y, z, dx, dy, dz].map(|size| lanes.lt(size, infinity));
-    let some = [dx, dy, dz].map(|size| lanes.lt(zero, size));
-    finite.into_iter().fold(some[0] | some[1] | some[2], |all, one| all & one)
+    // No closures, which would be called like any function.
+    let [x, y, z, dx, dy, dz] = numbers;
+    let (dx, dy, dz) = (lanes.abs(dx), lanes.abs(dy), lanes.abs(dz));
+    let finite = [lanes.abs(x), lanes.abs(y), lanes.abs(z), dx, dy, dz];
+    let mut all = lanes.lt(zero, dx) | lanes.lt(zero, dy) | lanes.lt(zero, dz);
+    for size in finite {
+        all &= lanes.lt(size, infinity);
+    }
+    all
 }
 
 /// Where rays meet planes.
