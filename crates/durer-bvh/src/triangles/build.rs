@@ -3,11 +3,10 @@
 use super::tree::{TAG, TriangleBvh, number};
 use crate::BuildError;
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
-use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, listed};
+use crate::lanes::{ROOM_OF_ROWS, ROWS, listed};
 use crate::math::{Aabb, Vec3};
 use crate::{node, parallel};
 use std::mem::MaybeUninit;
-use std::sync::OnceLock;
 
 /// Rows of about so many triangles are written at once.
 const AT_ONCE: usize = 1024;
@@ -81,18 +80,8 @@ impl TriangleBvh {
         let settings = BuildSettings::triangles(quality);
         let corners_of = |number: u32| triangles[number as usize].map(|i| vertices[i as usize]);
         let tree = build::build_triangles(triangles.len(), &corners_of, &settings);
-        let mut bvh = TriangleBvh {
-            leaves: listed(ROWS * tree.order.len() + ROOM_OF_ROWS, 0, |_| 0.0),
-            nodes: tree.nodes,
-            bounds: tree.bounds,
-            reach: tree.bounds.reach(),
-            level: Available::chosen(),
-            least_volume: 0.0,
-            culls_slivers: false,
-            count: triangles.len(),
-            leaf_of: OnceLock::new(),
-            heights: None,
-        };
+        let leaves = listed(ROWS * tree.order.len() + ROOM_OF_ROWS, 0, |_| 0.0);
+        let mut bvh = TriangleBvh::of(tree.nodes, leaves, tree.bounds, triangles.len());
         bvh.pack(Some(&tree.order), vertices, triangles);
         bvh
     }
@@ -181,16 +170,21 @@ impl TriangleBvh {
                 debug_assert!(count > 0, "every item is in a leaf");
                 let (rows, after) = part.split_at_mut(ROWS * count);
                 for (lane, (number, triangle)) in numbers.by_ref().zip(indices.by_ref()).take(count).enumerate() {
-                    let corners = triangle.map(|i| vertices[i as usize]);
-                    let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };
-                    let tagged = f32::from_bits(number | TAG);
-                    let column = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, tagged];
-                    rows[lane..].iter_mut().step_by(count).zip(column).for_each(|(to, x)| *to = x);
+                    put(&mut rows[lane..], count, number, triangle.map(|i| vertices[i as usize]));
                 }
                 (counts, part) = (&counts[count..], after);
             }
         });
     }
+}
+
+/// Writes a triangle into the rows of a leaf of so many, which begin with its own lane. One with a
+/// corner that is no finite point is none.
+pub(super) fn put(rows: &mut [f32], count: usize, number: u32, corners: [Vec3; 3]) {
+    let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };
+    let tagged = f32::from_bits(number | TAG);
+    let column = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, tagged];
+    rows.iter_mut().step_by(count).zip(column).for_each(|(to, x)| *to = x);
 }
 
 fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {

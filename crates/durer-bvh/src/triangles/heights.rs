@@ -3,9 +3,10 @@
 //! The tree's leaves are blocks of two by two cells. Their rows are written when a ray comes to
 //! them, from as many numbers as a block has lines and heights; all else is as with any triangles.
 
+use super::build::put;
 use super::tree::{TAG, TriangleBvh};
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
-use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
+use crate::lanes::{ROOM_OF_ROWS, ROWS, Rows};
 use crate::math::{Aabb, Vec3};
 use crate::node::{self, LEAF, LEAF_SIZE};
 use crate::{BuildError, parallel};
@@ -229,25 +230,12 @@ impl TriangleBvh {
             let first = LEAF_SIZE * number;
             let rows = &mut leaves[ROWS * first..];
             for (lane, corners) in some.iter().enumerate() {
-                let corners = if is_finite(corners) { *corners } else { [Vec3::NAN; 3] };
-                let tagged = f32::from_bits((grid.triangle_count() + first + lane) as u32 | TAG);
-                let column = corners.iter().flat_map(Vec3::to_array).chain([tagged]);
-                column.enumerate().for_each(|(row, x)| rows[row * some.len() + lane] = x);
+                put(&mut rows[lane..], some.len(), (grid.triangle_count() + first + lane) as u32, *corners);
             }
         }
         leaves.resize(ROWS * others.len() + ROOM_OF_ROWS, 0.0);
-        let mut bvh = TriangleBvh {
-            nodes: tree.nodes,
-            leaves,
-            bounds: tree.bounds,
-            reach: tree.bounds.reach(),
-            level: Available::chosen(),
-            least_volume: 0.0,
-            culls_slivers: false,
-            count: grid.triangle_count() + others.len(),
-            leaf_of: OnceLock::new(),
-            heights: None,
-        };
+        let count = grid.triangle_count() + others.len();
+        let mut bvh = TriangleBvh::of(tree.nodes, leaves, tree.bounds, count);
         let first_block = bvh.first_block();
         bvh.change_leaves(|leaf| {
             let item = tree.order[node::items(leaf).0] as usize;

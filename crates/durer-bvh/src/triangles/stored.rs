@@ -7,9 +7,8 @@
 
 use super::tree::{TAG, TriangleBvh};
 use crate::LoadError;
-use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, WIDTH};
+use crate::lanes::{ROOM_OF_ROWS, ROWS, WIDTH};
 use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
-use std::sync::OnceLock;
 
 const NAME: &[u8; 8] = b"durerbvh";
 const VERSION: u32 = 1;
@@ -94,18 +93,7 @@ impl TriangleBvh {
         leaves.resize(ROWS * items + ROOM_OF_ROWS, 0.0);
         check(&nodes, &leaves, items, count).map_err(LoadError::Invalid)?;
         let bounds = node::bounds(&nodes);
-        Ok(TriangleBvh {
-            nodes,
-            leaves,
-            bounds,
-            reach: bounds.reach(),
-            level: Available::chosen(),
-            least_volume,
-            culls_slivers: least_volume != 0.0,
-            count,
-            leaf_of: OnceLock::new(),
-            heights: None,
-        })
+        Ok(TriangleBvh::of(nodes, leaves, bounds, count).least_volume(least_volume))
     }
 }
 

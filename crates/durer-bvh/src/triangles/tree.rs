@@ -104,6 +104,22 @@ impl Facing {
 }
 
 impl TriangleBvh {
+    /// Of nodes and leaves over so many triangles.
+    pub(super) fn of(nodes: Vec<WideNode>, leaves: Vec<f32>, bounds: Aabb, count: usize) -> Self {
+        TriangleBvh {
+            nodes,
+            leaves,
+            bounds,
+            reach: bounds.reach(),
+            level: Available::chosen(),
+            least_volume: 0.0,
+            culls_slivers: false,
+            count,
+            leaf_of: OnceLock::new(),
+            heights: None,
+        }
+    }
+
     /// The rows of a leaf, and the count of its triangles. Rows that are not in memory are written
     /// into the room.
     #[inline(always)]

@@ -195,10 +195,13 @@ impl<'r> Loader<'r> {
         }
         let needed = HEIGHT_BYTES * heights.len() as u64;
         let terrain = field.terrain(width, heights);
-        if terrain.is_none() {
+        let Some(terrain) = terrain else {
             refuse(format!("the heights of `{}` leave the range of numbers", name.path));
+            return None;
+        };
+        if !self.charge(name, needed, diagnostics) {
+            return None;
         }
-        let terrain = terrain.filter(|_| self.charge(name, needed, diagnostics))?;
         Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
     }
 

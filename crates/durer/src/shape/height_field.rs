@@ -127,14 +127,18 @@ impl Terrain {
         (row * columns + column) as u32
     }
 
+    /// The crossing that a vertex is, or that it lies below; `None` of the middle of the floor.
+    fn crossing_at(&self, vertex: u32) -> Option<usize> {
+        match (vertex as usize).checked_sub(self.grid.heights().len()) {
+            None => Some(vertex as usize),
+            Some(below) => (below < self.around()).then(|| self.border(below) as usize),
+        }
+    }
+
     /// Its texture coordinates at a vertex: from 0 to 1 over the picture, of walls as above them.
     pub fn uv(&self, vertex: u32) -> Vec2 {
         let [columns, rows] = self.sides();
-        let vertex = match (vertex as usize).checked_sub(columns * rows) {
-            None => vertex as usize,
-            Some(below) if below < self.around() => self.border(below) as usize,
-            Some(_) => return Vec2::splat(0.5),
-        };
+        let Some(vertex) = self.crossing_at(vertex) else { return Vec2::splat(0.5) };
         Vec2::new(share(vertex % columns, columns), 1.0 - share(vertex / columns, rows))
     }
 
@@ -188,10 +192,10 @@ impl Triangles for Terrain {
 
     #[inline]
     fn position(&self, vertex: u32) -> Vec3 {
-        match (vertex as usize).checked_sub(self.grid.heights().len()) {
-            None => self.grid.point(vertex as usize),
-            Some(below) if below < self.around() => self.grid.point(self.border(below) as usize).with_y(self.middle.y),
-            Some(_) => self.middle,
+        match self.crossing_at(vertex) {
+            Some(crossing) if crossing == vertex as usize => self.grid.point(crossing),
+            Some(crossing) => self.grid.point(crossing).with_y(self.middle.y),
+            None => self.middle,
         }
     }
 

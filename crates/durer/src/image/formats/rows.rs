@@ -81,10 +81,7 @@ impl Format {
         rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
     ) -> Result<T, E> {
         let format = self.rows.ok_or_else(|| ImageError::unsupported(self.name, "writing row by row"))?;
-        let head = (format.head)(&strip)?;
-        if !format.png {
-            out.write_all(&head)?;
-        }
+        out.write_all(&(format.head)(&strip)?)?;
         packed(format, strip, out, rows)
     }
 }
@@ -148,9 +145,7 @@ pub(super) fn encode(
 ) -> Result<(), ImageError> {
     for layer in layers {
         let strip = Strip::of(layer, options);
-        if !format.png {
-            out.extend((format.head)(&strip)?);
-        }
+        out.extend((format.head)(&strip)?);
         let coverage = layer.coverage.as_deref().unwrap_or_default();
         let written = packed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
         // Memory takes whatever is written.
