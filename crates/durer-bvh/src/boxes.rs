@@ -3,7 +3,7 @@
 use super::build::{self, BuildSettings};
 use super::lanes::{Available, Kernel, Lanes};
 use super::node::{self, LEAF, WideNode};
-use super::traverse::{TraversalRay, Visitor, traverse};
+use super::traverse::{NodeHits, TraversalRay, Visitor, traverse};
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray};
 use std::ops::Range;
@@ -150,10 +150,15 @@ impl<T: TraversalCounter> Visitor for Things<'_, T> {
     }
 
     #[inline(always)]
-    fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
-        // Of a leaf something is fetched that is of no use, and does no harm.
-        let from = self.nodes.as_ptr().cast::<u8>().wrapping_add((child & !LEAF) as usize * node::UNIT);
-        (0..size_of::<WideNode>() / 64).for_each(|line| lanes.prefetch(from.wrapping_add(64 * line)));
+    fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, _: u32) {
+        let mut rest = met.mask;
+        while rest != 0 {
+            // Of a leaf something is fetched that is of no use, and does no harm.
+            let child = met.child(rest.trailing_zeros());
+            rest &= rest - 1;
+            let from = self.nodes.as_ptr().cast::<u8>().wrapping_add((child & !LEAF) as usize * node::UNIT);
+            (0..size_of::<WideNode>() / 64).for_each(|line| lanes.prefetch(from.wrapping_add(64 * line)));
+        }
     }
 
     #[inline(always)]

@@ -132,8 +132,8 @@ pub(super) trait Visitor {
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
-    /// Has a child that is likely to be visited brought near.
-    fn fetch<L: Lanes>(&self, _: L, _: u32) {}
+    /// Has children that are met brought near, of which one is likely to be next.
+    fn fetch<L: Lanes>(&self, _: L, _: &NodeHits<L>, _: u32) {}
 
     /// Looks into a leaf, with a ray that is `FAST` or not; gives the new `t_max`, at most the old.
     /// Minus infinity ends the walk.
@@ -173,7 +173,7 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
                     let order = met.node.order(V::ANY, boxes.negative);
                     let likely = end_of(met.mask, order != 0);
                     let next = met.next::<FAST>(lanes, V::ANY, likely);
-                    visitor.fetch(lanes, met.child(likely));
+                    visitor.fetch(lanes, &met, likely);
                     met.push(lanes, &mut stack, next, order);
                     match met.target::<FAST>(V::ANY, next) {
                         Target::Node(next) => address = next,

@@ -31,6 +31,9 @@ pub const MIN_GAIN: f64 = 0.002;
 pub struct BuildSettings {
     /// Cost of a leaf of so many things, in tests of a node.
     pub leaf_cost: fn(usize) -> f32,
+    /// What nodes cost as memory, which may be far away: of as many nodes as things, in tests of a
+    /// node by each ray. So nodes are fuller where that takes hardly more tests.
+    pub memory_cost: f32,
     /// So few things stay together where they are near each other.
     pub whole: usize,
     /// How many bins so many things are put into, at most.
@@ -47,6 +50,8 @@ impl BuildSettings {
     /// For things whose tests cost as much as several nodes.
     pub const THINGS: BuildSettings = BuildSettings {
         leaf_cost: |count| 2.0 * count as f32,
+        // 100,000 small things: 0.64 of the memory, 1.01 of the tests, 0.8 of the time.
+        memory_cost: 2.0,
         whole: 1,
         bins: |_| BINS,
         leaf_size: 4,
@@ -69,7 +74,8 @@ impl BuildSettings {
         // A leaf is tested at once, whatever it holds.
         let leaf_cost = |count| 1.2 + 0.05 * count as f32;
         let most = LEAF_SIZE;
-        let settings = BuildSettings { leaf_cost, whole: most, leaf_size: most, ..BuildSettings::THINGS };
+        let settings =
+            BuildSettings { leaf_cost, memory_cost: 0.0, whole: most, leaf_size: most, ..BuildSettings::THINGS };
         match quality {
             BuildQuality::Fast => BuildSettings { bins: |count| 4 + count / 16, reinsertions: 0, ..settings },
             BuildQuality::Balanced => settings,

@@ -2,7 +2,7 @@
 //!
 //! The cost of a subtree as a forest of at most i roots follows from those of its two children:
 //!
-//!   C(n, 1) = min(leaf(n), A(n) + min over k of C(l, k) + C(r, 8 - k)),
+//!   C(n, 1) = leaf(n), or A(n) + M + min over k of C(l, k) + C(r, 8 - k), if less without M,
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
 //!
 //! Source: Ylitie, Karras, Laine, *Efficient Incoherent Ray Traversal on GPUs Through Compressed
@@ -29,7 +29,9 @@ pub struct CollapsePlan {
 impl CollapsePlan {
     pub fn new(nodes: &[binary::BinaryNode], scale: f32, settings: &BuildSettings) -> Self {
         let mut plans = listed(nodes.len(), 0, |_| Plan::default());
-        let cost = plan(nodes, &mut plans, scale, settings)[0];
+        let all = half_area(nodes[0].min, nodes[0].max, scale);
+        let node_cost = settings.memory_cost * all / nodes[0].count() as f32;
+        let cost = plan(nodes, &mut plans, &Prices { scale, node_cost, settings })[0];
         CollapsePlan { plans, cost }
     }
 }
@@ -84,9 +86,18 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     best
 }
 
+/// What things cost.
+struct Prices<'a> {
+    /// Of areas.
+    scale: f32,
+    /// Of the memory of a node.
+    node_cost: f32,
+    settings: &'a BuildSettings,
+}
+
 /// Finds what is cheapest for all nodes of a subtree.
-fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: &BuildSettings) -> Costs {
-    let node = &nodes[0];
+fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Costs {
+    let (node, &Prices { scale, node_cost, settings }) = (&nodes[0], prices);
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
     let leaf = if count <= settings.leaf_size { area * (settings.leaf_cost)(count) } else { f32::INFINITY };
     if node.is_leaf() {
@@ -97,12 +108,9 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: 
     let (left_plans, right_plans) = rest.split_at_mut(node.right() - 1);
     let (left_nodes, right_nodes) = nodes[1..].split_at(node.right() - 1);
     let (left, right) = if count > PARALLEL {
-        parallel::join(
-            || plan(left_nodes, left_plans, scale, settings),
-            || plan(right_nodes, right_plans, scale, settings),
-        )
+        parallel::join(|| plan(left_nodes, left_plans, prices), || plan(right_nodes, right_plans, prices))
     } else {
-        (plan(left_nodes, left_plans, scale, settings), plan(right_nodes, right_plans, scale, settings))
+        (plan(left_nodes, left_plans, prices), plan(right_nodes, right_plans, prices))
     };
     // There are no more roots than references.
     let most = count.min(WIDTH);
@@ -113,7 +121,7 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], scale: f32, settings: 
     let dearer = opened < leaf;
     let is_leaf = count <= settings.leaf_size && !dearer;
     own.0 |= u32::from(is_leaf);
-    let mut costs = [if is_leaf { leaf } else { opened }; WIDTH - 1];
+    let mut costs = [if is_leaf { leaf } else { opened + node_cost }; WIDTH - 1];
     for roots in 2..=most.min(WIDTH - 1) {
         let (cost, k) = shared(&left, &right, roots);
         if cost < costs[roots - 2] {

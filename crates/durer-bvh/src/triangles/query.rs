@@ -6,7 +6,7 @@ use super::tree::{Facing, TriangleBvh, TriangleHit, number};
 use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, Rows, WIDTH};
 use crate::math::{Ray, Vec2};
-use crate::traverse::{FAST_RANGE, TraversalRay, Visitor, traverse};
+use crate::traverse::{FAST_RANGE, NodeHits, TraversalRay, Visitor, traverse};
 use crate::watertight::{Exact, Plane, WatertightRay, turn};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
@@ -231,7 +231,8 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
     }
 
     #[inline(always)]
-    fn fetch<L: Lanes>(&self, lanes: L, child: u32) {
+    fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, likely: u32) {
+        let child = met.child(likely);
         self.places.fetch::<L, AND_SIBLINGS>(lanes, child);
     }
 
