@@ -8,6 +8,7 @@ use durer::bsdf::warp;
 use durer::math::{Ray64, Vec2, Vec3, fp};
 use durer::medium::HenyeyGreenstein;
 use durer::world::World;
+use durer::world::emitters::Receiver;
 
 const ROUGHNESSES: [f32; 7] = [0.0, 0.05, 0.1, 0.3, 0.5, 0.8, 1.0];
 const COSINES: [f32; 5] = [0.999, 0.7, 0.4, 0.2, 0.1];
@@ -107,9 +108,10 @@ fn back(v: Vec3) -> Vec3 {
 }
 
 fn of_lights(world: &World, cells: Cells) -> Verdict {
-    let (point, n) = (Vec3::ZERO.as_dvec3(), Vec3::ZERO);
+    let point = Vec3::ZERO.as_dvec3();
+    let to = Receiver { point, n: Vec3::ZERO, far: Receiver::FAR };
     let sample = |choice: f32, u: Vec2| {
-        let choice = world.emitters().choose(world, point, n, choice)?;
+        let choice = world.emitters().choose(world, &to, choice)?;
         Some(turned(world.emitters().sample(world, &choice, point, u)?.wi))
     };
     let pdf = |wi: Vec3| {
@@ -120,7 +122,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
         for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
             if !met.contains(&hit.object) {
-                sum += world.emitters().pdf_of_hit(world, &hit, point, n, dir, hit.t);
+                sum += world.emitters().pdf_of_hit(world, &hit, &to, dir, hit.t);
                 met.push(hit.object);
             }
             ray.rounded.t_min = hit.t;

@@ -28,15 +28,14 @@ impl Path<'_> {
     /// The density with which a light that a ray met would have been chosen.
     pub(super) fn pdf_of_hit(&self, at: &Interaction, from: &Scattered) -> f32 {
         let Interaction { ray, hit, .. } = at;
-        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.point;
+        let way = ray.origin() + f64::from(hit.t) * ray.dir().as_dvec3() - from.at.point;
         let (wi, distance) = (ray.dir().normalize(), way.length() as f32);
-        self.world.emitters().pdf_of_hit(self.world, hit, from.point, from.n, wi, distance)
+        self.world.emitters().pdf_of_hit(self.world, hit, &from.at, wi, distance)
     }
 
     /// Chooses a light to be connected with.
     pub(super) fn choose(&self, vertex: &Vertex) -> Option<Choice> {
-        let (world, place) = (self.world, &vertex.place);
-        world.emitters().choose(world, place.point(), place.normal(), vertex.numbers(Use::Choices).y)
+        self.world.emitters().choose(self.world, &vertex.receiver(), vertex.numbers(Use::Choices).y)
     }
 
     /// The light of one light that was chosen.

@@ -9,15 +9,14 @@ use crate::medium::HenyeyGreenstein;
 use crate::shape::Surface;
 use crate::spectrum::Spectrum;
 use crate::world::Shading;
-use crate::world::emitters::LightSample;
+use crate::world::emitters::{LightSample, Receiver};
 use glam::DVec3;
 
 /// A point from which lights were connected with.
 #[derive(Clone, Copy)]
 pub(super) struct Scattered {
-    pub(super) point: DVec3,
-    /// The normal; zero in a medium.
-    pub(super) n: Vec3,
+    /// What lights were chosen for.
+    pub(super) at: Receiver,
     /// The density with which the direction was chosen.
     pub(super) pdf: f32,
 }
@@ -33,6 +32,13 @@ pub(super) struct Vertex<'a, 'w> {
 impl Vertex<'_, '_> {
     pub(super) fn numbers(&self, what: Use) -> Vec2 {
         self.numbers[what as usize]
+    }
+
+    /// What lights are chosen for.
+    pub(super) fn receiver(&self) -> Receiver {
+        let is_seen = self.state.depth == 0 || self.state.from_camera.is_some();
+        let far = if is_seen { Receiver::FAR } else { Receiver::FAR_BEYOND };
+        Receiver { point: self.place.point(), n: self.place.normal(), far }
     }
 }
 

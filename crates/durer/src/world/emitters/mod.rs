@@ -150,6 +150,27 @@ impl LightId {
     }
 }
 
+/// A point that light is chosen for.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// Where it is.
+    pub point: DVec3,
+    /// The normal of a surface on the side that is lit; zero where light comes from all sides.
+    pub n: Vec3,
+    /// A group of lamps whose radius is less than this share of its distance, as it looks from
+    /// where it shines and where it is seen from, is not looked into if all of them are alike: each
+    /// is as likely, and brings about as much.
+    pub far: f32,
+}
+
+impl Receiver {
+    /// [`Receiver::far`] of a point that is seen.
+    pub const FAR: f32 = 0.1;
+    /// The same of one that lights others: light of many of those comes together, so that it
+    /// matters less how well each lamp was chosen.
+    pub const FAR_BEYOND: f32 = 0.3;
+}
+
 /// A light that was chosen for a point, and the probability of that.
 pub struct Choice {
     of: Of,
@@ -265,16 +286,15 @@ impl Emitters {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
-    /// The chances of all that is chosen for a point with a normal (zero: any); `None` where nothing
-    /// shines.
-    fn chances(&self, world: &World, point: Vec3, n: Vec3) -> Option<Chances> {
+    /// The chances of all that is chosen for a point; `None` where nothing shines.
+    fn chances(&self, world: &World, to: &Receiver) -> Option<Chances> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
         let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
         let mut chances = Chances { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
         if choices > 1 {
             chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
-            chances.tree = self.tree.importance(point, n);
-            let apart: f32 = self.apart.iter().map(|apart| apart.brings(n)).sum();
+            chances.tree = self.tree.importance(to);
+            let apart: f32 = self.apart.iter().map(|apart| apart.brings(to.n)).sum();
             let total = apart + chances.sky + chances.tree;
             // Where it is not known what they bring, they are chosen evenly.
             chances.total = if total.is_finite() { total } else { f32::NAN };
@@ -282,14 +302,13 @@ impl Emitters {
         (choices > 0).then_some(chances)
     }
 
-    /// Chooses a light for a point with a normal (zero: any) by a number. What is read of it next is
-    /// on its way then.
-    pub fn choose(&self, world: &World, point: DVec3, n: Vec3, u: f32) -> Option<Choice> {
-        let chances = self.chances(world, point.as_vec3(), n)?;
+    /// Chooses a light for a point by a number. What is read of it next is on its way then.
+    pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<Choice> {
+        let chances = self.chances(world, to)?;
         let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
         let mut rest = u;
         for (i, apart) in self.apart.iter().enumerate() {
-            let chance = chances.of(apart.brings(n));
+            let chance = chances.of(apart.brings(to.n));
             let is_last = i + 1 == self.apart.len() && !has_sky && !has_tree;
             if rest < chance || is_last {
                 return Some(Choice { of: Of::Apart(apart.light), probability: chance });
@@ -305,7 +324,7 @@ impl Emitters {
         }
         let chance = chances.of(chances.tree);
         let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-        let (source, probability) = self.tree.sample(point.as_vec3(), n, rest)?;
+        let (source, probability) = self.tree.sample(to, rest)?;
         if let Some(source) = self.sources.get(source as usize) {
             bring_near(source);
         }
@@ -364,11 +383,11 @@ impl Emitters {
 
     /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface
     /// that shines; 0 where it never does.
-    pub fn pdf_of_hit(&self, world: &World, hit: &Hit, point: DVec3, n: Vec3, wi: Vec3, distance: f32) -> f32 {
+    pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
-        let Some(chances) = self.chances(world, point.as_vec3(), n) else { return 0.0 };
-        let choice = chances.of(chances.tree) * self.tree.probability(point.as_vec3(), n, source);
-        let pdf = area.form.pdf(area.normal, point, wi, distance);
+        let Some(chances) = self.chances(world, to) else { return 0.0 };
+        let choice = chances.of(chances.tree) * self.tree.probability(to, source);
+        let pdf = area.form.pdf(area.normal, to.point, wi, distance);
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
@@ -388,9 +407,9 @@ impl Emitters {
         }
     }
 
-    /// The probability with which the surroundings are chosen for a point with a normal.
-    pub fn chance_of_sky(&self, world: &World, point: DVec3, n: Vec3) -> f32 {
-        self.chances(world, point.as_vec3(), n).map_or(0.0, |chances| chances.of(chances.sky))
+    /// The probability with which the surroundings are chosen for a point.
+    pub fn chance_of_sky(&self, world: &World, to: &Receiver) -> f32 {
+        self.chances(world, to).map_or(0.0, |chances| chances.of(chances.sky))
     }
 }
 
@@ -514,18 +533,23 @@ mod tests {
         // A point light that does not fade is no thing of the tree.
         assert_eq!((emitters.apart.len(), emitters.sources.len()), (2, 1));
         for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
-            let chances = emitters.chances(&world, point.as_vec3(), n).unwrap();
+            let to = Receiver { point, n, far: Receiver::FAR };
+            let chances = emitters.chances(&world, &to).unwrap();
             let apart: f32 = emitters.apart.iter().map(|apart| chances.of(apart.brings(n))).sum();
             let said = [apart, chances.of(chances.sky), chances.of(chances.tree)];
             assert!((said.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{said:?}");
             assert!(said.iter().all(|&chance| chance > 0.02), "{said:?}");
-            assert_eq!(said[1], emitters.chance_of_sky(&world, point, n));
+            assert_eq!(said[1], emitters.chance_of_sky(&world, &to));
             let (mut found, count) = ([0_u32; 3], 1 << 14);
             for i in 0..count {
                 let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
-                let chosen = emitters.choose(&world, point, n, choice.x);
-                let light = chosen.and_then(|choice| emitters.sample(&world, &choice, point, u));
-                let Some(light) = light else { continue };
+                let chosen = emitters.choose(&world, &to, choice.x);
+                // The tree chooses nothing where it brings nothing.
+                let Some(chosen) = chosen else {
+                    found[2] += 1;
+                    continue;
+                };
+                let Some(light) = emitters.sample(&world, &chosen, point, u) else { continue };
                 let kind = if is_apart(light.light) {
                     0
                 } else if light.light == LightId::Environment {

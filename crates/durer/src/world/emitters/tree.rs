@@ -6,9 +6,9 @@
 //! among smaller groups. What is alike and far away is a group whose members are as likely as each
 //! other: most of many lamps are then chosen in the upper nodes alone, which are near at hand.
 
+use super::Receiver;
 use crate::math::{Aabb, Vec3, fp};
-use durer_bvh::internal::room;
-use glam::Vec4;
+use durer_bvh::internal::{PlainKernel, room, run_plain};
 use std::f32::consts::PI;
 
 /// Where some emitters are, how strong they are, and where they shine.
@@ -83,16 +83,11 @@ const ONE_WAY: f32 = 0.995;
 /// The least share of one power that is about the same.
 const ALIKE: f32 = 0.8;
 
-/// A child whose radius is less than this share of its distance, as it looks from where it shines
-/// and where it is seen from, is not looked into if all that it holds is alike: each brings about
-/// as much.
-const FAR: f32 = 0.1;
-
 /// Children of a node.
 const WIDTH: usize = 8;
 
-/// One number for each child, four and four.
-type Eight = [Vec4; 2];
+/// One number for each child.
+type Eight = [f32; WIDTH];
 
 /// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
 /// It is read from far away, and so is only what cannot be worked out of the rest.
@@ -124,10 +119,7 @@ impl Child {
 
 impl Node {
     fn new(held: &[Bounds]) -> Self {
-        let of = |number: &dyn Fn(&Bounds) -> f32| {
-            let lanes: [f32; WIDTH] = std::array::from_fn(|i| held.get(i).map_or(0.0, number));
-            [Vec4::from_slice(&lanes[..4]), Vec4::from_slice(&lanes[4..])]
-        };
+        let of = |number: &dyn Fn(&Bounds) -> f32| std::array::from_fn(|i| held.get(i).map_or(0.0, number));
         Node {
             middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
             radius2: of(&|b| (0.5 * b.bounds.size()).length_squared()),
@@ -141,74 +133,182 @@ impl Node {
         }
     }
 
-    /// Estimates of what four children bring to a point with a normal; more than zero wherever one
-    /// brings any light. And a bit for each that is far from there.
-    fn importances(&self, half: usize, p: Vec3, n: Vec3) -> (Vec4, u32) {
-        let (one, zero) = (Vec4::ONE, Vec4::ZERO);
-        let [x, y, z] = [0, 1, 2].map(|axis| Vec4::splat(p[axis]) - self.middle[axis][half]);
-        let distance2 = x * x + y * y + z * z;
-        let inverse = Vec4::select(distance2.cmpgt(zero), one / root(distance2), zero);
-        let [x, y, z] = [x, y, z].map(|offset| offset * inverse);
-        let dot = |[a, b, c]: [Vec4; 3]| a * x + b * y + c * z;
-        let cosine = dot(self.axis.map(|axis| axis[half]));
-        let power = self.power[half];
-        let cosine = Vec4::select(power.cmplt(zero), cosine.abs(), cosine);
-        let inside = distance2.cmple(self.radius2[half]);
-        let sine2 = Vec4::select(inside, zero, self.radius2[half] / distance2);
-        let bounds = (Vec4::select(inside, -one, root(one - sine2)), root(sine2));
-        // The least angle to a normal, and from that to the point, over all that the bounds hold.
-        let least = minus((cosine, sine(cosine)), (self.cos_normals[half], sine(self.cos_normals[half])));
-        let (cos_least, _) = minus(least, bounds);
-        let usual = |center: Vec4, most: Vec4| CENTER * center.max(zero) + (1.0 - CENTER) * most;
-        // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 / (d^2
-        // + r^2). A square whose corners are at the radius has 0.64 of the area of such a disc.
-        let spread2 = (0.64 * self.radius2[half]).max(Vec4::splat(f32::MIN_POSITIVE));
-        let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
-        let mut across = least.0.max(zero);
-        if n != Vec3::ZERO {
-            let arriving = dot(n.to_array().map(Vec4::splat)).abs();
-            let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
-            importance *= usual(arriving, cos_arriving.max(zero));
-            across = across.min(arriving);
+    /// Estimates of what each child brings to a point; more than zero
+    /// wherever it brings any light. And whether it is far from there.
+    ///
+    /// Within [`run_plain`], in a loop without branches.
+    #[inline(always)]
+    fn importances(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
+        if to.n == Vec3::ZERO { self.importances_of::<false>(to) } else { self.importances_of::<true>(to) }
+    }
+
+    #[inline(always)]
+    fn importances_of<const FACING: bool>(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
+        let (p, n, far2) = (to.point.as_vec3(), to.n, to.far * to.far);
+        let (mut importances, mut far) = ([0.0; WIDTH], [false; WIDTH]);
+        for i in 0..WIDTH {
+            let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
+            let (distance2, radius2) = (x * x + y * y + z * z, self.radius2[i]);
+            let inverse = 1.0 / distance2.sqrt();
+            let inverse = if distance2 > 0.0 { inverse } else { 0.0 };
+            let (x, y, z) = (x * inverse, y * inverse, z * inverse);
+            let cosine = self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z;
+            let power = self.power[i];
+            let cosine = if power < 0.0 { cosine.abs() } else { cosine };
+            let sine2 = radius2 / distance2;
+            let cos_bounds = root(1.0 - sine2);
+            let inside = distance2 <= radius2;
+            let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { root(sine2) });
+            // The least angle to a normal, and from that to the point, over all that the bounds
+            // hold.
+            let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
+            let (cos_least, _) = minus(least, bounds);
+            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 /
+            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the area of such a
+            // disc.
+            let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
+            let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
+            let mut across = least.0;
+            if FACING {
+                let arriving = -(n.x * x + n.y * y + n.z * z);
+                let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
+                importance *= usual(arriving, largest(cos_arriving, 0.0));
+                across = if across < arriving { across } else { arriving };
+            }
+            far[i] = across > 0.0 && radius2 < far2 * distance2 * across * across;
+            importances[i] = if cos_least <= self.cos_emission[i] { 0.0 } else { largest(importance, 0.0) };
         }
-        let far = self.radius2[half].cmplt(FAR * FAR * distance2 * across * across);
-        (Vec4::select(cos_least.cmple(self.cos_emission[half]), zero, importance.max(zero)), far.bitmask())
+        (importances, far)
     }
 
-    /// [`Node::importances`] of all its children.
-    fn all_importances(&self, p: Vec3, n: Vec3) -> (Eight, u32) {
-        let few = self.power[1].x == 0.0;
-        let (high, high_far) = if few { (Vec4::ZERO, 0) } else { self.importances(1, p, n) };
-        let (low, low_far) = self.importances(0, p, n);
-        ([low, high], high_far << 4 | low_far)
-    }
-
-    /// The probabilities of its children, and a bit for each of which all emitters are as likely;
-    /// `None` where none brings any light.
-    fn shares(&self, p: Vec3, n: Vec3) -> Option<([f32; WIDTH], u8)> {
-        let (importances, far) = self.all_importances(p, n);
-        let sum = (importances[0] + importances[1]).element_sum();
-        (sum > 0.0 && sum.is_finite()).then(|| {
-            let [low, high] = importances.map(|four| (four / sum).to_array());
-            (std::array::from_fn(|i| if i < 4 { low[i] } else { high[i - 4] }), far as u8 & self.alike)
-        })
+    /// The probabilities of its children; no numbers where none brings any light. And whether the
+    /// emitters of each are as likely as each other.
+    #[inline(always)]
+    fn shares(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
+        let (mut shares, far) = self.importances(to);
+        let sum = sum(&shares);
+        let sum = if sum > 0.0 && sum < f32::INFINITY { sum } else { f32::NAN };
+        for share in &mut shares {
+            *share /= sum;
+        }
+        (shares, far)
     }
 }
 
-fn root(x: Vec4) -> Vec4 {
-    let [a, b, c, d] = x.to_array();
-    Vec4::new(a.sqrt(), b.sqrt(), c.sqrt(), d.sqrt())
+#[inline(always)]
+fn sum(x: &Eight) -> f32 {
+    ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
 }
 
-fn sine(cosine: Vec4) -> Vec4 {
-    root((Vec4::ONE - cosine * cosine).max(Vec4::ZERO))
+/// Not of numbers that are none, so that it is one instruction.
+#[inline(always)]
+fn largest(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn root(x: f32) -> f32 {
+    x.sqrt()
+}
+
+#[inline(always)]
+fn sine(cosine: f32) -> f32 {
+    largest(1.0 - cosine * cosine, 0.0).sqrt()
+}
+
+/// What a cosine counts that is so great at the middle of a node, and so great at most in it.
+#[inline(always)]
+fn usual(center: f32, most: f32) -> f32 {
+    CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
 }
 
 /// Cosine and sine of the difference of two angles, not less than 0.
-fn minus((cos_a, sin_a): (Vec4, Vec4), (cos_b, sin_b): (Vec4, Vec4)) -> (Vec4, Vec4) {
-    let less = cos_a.cmpgt(cos_b);
-    let difference = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
-    (Vec4::select(less, Vec4::ONE, difference.0), Vec4::select(less, Vec4::ZERO, difference.1))
+#[inline(always)]
+fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
+    let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
+    let is_less = cos_a > cos_b;
+    (if is_less { 1.0 } else { cosine }, if is_less { 0.0 } else { sine })
+}
+
+/// Estimates what the children of a node bring.
+struct Estimate<'a> {
+    node: &'a Node,
+    to: &'a Receiver,
+}
+
+impl PlainKernel for Estimate<'_> {
+    /// [`Node::importances`].
+    type Output = (Eight, [bool; WIDTH]);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.node.importances(self.to)
+    }
+}
+
+/// Weighs the children of a node.
+struct Weigh<'a> {
+    node: &'a Node,
+    to: &'a Receiver,
+}
+
+impl PlainKernel for Weigh<'_> {
+    /// [`Node::shares`].
+    type Output = (Eight, [bool; WIDTH]);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.node.shares(self.to)
+    }
+}
+
+/// [`LightTree::sample`].
+struct Sample<'a> {
+    nodes: &'a [Node],
+    to: &'a Receiver,
+    u: f32,
+}
+
+impl PlainKernel for Sample<'_> {
+    type Output = Option<(u32, f32)>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Sample { nodes, to, u } = self;
+        let (mut place, mut rest, mut probability) = (0, u, 1.0);
+        loop {
+            let node = nodes.get(place)?;
+            let (shares, far) = node.shares(to);
+            // The first with which the sum is greater than the number; without a branch, which
+            // would not be guessed.
+            let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
+            for share in shares {
+                sum += share;
+                let is_passed = rest >= sum;
+                slot += usize::from(is_passed);
+                before = if is_passed { sum } else { before };
+            }
+            if slot == WIDTH {
+                // What rounding leaves is the last one's that has a share.
+                slot = shares.iter().rposition(|&share| share > 0.0)?;
+                before = shares[..slot].iter().sum();
+            } else if shares[0].is_nan() {
+                return None;
+            }
+            rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+            probability *= shares[slot];
+            if far[slot] && node.alike >> slot & 1 == 1 {
+                let [from, to] = [node.ends[slot], node.ends[slot + 1]];
+                let count = (to - from) as f32;
+                return Some(((from + (rest * count) as u32).min(to - 1), probability / count));
+            }
+            let Child(next) = node.children[slot];
+            match next & !Child::EMITTER {
+                emitter if emitter != next => return Some((emitter, probability)),
+                next => place = next as usize,
+            }
+        }
+    }
 }
 
 /// The tree.
@@ -290,54 +390,28 @@ impl LightTree {
         self.nodes.is_empty()
     }
 
-    /// About what irradiance all of it brings to a point with a normal (zero: any).
-    pub fn importance(&self, p: Vec3, n: Vec3) -> f32 {
-        let Some(root) = self.nodes.first() else { return 0.0 };
-        let ([low, high], _) = root.all_importances(p, n);
-        (low + high).element_sum()
+    /// About what irradiance all of it brings to a point.
+    pub fn importance(&self, to: &Receiver) -> f32 {
+        self.nodes.first().map_or(0.0, |node| sum(&run_plain(Estimate { node, to }).0))
     }
 
-    /// Chooses an emitter for a point with a normal (zero: any) by a number from 0 to 1; with its
-    /// probability.
-    pub fn sample(&self, p: Vec3, n: Vec3, u: f32) -> Option<(u32, f32)> {
-        let (mut place, mut rest, mut probability) = (0, u, 1.0);
-        loop {
-            let node = self.nodes.get(place)?;
-            let (shares, alike) = node.shares(p, n)?;
-            // The last that has a share takes what rounding leaves.
-            let last = shares.iter().rposition(|&share| share > 0.0)?;
-            let (mut slot, mut before) = (0, 0.0);
-            while slot < last && (shares[slot] == 0.0 || rest >= before + shares[slot]) {
-                before += shares[slot];
-                slot += 1;
-            }
-            rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
-            probability *= shares[slot];
-            if alike >> slot & 1 == 1 {
-                let [from, to] = [node.ends[slot], node.ends[slot + 1]];
-                let count = (to - from) as f32;
-                return Some(((from + (rest * count) as u32).min(to - 1), probability / count));
-            }
-            let Child(next) = node.children[slot];
-            match next & !Child::EMITTER {
-                emitter if emitter != next => return Some((emitter, probability)),
-                next => place = next as usize,
-            }
-        }
+    /// Chooses an emitter for a point by a number from 0 to 1; with its probability.
+    pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
+        run_plain(Sample { nodes: &self.nodes, to, u })
     }
 
     /// The probability with which [`LightTree::sample`] chooses an emitter.
-    pub fn probability(&self, p: Vec3, n: Vec3, emitter: u32) -> f32 {
-        self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, p, n).0)
+    pub fn probability(&self, to: &Receiver, emitter: u32) -> f32 {
+        self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
     }
 
     /// The probability with which a child of a node is chosen, and whether it is all that is chosen
     /// before an emitter is: each of a child further up is as likely.
-    fn reached(&self, place: u32, slot: u8, p: Vec3, n: Vec3) -> (f32, bool) {
+    fn reached(&self, place: u32, slot: u8, to: &Receiver) -> (f32, bool) {
         let mut before = 1.0;
         if place > 0 {
             let (above, slot) = self.parents[place as usize];
-            let (probability, is_last) = self.reached(above, slot, p, n);
+            let (probability, is_last) = self.reached(above, slot, to);
             if is_last || probability == 0.0 {
                 return (probability, is_last);
             }
@@ -345,9 +419,12 @@ impl LightTree {
         }
         let slot = usize::from(slot);
         let node = &self.nodes[place as usize];
-        let Some((shares, alike)) = node.shares(p, n) else { return (0.0, true) };
+        let (shares, far) = run_plain(Weigh { node, to });
+        if shares[slot].is_nan() {
+            return (0.0, true);
+        }
         let probability = before * shares[slot];
-        if alike >> slot & 1 == 0 {
+        if !far[slot] || node.alike >> slot & 1 == 0 {
             return (probability, false);
         }
         let [from, to] = [node.ends[slot], node.ends[slot + 1]];
@@ -476,19 +553,41 @@ mod tests {
                 all.iter_mut().for_each(|light| *light = Bounds { bounds: of(*light), power: 1.0, ..all_ways() });
             }
             let (tree, order) = LightTree::new(&all);
-            for _ in 0..20 {
-                let (p, n) = (12.0 * random.point(), random.direction());
-                let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(p, n, i)).sum();
-                // Where a node's children both bring nothing, nothing is chosen.
-                assert!(sum < 1.0 + 1e-4 && (!alike || sum > 1.0 - 1e-4), "{sum}");
+            for i in 0..40 {
+                let n = if i % 2 == 0 { random.direction() } else { Vec3::ZERO };
+                let to = Receiver { point: (12.0 * random.point()).as_dvec3(), n, far: Receiver::FAR_BEYOND };
+                let sum: f32 = (0..order.len() as u32).map(|i| tree.probability(&to, i)).sum();
+                // Where a node's children bring nothing, nothing is chosen.
+                let always = alike && n == Vec3::ZERO;
+                assert!(sum < 1.0 + 1e-4 && (!always || sum > 1.0 - 1e-4), "{sum}");
                 for _ in 0..50 {
-                    let Some((i, probability)) = tree.sample(p, n, random.between(0.0, 1.0)) else { continue };
-                    let again = tree.probability(p, n, i);
+                    let Some((i, probability)) = tree.sample(&to, random.between(0.0, 1.0)) else { continue };
+                    let again = tree.probability(&to, i);
                     assert!((again - probability).abs() <= 1e-5 * probability, "{again} {probability}");
                     assert!(all[order[i as usize] as usize].power > 0.0);
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_lies_behind_a_surface_is_not_chosen() {
+        let mut random = Random(7);
+        let all: Vec<Bounds> =
+            lights(&mut random, 300).into_iter().map(|light| Bounds { each: 0.0, ..light }).collect();
+        let (tree, order) = LightTree::new(&all);
+        let (mut behind, mut chosen) = (0, 0);
+        for _ in 0..100 {
+            let to = Receiver { point: (5.0 * random.point()).as_dvec3(), n: random.direction(), far: Receiver::FAR };
+            for _ in 0..50 {
+                let Some((i, _)) = tree.sample(&to, random.between(0.0, 1.0)) else { continue };
+                let bounds = all[order[i as usize] as usize].bounds;
+                let above = (bounds.center().as_dvec3() - to.point).dot(to.n.as_dvec3());
+                behind += i32::from(above < -0.5 * f64::from(bounds.size().length()));
+                chosen += 1;
+            }
+        }
+        assert!(behind == 0 && chosen > 1000, "{behind} of {chosen}");
     }
 
     #[test]
@@ -498,14 +597,18 @@ mod tests {
         let (tree, order) = LightTree::new(&all);
         for _ in 0..50 {
             let p = 12.0 * random.point();
+            let to = Receiver { point: p.as_dvec3(), n: Vec3::ZERO, far: Receiver::FAR };
             for (i, light) in all.iter().enumerate().filter(|(_, light)| light.power > 0.0) {
                 let to_point = p - light.bounds.center();
                 let shines = light.cos_normals < 0.0
                     || light.axis.dot(to_point) > 0.2
                     || (light.two_sided && light.axis.dot(to_point).abs() > 0.2);
                 let place = order.iter().position(|&number| number as usize == i).unwrap();
-                let probability = tree.probability(p, Vec3::ZERO, place as u32);
-                assert!(!shines || probability > 0.0, "{i} of {light:?} at {p}");
+                let probability = |n| tree.probability(&Receiver { n, ..to }, place as u32);
+                assert!(!shines || probability(Vec3::ZERO) > 0.0, "{i} of {light:?} at {p}");
+                let n = random.direction();
+                let is_above = n.dot(to_point) < -light.bounds.size().length();
+                assert!(!shines || !is_above || probability(n) > 0.0, "{i} of {light:?} at {p}, {n}");
             }
         }
     }
