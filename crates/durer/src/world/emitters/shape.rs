@@ -292,6 +292,10 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
     Some(Place { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
 }
 
+/// A rectangle whose edges are less than this share of its distance is sampled evenly over its area:
+/// over it the density differs by a deviation of less than a tenth, and that is much faster.
+const SMALL: f32 = 0.1;
+
 /// A rectangle seen from a point, to be sampled evenly over its solid angle.
 ///
 /// Source: Ureña, Fajardo and King, *An Area-Preserving Parametrization for Spherical Rectangles*,
@@ -310,6 +314,10 @@ impl Window {
     /// `None` for what has no right angles, or is seen so small or so flat that its area does as
     /// well.
     fn new(corner: Vec3, e: Vec3, f: Vec3) -> Option<Window> {
+        let middle = corner + 0.5 * (e + f);
+        if e.length_squared().max(f.length_squared()) < SMALL * SMALL * middle.length_squared() {
+            return None;
+        }
         let (e, f, corner) = (e.as_dvec3(), f.as_dvec3(), corner.as_dvec3());
         let (le, lf) = (e.length(), f.length());
         if e.dot(f).abs() > 1e-6 * le * lf {
