@@ -24,7 +24,7 @@ const MOST: f64 = 2.0;
 const PLACINGS: u64 = 4;
 
 /// Pictures of each, by different random numbers.
-const RUNS: u64 = 2;
+const RUNS: u64 = 3;
 
 /// Rooms of the corpus, and the corners of what is in them.
 const ROOMS: [(&str, [f64; 3], [f64; 3]); 2] = [

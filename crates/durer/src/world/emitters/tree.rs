@@ -180,24 +180,22 @@ impl Node {
         }
         (importances, far)
     }
-
-    /// The probabilities of its children; no numbers where none brings any light. And whether the
-    /// emitters of each are as likely as each other.
-    #[inline(always)]
-    fn shares(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
-        let (mut shares, far) = self.importances(to);
-        let sum = sum(&shares);
-        let sum = if sum > 0.0 && sum < f32::INFINITY { sum } else { f32::NAN };
-        for share in &mut shares {
-            *share /= sum;
-        }
-        (shares, far)
-    }
 }
 
 #[inline(always)]
 fn sum(x: &Eight) -> f32 {
     ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
+}
+
+/// What children bring as their probabilities; no numbers where none brings any light.
+#[inline(always)]
+fn shares(mut importances: Eight) -> Eight {
+    let sum = sum(&importances);
+    let sum = if sum > 0.0 && sum < f32::INFINITY { sum } else { f32::NAN };
+    for importance in &mut importances {
+        *importance /= sum;
+    }
+    importances
 }
 
 /// Not of numbers that are none, so that it is one instruction.
@@ -246,22 +244,6 @@ impl PlainKernel for Estimate<'_> {
     }
 }
 
-/// Weighs the children of a node.
-struct Weigh<'a> {
-    node: &'a Node,
-    to: &'a Receiver,
-}
-
-impl PlainKernel for Weigh<'_> {
-    /// [`Node::shares`].
-    type Output = (Eight, [bool; WIDTH]);
-
-    #[inline(always)]
-    fn run(self) -> Self::Output {
-        self.node.shares(self.to)
-    }
-}
-
 /// [`LightTree::sample`].
 struct Sample<'a> {
     nodes: &'a [Node],
@@ -278,7 +260,8 @@ impl PlainKernel for Sample<'_> {
         let (mut place, mut rest, mut probability) = (0, u, 1.0);
         loop {
             let node = nodes.get(place)?;
-            let (shares, far) = node.shares(to);
+            let (importances, far) = node.importances(to);
+            let shares = shares(importances);
             // The first with which the sum is greater than the number; without a branch, which
             // would not be guessed.
             let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
@@ -419,11 +402,12 @@ impl LightTree {
         }
         let slot = usize::from(slot);
         let node = &self.nodes[place as usize];
-        let (shares, far) = run_plain(Weigh { node, to });
-        if shares[slot].is_nan() {
+        let (importances, far) = run_plain(Estimate { node, to });
+        let share = shares(importances)[slot];
+        if share.is_nan() {
             return (0.0, true);
         }
-        let probability = before * shares[slot];
+        let probability = before * share;
         if !far[slot] || node.alike >> slot & 1 == 0 {
             return (probability, false);
         }
