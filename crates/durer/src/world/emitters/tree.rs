@@ -49,12 +49,8 @@ impl Bounds {
     }
 }
 
-fn sine_of(cosine: f32) -> f32 {
-    (1.0 - cosine * cosine).max(0.0).sqrt()
-}
-
 fn angle(cosine: f32) -> f32 {
-    fp::atan2(sine_of(cosine), cosine)
+    fp::atan2(sine(cosine), cosine)
 }
 
 /// The least cone around two cones.
@@ -133,8 +129,8 @@ impl Node {
         }
     }
 
-    /// Estimates of what each child brings to a point; more than zero
-    /// wherever it brings any light. And whether it is far from there.
+    /// Estimates of what each child brings to a point; more than zero wherever it brings any light.
+    /// And whether it is far from there.
     ///
     /// Within [`run_plain`], in a loop without branches.
     #[inline(always)]
@@ -156,9 +152,9 @@ impl Node {
             let power = self.power[i];
             let cosine = if power < 0.0 { cosine.abs() } else { cosine };
             let sine2 = radius2 / distance2;
-            let cos_bounds = root(1.0 - sine2);
+            let cos_bounds = (1.0 - sine2).sqrt();
             let inside = distance2 <= radius2;
-            let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { root(sine2) });
+            let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
             // The least angle to a normal, and from that to the point, over all that the bounds
             // hold.
             let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
@@ -202,11 +198,6 @@ fn shares(mut importances: Eight) -> Eight {
 #[inline(always)]
 fn largest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
-}
-
-#[inline(always)]
-fn root(x: f32) -> f32 {
-    x.sqrt()
 }
 
 #[inline(always)]
@@ -492,7 +483,7 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
 fn cost(b: &Bounds) -> f32 {
     let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
     let wide = (normals + emission).min(PI);
-    let sine = sine_of(b.cos_normals);
+    let sine = sine(b.cos_normals);
     let measure = 2.0 * PI * (1.0 - b.cos_normals)
         + 0.5 * PI * (2.0 * wide * sine - fp::cos(normals - 2.0 * wide) - 2.0 * normals * sine + b.cos_normals);
     b.power * measure.max(0.0) * b.bounds.half_area().max(f32::MIN_POSITIVE)
