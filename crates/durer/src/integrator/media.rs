@@ -42,7 +42,7 @@ pub struct Body {
 
 impl Body {
     fn new(world: &World, object: u32, ior: f32) -> Self {
-        Body { object, ior, size: world.objects()[object as usize].extent() }
+        Body { object, ior, size: world.extent(object) }
     }
 
     /// Whether it fills the space that it shares with another one. Of two closed things that is the

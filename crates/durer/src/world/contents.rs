@@ -59,6 +59,7 @@ impl World {
     /// what was found about its objects stays as it was found.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
+        self.extents.clear();
         &mut self.contents
     }
 

@@ -230,6 +230,11 @@ impl Csg {
 
     fn leaf_of(&self, part: u32) -> usize {
         let number = part & !(TURNED | ENTERS);
+        // Where only shapes, of one part each, are before it, it is at the place of its number.
+        let begins = |place: usize| self.leaves.get(place).is_some_and(|leaf| leaf.first == number);
+        if begins(number as usize) && !begins(number as usize + 1) {
+            return number as usize;
+        }
         self.leaves.partition_point(|leaf| leaf.first <= number).saturating_sub(1)
     }
 

@@ -27,6 +27,7 @@ pub use interaction::Interaction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
+use std::sync::OnceLock;
 pub(crate) use surfaces::{LANES, Met, Numbers, PLACES, Surfaces, Vectors};
 pub(crate) use together::TOGETHER;
 
@@ -46,6 +47,9 @@ pub struct World {
     has_sheets: bool,
     /// What paths may begin in: bodies that they enter, where some is filled.
     bodies: Vec<u32>,
+    /// The extent of each object, found when it is first asked for; nothing where light goes into
+    /// no object.
+    extents: Vec<OnceLock<Option<f32>>>,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
     /// All things, where they are a few planes and spheres: for rays that are asked together.
@@ -110,6 +114,7 @@ impl World {
             has_interfaces: false,
             has_sheets: false,
             bodies: Vec::new(),
+            extents: Vec::new(),
             packs: PrimitivePacks::default(),
             few: PrimitivePacks::default(),
             loose: Vec::new(),
@@ -121,6 +126,7 @@ impl World {
         world.has_interfaces = world.finds_interfaces();
         world.has_sheets = world.finds_sheets();
         world.bodies = world.finds_bodies();
+        world.extents = world.forgotten_extents();
         world.emitters = Emitters::new(&world);
         world
     }
@@ -298,6 +304,18 @@ impl World {
     /// refraction; none where no body absorbs or scatters.
     pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.around(point, self.bodies.iter().copied(), Phong::is_entered)
+    }
+
+    /// What [`Object::extent`] says of an object.
+    pub(crate) fn extent(&self, object: u32) -> Option<f32> {
+        let find = || self.objects()[object as usize].extent();
+        self.extents.get(object as usize).map_or_else(find, |extent| *extent.get_or_init(find))
+    }
+
+    fn forgotten_extents(&self) -> Vec<OnceLock<Option<f32>>> {
+        let enters = |material: &Material| matches!(material, Material::Phong(phong) if phong.is_entered());
+        let wanted = if self.materials().iter().any(enters) { self.objects().len() } else { 0 };
+        vec![OnceLock::new(); wanted]
     }
 
     fn around(
