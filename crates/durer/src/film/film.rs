@@ -198,7 +198,7 @@ impl Small {
 const SMALL_COLOR: f32 = 8.0;
 
 /// The products of so many fit 64 bits.
-const MOST_SMALL: u64 = 1 << 11;
+const MOST_SMALL: usize = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
 const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
@@ -256,20 +256,23 @@ impl Film {
     /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent
     /// by its weight.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
-        self.add_all(x, y, std::iter::once((sample, color, weight)));
+        self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
 
-    /// The same for samples of one pixel, by their numbers, with their weights.
-    pub fn add_all(&mut self, x: u32, y: u32, samples: impl Iterator<Item = (u32, Option<Color>, f32)>) {
-        let mut small = Small::default();
-        for (sample, color, weight) in samples {
-            match color {
-                // Nearly always.
-                Some(color) if Small::holds(color, weight) && small.samples < MOST_SMALL => small.add(color, weight),
-                seen => self.add_covering(x, y, sample, seen.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight),
-            }
+    /// The same for samples of one pixel that follow each other, with a weight for each colour.
+    pub fn add_seen(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
+        let holds = |&(color, weight): &(&Color, &f32)| Small::holds(*color, *weight);
+        let small = colors.iter().zip(weights).take(MOST_SMALL).take_while(holds).count();
+        // Nothing is called in this loop, so that sums stay in registers.
+        let mut sums = Small::default();
+        for (&color, &weight) in colors[..small].iter().zip(&weights[..small]) {
+            sums.add(color, weight);
         }
-        self.pixel_mut(x, y).add_small(&small);
+        self.pixel_mut(x, y).add_small(&sums);
+        // Nearly always there are no others.
+        for i in small..colors.len() {
+            self.add(x, y, first + i as u32, colors[i], weights[i]);
+        }
     }
 
     /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.

@@ -10,7 +10,7 @@ pub mod whitted;
 use crate::camera::RayCone;
 use crate::describe::{Describe, DescribedList, described_list};
 use crate::dialect::Dialect;
-use crate::math::{Color, Ray};
+use crate::math::{Color, Ray, Ray64};
 use crate::sampler::SampleId;
 use crate::spectrum::ColorMode;
 use crate::world::World;
@@ -63,17 +63,17 @@ pub trait Integrate {
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
     /// The same for some camera rays that are neighbours, as it is for each: for those who can do
-    /// better with several. `begin` hears the number of the ray that comes next.
+    /// better with several. `begin` hears the number of the ray that comes next, and gives the
+    /// sample that it is of.
     fn radiances<T: TraceListener>(
         &self,
-        rays: &[(Ray, SampleId)],
-        begin: impl Fn(usize),
+        rays: &[Ray64],
+        begin: impl Fn(usize) -> SampleId,
         tally: &mut T,
         colors: &mut [Color],
     ) {
-        for (i, ((ray, id), color)) in rays.iter().zip(colors).enumerate() {
-            begin(i);
-            *color = self.radiance(ray, *id, tally);
+        for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
+            *color = self.radiance(&ray.rounded, begin(i), tally);
         }
     }
 
@@ -114,8 +114,8 @@ macro_rules! delegate {
             }
             fn radiances<T: TraceListener>(
                 &self,
-                rays: &[(Ray, SampleId)],
-                begin: impl Fn(usize),
+                rays: &[Ray64],
+                begin: impl Fn(usize) -> SampleId,
                 tally: &mut T,
                 colors: &mut [Color],
             ) {

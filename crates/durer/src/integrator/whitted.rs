@@ -128,8 +128,8 @@ impl Integrate for Whitted<'_> {
 
     fn radiances<T: TraceListener>(
         &self,
-        rays: &[(Ray, SampleId)],
-        begin: impl Fn(usize),
+        rays: &[Ray64],
+        begin: impl Fn(usize) -> SampleId,
         tally: &mut T,
         colors: &mut [Color],
     ) {

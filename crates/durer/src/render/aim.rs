@@ -38,7 +38,19 @@ pub(super) struct Pixel {
 }
 
 /// How many samples are aimed side by side.
-const BATCH: usize = 8;
+pub(super) const BATCH: usize = 8;
+
+/// Samples that are aimed side by side.
+pub(super) trait Several {
+    /// How many there are, at most [`BATCH`].
+    fn len(&self) -> usize;
+
+    /// The pixel of one; also where there are less, of some pixel.
+    fn pixel(&self, i: usize) -> &Pixel;
+
+    /// Its number in the pixel.
+    fn number(&self, i: usize) -> u32;
+}
 
 /// Some samples, of one pixel or several.
 pub(super) struct Batch {
@@ -57,6 +69,50 @@ impl Batch {
         self.of[self.len] = (*pixel, sample);
         self.len += 1;
         self.len == BATCH
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+    }
+}
+
+impl Several for Batch {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    fn pixel(&self, i: usize) -> &Pixel {
+        &self.of[i].0
+    }
+
+    #[inline(always)]
+    fn number(&self, i: usize) -> u32 {
+        self.of[i].1
+    }
+}
+
+/// As many samples of one pixel as are aimed side by side, from a number on.
+pub(super) struct Row<'a> {
+    pub(super) pixel: &'a Pixel,
+    pub(super) first: u32,
+}
+
+impl Several for Row<'_> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        BATCH
+    }
+
+    #[inline(always)]
+    fn pixel(&self, _: usize) -> &Pixel {
+        self.pixel
+    }
+
+    #[inline(always)]
+    fn number(&self, i: usize) -> u32 {
+        self.first + i as u32
     }
 }
 
@@ -109,21 +165,23 @@ impl<'a> Aim<'a> {
         PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
-    /// Gives pixel, number, ray and weight of all samples of a batch, as [`Aim::sample`] has them
-    /// one by one; then there are none.
-    pub(super) fn batch(&self, batch: &mut Batch, mut take: impl FnMut(&Pixel, u32, Option<Ray>, f32)) {
-        let of = &batch.of;
-        let samples = &of[..std::mem::take(&mut batch.len)];
-        let mut take = |i: usize, ray, weight| samples.get(i).map_or((), |(pixel, n)| take(pixel, *n, ray, weight));
+    /// Gives ray and weight of some samples, one after the other, as [`Aim::sample`] has them one by
+    /// one.
+    pub(super) fn several(&self, of: &impl Several, mut take: impl FnMut(usize, Option<Ray>, f32)) {
+        let mut take = |i: usize, ray, weight| {
+            if i < of.len() {
+                take(i, ray, weight);
+            }
+        };
         match (&self.warp, self.job.sampling) {
             (Some(warp), _) => run_plain(AimKernel { aim: self, warp, of, take }),
             (None, Sampling::Center) => {
-                let points = [0, 1].map(|axis| from_fn(|i| of[i].0.point[axis]));
+                let points = [0, 1].map(|axis| from_fn(|i| of.pixel(i).point[axis]));
                 self.rays(of, points, [[0.5; BATCH]; 2], |i, ray| take(i, ray, 1.0));
             }
             _ => {
-                for (i, (pixel, sample)) in samples.iter().enumerate() {
-                    let PixelSample { ray, weight, .. } = self.sample(pixel, *sample);
+                for i in 0..of.len() {
+                    let PixelSample { ray, weight, .. } = self.sample(of.pixel(i), of.number(i));
                     take(i, ray, weight);
                 }
             }
@@ -133,12 +191,12 @@ impl<'a> Aim<'a> {
     #[inline(always)]
     fn rays(
         &self,
-        of: &[(Pixel, u32); BATCH],
+        of: &impl Several,
         points: [[f32; BATCH]; 2],
         lenses: [[f32; BATCH]; 2],
         take: impl FnMut(usize, Option<Ray>),
     ) {
-        let samples = CameraSamples { points, pixels: from_fn(|i| of[i].0.point), lenses };
+        let samples = CameraSamples { points, pixels: from_fn(|i| of.pixel(i).point), lenses };
         self.world.camera().rays(self.world.camera_frame(), &samples, take);
     }
 
@@ -167,33 +225,38 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// Aims the samples of a batch as a filter wants them.
-struct AimKernel<'a, F> {
+/// Aims some samples as a filter wants them.
+struct AimKernel<'a, S, F> {
     aim: &'a Aim<'a>,
     warp: &'a FilterSampler,
-    of: &'a [(Pixel, u32); BATCH],
+    of: &'a S,
     take: F,
 }
 
-impl<F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, F> {
+impl<S: Several, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, S, F> {
     type Output = ();
 
     #[inline(always)]
     fn run(self) {
         let AimKernel { aim, warp, of, mut take } = self;
-        let numbers = from_fn(|i| of[i].1);
-        let positions = Sequence::points(&from_fn(|i| of[i].0.positions), &numbers);
-        let (offsets, weights) = warp.samples(&positions);
+        let (mut numbers, mut sequences) = ([0; BATCH], [of.pixel(0).positions; BATCH]);
+        for i in 0..BATCH {
+            (numbers[i], sequences[i]) = (of.number(i), of.pixel(i).positions);
+        }
+        let (offsets, weights) = warp.samples(&Sequence::points(&sequences, &numbers));
         let mut places = [[0.0; BATCH]; 2];
         for axis in 0..2 {
             for i in 0..BATCH {
-                places[axis][i] = of[i].0.center[axis] + offsets[axis][i];
+                places[axis][i] = of.pixel(i).center[axis] + offsets[axis][i];
             }
         }
-        let lenses = match aim.has_aperture {
-            true => Sequence::points(&from_fn(|i| of[i].0.id.sequence(LENS_DIMENSION)), &numbers),
-            false => [[0.5; BATCH]; 2],
-        };
+        let mut lenses = [[0.5; BATCH]; 2];
+        if aim.has_aperture {
+            for (i, sequence) in sequences.iter_mut().enumerate() {
+                *sequence = of.pixel(i).id.sequence(LENS_DIMENSION);
+            }
+            lenses = Sequence::points(&sequences, &numbers);
+        }
         aim.rays(of, aim.raster.points(places), lenses, |i, ray| take(i, ray, weights[i]));
     }
 }

@@ -1,6 +1,6 @@
 //! How the samples of a block are taken, for each way of sampling.
 
-use super::aim::{Aim, Batch, PixelSample};
+use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, Several};
 use super::error::{MAX_KEPT, center};
 use super::sub_pixels::SubPixels;
 use super::{Control, Crop, Job, RenderError, Sampling, center_ray};
@@ -10,7 +10,7 @@ use crate::dialect::Compat;
 use crate::film::Film;
 use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::math::{Color, Ray, Vec2, Vec3};
+use crate::math::{Color, Ray, Ray64, Vec2, Vec3};
 use crate::sampler::{SampleId, Sampler};
 use crate::threads;
 use crate::world::{Material, TOGETHER, World};
@@ -109,27 +109,68 @@ pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
+/// Samples of a pixel that were aimed, one after the other.
+struct Run {
+    x: u32,
+    y: u32,
+    /// The pixel's first sample.
+    id: SampleId,
+    /// The number of the first that was aimed, and where its weight is.
+    first: u32,
+    start: usize,
+}
+
+/// At most so many samples are aimed before their light is asked for.
+const ROOM: usize = TOGETHER + BATCH;
+
 /// Samples that were aimed.
-#[derive(Default)]
 struct Aimed {
-    /// Column, row and number of each, its weight, and whether the camera sees anything there.
-    samples: Vec<((u32, u32, u32), f32, bool)>,
-    /// The rays of those where it does, and which they are.
-    rays: Vec<(Ray, SampleId)>,
-    of: Vec<usize>,
-    colors: Vec<Color>,
+    runs: Vec<Run>,
+    /// How many there are, and their weights.
+    count: usize,
+    weights: [f32; ROOM],
+    /// How many of them the camera sees anything at: their rays, and of each the number of its run
+    /// and that of its sample.
+    seen: usize,
+    rays: [Ray64; ROOM],
+    of: [(u32, u32); ROOM],
+    colors: [Color; ROOM],
+}
+
+impl Default for Aimed {
+    fn default() -> Self {
+        let ray = Ray64::from(Ray::new(Vec3::ZERO, Vec3::X));
+        Aimed {
+            runs: Vec::new(),
+            count: 0,
+            weights: [0.0; ROOM],
+            seen: 0,
+            rays: [ray; ROOM],
+            of: [(0, 0); ROOM],
+            colors: [Color::ZERO; ROOM],
+        }
+    }
 }
 
 impl Aimed {
     fn clear(&mut self) {
-        self.samples.clear();
-        self.rays.clear();
-        self.of.clear();
+        self.runs.clear();
+        (self.count, self.seen) = (0, 0);
+    }
+
+    /// The run that a sample belongs to, whose weight will be at a place.
+    fn run_of(&mut self, pixel: &Pixel, number: u32, place: usize) -> u32 {
+        let goes_on = |run: &Run| (run.x, run.y, run.first + (place - run.start) as u32) == (pixel.x, pixel.y, number);
+        if !self.runs.last().is_some_and(goes_on) {
+            let &Pixel { x, y, id, .. } = pixel;
+            self.runs.push(Run { x, y, id, first: number, start: place });
+        }
+        self.runs.len() as u32 - 1
     }
 }
 
 thread_local! {
-    static AIMED: RefCell<Aimed> = RefCell::default();
+    static AIMED: RefCell<Option<Box<Aimed>>> = RefCell::default();
 }
 
 /// Takes the samples of a job.
@@ -179,36 +220,52 @@ impl<'a> Samples<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         let mut batch = Batch::new(self.aim.pixel(part.left, part.top));
-        let mut aimed = AIMED.take();
+        let mut aimed = AIMED.take().unwrap_or_default();
         for (index, (x, y)) in part.places().enumerate() {
             let pixel = self.aim.pixel(x, y);
-            for sample in ranges(index) {
-                at.set((x, y, Some(sample)));
-                if batch.push(&pixel, sample) {
-                    self.aim_batch(&mut batch, &mut aimed);
-                    if aimed.samples.len() >= TOGETHER {
-                        self.add_aimed(film, &mut aimed, at, rays)?;
+            let mut numbers = ranges(index);
+            while !numbers.is_empty() {
+                let first = numbers.start;
+                at.set((x, y, Some(first)));
+                if batch.len() == 0 && numbers.len() >= BATCH {
+                    // What samples of one pixel have in common is worked with once.
+                    self.aim_several(&Row { pixel: &pixel, first }, &mut aimed);
+                    numbers.start += BATCH as u32;
+                } else {
+                    numbers.start += 1;
+                    if !batch.push(&pixel, first) {
+                        continue;
                     }
+                    self.aim_several(&batch, &mut aimed);
+                    batch.clear();
+                }
+                if aimed.count >= TOGETHER {
+                    self.add_aimed(film, &mut aimed, at, rays)?;
                 }
             }
         }
-        self.aim_batch(&mut batch, &mut aimed);
+        self.aim_several(&batch, &mut aimed);
         self.add_aimed(film, &mut aimed, at, rays)?;
-        AIMED.set(aimed);
+        AIMED.set(Some(aimed));
         // What was made after a cancel means nothing.
         self.check()
     }
 
-    /// Aims some samples, of which there are none left then.
-    fn aim_batch(&self, batch: &mut Batch, aimed: &mut Aimed) {
-        let Aimed { samples, rays, of, .. } = aimed;
-        self.aim.batch(batch, |pixel, sample, ray, weight| {
+    /// Aims some samples.
+    fn aim_several(&self, of: &impl Several, aimed: &mut Aimed) {
+        let (start, mut runs) = (aimed.count, [0; BATCH]);
+        for (i, run) in runs[..of.len()].iter_mut().enumerate() {
+            *run = aimed.run_of(of.pixel(i), of.number(i), start + i);
+        }
+        self.aim.several(of, |i, ray, weight| {
             if let Some(ray) = ray {
-                rays.push((ray, pixel.id.of_sample(sample)));
-                of.push(samples.len());
+                aimed.rays[aimed.seen] = Ray64::from(ray);
+                aimed.of[aimed.seen] = (runs[i], of.number(i));
+                aimed.seen += 1;
             }
-            samples.push(((pixel.x, pixel.y, sample), weight, ray.is_some()));
+            aimed.weights[start + i] = weight;
         });
+        aimed.count += of.len();
     }
 
     /// Adds samples that were aimed, of which there are none left then.
@@ -220,22 +277,34 @@ impl<'a> Samples<'a> {
         rays: &mut RayCount,
     ) -> Result<(), Stopped> {
         self.check()?;
-        let Aimed { samples, rays: aims, of, colors } = &mut *aimed;
-        colors.clear();
-        colors.resize(aims.len(), Color::ZERO);
-        let begin = |i: usize| {
-            let (x, y, sample) = samples[of[i]].0;
+        let Aimed { runs, count, weights, seen, rays: aims, of, colors } = &mut *aimed;
+        let (of, colors) = (&of[..*seen], &mut colors[..*seen]);
+        let begin = |ray: usize| {
+            let (run, sample) = of[ray];
+            let Run { x, y, id, .. } = runs[run as usize];
             at.set((x, y, Some(sample)));
+            id.of_sample(sample)
         };
-        self.integrator.radiances(aims, begin, rays, colors);
-        let mut colors = colors.iter();
-        for of_one in samples.chunk_by(|(a, ..), (b, ..)| (a.0, a.1) == (b.0, b.1)) {
-            let (x, y, _) = of_one[0].0;
-            let with_colors = of_one.iter().map(|&((.., sample), weight, sees)| {
-                let color = if sees { colors.next() } else { None };
-                (sample, color.map(|&color| self.with_stale((x, y), color)), weight)
-            });
-            film.add_all(x, y, with_colors);
+        self.integrator.radiances(&aims[..*seen], begin, rays, colors);
+        let mut next = 0;
+        for (number, run) in runs.iter().enumerate() {
+            let end = runs.get(number + 1).map_or(*count, |next| next.start);
+            let own = of[next..].iter().take_while(|(run, _)| *run == number as u32).count();
+            let (of, colors) = (&of[next..next + own], &mut colors[next..next + own]);
+            next += own;
+            for color in &mut *colors {
+                *color = self.with_stale((run.x, run.y), *color);
+            }
+            let weights = &weights[run.start..end];
+            if own == weights.len() {
+                film.add_seen(run.x, run.y, run.first, colors, weights);
+                continue;
+            }
+            let mut seen = of.iter().zip(&*colors).peekable();
+            for (sample, &weight) in (run.first..).zip(weights) {
+                let color = seen.next_if(|((_, seen), _)| *seen == sample).map(|(_, &color)| color);
+                film.add_if_seen(run.x, run.y, sample, color, weight);
+            }
         }
         aimed.clear();
         Ok(())

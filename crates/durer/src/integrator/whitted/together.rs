@@ -8,9 +8,9 @@ use super::{Path, Whitted};
 use crate::dialect::Compat;
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::trace::TraceListener;
-use crate::math::{Color, Ray, Ray64};
+use crate::math::{Color, Ray64};
 use crate::sampler::SampleId;
-use crate::world::{Hit, Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
+use crate::world::{Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
 use std::cell::RefCell;
 
 /// Fewer rays are followed one by one.
@@ -37,7 +37,6 @@ struct Scratch {
     /// By depth.
     levels: Vec<Level>,
     hits: Hits,
-    camera_rays: Vec<Ray64>,
 }
 
 /// Hits of one depth after the other.
@@ -77,29 +76,27 @@ impl Whitted<'_> {
     /// The light along each of some camera rays, with the same bits as [`Whitted::radiance`].
     pub(super) fn light_together<T: TraceListener>(
         &self,
-        rays: &[(Ray, SampleId)],
-        begin: impl Fn(usize),
+        rays: &[Ray64],
+        begin: impl Fn(usize) -> SampleId,
         tally: &mut T,
         colors: &mut [Color],
     ) {
         if T::LISTENS || T::COUNTS_WORK {
-            for (i, ((ray, _), color)) in rays.iter().zip(colors).enumerate() {
+            for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
                 begin(i);
-                *color = self.radiance(ray, tally);
+                *color = self.radiance(&ray.rounded, tally);
             }
             return;
         }
         let bounces = self.settings.bounces;
-        SCRATCH.with_borrow_mut(|Scratch { levels, hits, camera_rays }| {
+        SCRATCH.with_borrow_mut(|Scratch { levels, hits }| {
             levels.resize_with(levels.len().max(bounces as usize + 1), Level::default);
             for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
-                camera_rays.clear();
-                camera_rays.extend(rays.iter().map(|(ray, _)| Ray64::from(ray)));
                 hits.media.clear();
                 hits.media.push(Media::default());
                 let carried = |i: usize| Carried { camera: (TOGETHER * part + i) as u32, media: AIR, weight: 1.0 };
                 let ways = (bounces, carried, &begin);
-                self.light_level(camera_rays, ways, (levels, hits), tally, |i, color| colors[i] = color);
+                self.light_level(rays, ways, (levels, hits), tally, |i, color| colors[i] = color);
             }
         });
     }
@@ -110,7 +107,7 @@ impl Whitted<'_> {
     fn light_level<T: TraceListener>(
         &self,
         rays: &[Ray64],
-        (bounces, carried, begin): (u32, impl Fn(usize) -> Carried, &impl Fn(usize)),
+        (bounces, carried, begin): (u32, impl Fn(usize) -> Carried, &impl Fn(usize) -> SampleId),
         (levels, hits): (&mut [Level], &mut Hits),
         tally: &mut T,
         mut take: impl FnMut(usize, Color),
@@ -121,6 +118,7 @@ impl Whitted<'_> {
         hits.surfaces.clear();
         hits.partings.clear();
         let (mut found, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
+        let mut materials = [0; TOGETHER];
         self.world.closest_together(rays, &mut found[..rays.len()]);
         for (i, ray) in rays.iter().enumerate() {
             begin(carried(i).camera as usize);
@@ -129,7 +127,8 @@ impl Whitted<'_> {
                 colors[i] = self.world.sky(ray.dir());
                 continue;
             };
-            match self.plain(hit) {
+            materials[i] = self.world.material_of(hit);
+            match self.plain(materials[i]) {
                 Some(phong) => self.world.add_met(i, hit, phong, &mut hits.surfaces),
                 None => colors[i] = self.trace(ray, found[i], hits.path(carried(i), bounces), tally),
             }
@@ -140,7 +139,7 @@ impl Whitted<'_> {
         for n in 0..hits.surfaces.met().len() {
             let met = hits.surfaces.met()[n];
             let (i, place) = (met.ray(), met.place());
-            let Some((hit, phong)) = found[i].as_ref().and_then(|hit| Some((hit, self.plain(hit)?))) else { continue };
+            let (Some(hit), Some(phong)) = (&found[i], self.plain(materials[i])) else { continue };
             let path = hits.path(carried(i), bounces);
             let (blend, leaving) = (Blend::of(&[WeightedMaterial { phong, share: 1.0 }]), hits.lit.sees_back(place));
             let mut passage = (1.0, 1.0, AIR);
@@ -174,10 +173,12 @@ impl Whitted<'_> {
         (0..rays.len()).for_each(|i| take(i, colors[i]));
     }
 
-    /// What a hit is made of, if its lamps can be asked about together with those of others.
-    fn plain(&self, hit: &Hit) -> Option<&Phong> {
+    /// A material, by number, if the lamps of what is made of it can be asked about together with
+    /// those of others.
+    #[inline]
+    fn plain(&self, material: u32) -> Option<&Phong> {
         let waits = self.settings.shadows && !self.world.rules().has(Compat::ShadowFronts);
-        match &self.world.materials()[self.world.material_of(hit) as usize] {
+        match &self.world.materials()[material as usize] {
             Material::Phong(phong) if waits => Some(phong),
             _ => None,
         }
@@ -187,7 +188,7 @@ impl Whitted<'_> {
     fn follow<T: TraceListener>(
         &self,
         branches: &mut Branches,
-        (bounces, begin): (u32, &impl Fn(usize)),
+        (bounces, begin): (u32, &impl Fn(usize) -> SampleId),
         (levels, hits): (&mut [Level], &mut Hits),
         tally: &mut T,
     ) {
