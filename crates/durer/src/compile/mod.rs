@@ -182,13 +182,13 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
     if kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES {
         boxes.fill(None);
     }
-    let mut few = PrimitivePacks::default();
-    if boxes.iter().all(Option::is_none) && boxes.len() <= FEW_TOGETHER {
-        let all = (0_u32..).zip(objects).all(|(i, object)| object.add_to(&mut few, i));
-        few = if all { few } else { PrimitivePacks::default() };
-    }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
-    if loose.iter().filter(|&&i| objects[i as usize].fits_packs()).count() >= MIN_PACKED {
+    let mut packable: Vec<u32> = loose.iter().copied().filter(|&i| objects[i as usize].fits_packs()).collect();
+    let mut few = PrimitivePacks::default();
+    if packable.len() <= FEW_TOGETHER {
+        packable.retain(|&i| objects[i as usize].add_to(&mut few, i));
+    }
+    if packable.len() >= MIN_PACKED {
         loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
     }
     let accel = build_accel(world, kind, boxes)?;

@@ -105,6 +105,7 @@ impl Primitive {
     }
 
     /// [`Shape::crossings`] by an axis that is known.
+    #[inline(always)]
     pub(crate) fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         match (self, axis) {
             (Primitive::Cylinder(s), Some(axis)) => s.crossings_about(axis, line, offer),

@@ -300,7 +300,8 @@ impl Csg {
         };
         // What begins or ends within the slack of the interval's ends matters too.
         let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
-        let pad = GRAZING as f32 * reach / ray.dir().length();
+        // No direction is shorter than its greatest part, which takes no root.
+        let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
         // From a place so far back, for rays that begin at their origin are walked faster. What
         // that place is off by is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
@@ -357,12 +358,12 @@ impl Csg {
         // The last crossing behind the origin that leads to the other side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
-        let apart = self.apart(ray, events);
+        let (apart, speed) = self.apart(ray, events);
         let mut from = 0;
         while from < events.len() {
             // Most crossings are alone.
             let to = match events.get(from + 1) {
-                Some(next) if next.t - events[from].t > apart => from + 1,
+                Some(next) if (next.t - events[from].t) * speed > apart => from + 1,
                 _ => self.coincident(ray, events, from, state),
             };
             let (group, before) = (&events[from..to], whole);
@@ -436,14 +437,14 @@ impl Csg {
         }
     }
 
-    /// Of crossings of a ray that coincide, no two are farther apart than this along it, by
-    /// [`Csg::coincide`].
-    fn apart(&self, ray: &Ray64, events: &[Event]) -> f64 {
-        let line = ray.line();
+    /// Of crossings of a ray that coincide, no two are farther apart than this, by
+    /// [`Csg::coincide`]; then how far the ray gets in a unit of `t`, at least.
+    fn apart(&self, ray: &Ray64, events: &[Event]) -> (f64, f64) {
+        let (line, speed) = (ray.line(), f64::from(ray.dir().abs().max_element()));
         let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
-        let reach = line.origin.abs().max_element() + farthest * line.dir.abs().max_element();
+        let reach = line.origin.abs().max_element() + farthest * speed;
         // A little more, for what is rounded otherwise there.
-        1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach) / line.dir.length()
+        (1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
     /// The end of the crossings that coincide with one, each of another part: see the head of this

@@ -52,7 +52,8 @@ pub struct World {
     extents: Vec<OnceLock<Option<f32>>>,
     /// Planes and spheres that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
-    /// All things, where they are a few planes and spheres: for rays that are asked together.
+    /// The planes and spheres that stand outside, where they are a few: for rays that are asked
+    /// together.
     pub(crate) few: PrimitivePacks,
     /// What else stands outside: objects without end, and all where they are so few that no tree
     /// pays.

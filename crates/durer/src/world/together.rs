@@ -15,26 +15,25 @@ const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 impl World {
     /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
     pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
-        if !self.few.is_empty() {
-            self.few_together(rays, |i, met| hits[i] = met.map(hit_of));
-            return;
-        }
         if !self.is_loose() {
             hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray, &mut ()));
             return;
         }
-        hits.fill(None);
         let offer = |best: &mut Option<Hit>, hit: Option<Hit>| {
             if let Some(hit) = hit.filter(|hit| hit.is_before(best)) {
                 *best = Some(hit);
             }
         };
         let sound = |i: usize| crate::bvh::is_sound(&rays[i].rounded);
-        for i in (0..rays.len()).filter(|&i| sound(i)) {
-            offer(&mut hits[i], self.packs.closest(&rays[i].rounded, &mut ()).map(hit_of));
+        if !self.few.is_empty() {
+            self.few_together(rays, |i, met| hits[i] = met.map(hit_of));
+        } else {
+            for (i, hit) in hits.iter_mut().enumerate() {
+                let found = if sound(i) { self.packs.closest(&rays[i].rounded, &mut ()) } else { None };
+                *hit = found.map(hit_of);
+            }
         }
-        for &number in &self.loose {
-            let object = &self.objects()[number as usize];
+        for (number, object) in self.others() {
             if let Geometry::Mesh(tree) = &object.geometry {
                 let mut found = [const { None::<TriangleHit> }; TOGETHER];
                 let local = local_rays(object, rays.iter());
@@ -54,25 +53,27 @@ impl World {
     /// Whether anything is hit by each of up to [`TOGETHER`] rays, as [`World::occluded`] has it one
     /// by one.
     pub(crate) fn occluded_together(&self, rays: &[Ray64], blocked: &mut [bool]) {
-        if !self.few.is_empty() {
-            self.few_together(rays, |i, met| blocked[i] = met.is_some());
-            return;
-        }
         if !self.is_loose() {
             blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
             return;
         }
-        for (ray, blocked) in rays.iter().zip(&mut *blocked) {
-            let sound = crate::bvh::is_sound(&ray.rounded);
-            let apart = |&&i: &&u32| !matches!(self.objects()[i as usize].geometry, Geometry::Mesh(_));
-            *blocked = sound
-                && (self.packs.occluded(&ray.rounded, &mut ())
-                    || (self.loose.iter().filter(apart))
-                        .any(|&i| self.objects()[i as usize].closest(i, ray, true, &mut ()).is_some()));
+        let sound = |i: usize| crate::bvh::is_sound(&rays[i].rounded);
+        if !self.few.is_empty() {
+            self.few_together(rays, |i, met| blocked[i] = met.is_some());
+        } else {
+            for (i, blocked) in blocked.iter_mut().enumerate() {
+                *blocked = sound(i) && self.packs.occluded(&rays[i].rounded, &mut ());
+            }
         }
-        for object in self.loose.iter().map(|&i| &self.objects()[i as usize]) {
+        // Those that are in the dark already need not be asked about.
+        let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
+        for (number, object) in self.others().filter(|(_, object)| !is_mesh(object)) {
+            for i in (0..rays.len()).filter(|&i| sound(i)) {
+                blocked[i] = blocked[i] || object.closest(number, &rays[i], true, &mut ()).is_some();
+            }
+        }
+        for (_, object) in self.others() {
             let Geometry::Mesh(tree) = &object.geometry else { continue };
-            // Those that are in the dark already need not be asked about.
             let (mut open, mut count) = ([0; TOGETHER], 0);
             for i in (0..rays.len()).filter(|&i| !blocked[i]) {
                 open[count] = i;
@@ -83,6 +84,13 @@ impl World {
             tree.bvh.occluded_batch(&local[..count], &mut found[..count]);
             open[..count].iter().zip(found).for_each(|(&i, found)| blocked[i] = found);
         }
+    }
+
+    /// What stands outside the structure beside planes and spheres that are tested together, with
+    /// numbers.
+    fn others(&self) -> impl Iterator<Item = (u32, &Object)> {
+        let object = |&number: &u32| (number, &self.objects()[number as usize]);
+        self.loose.iter().map(object).filter(|(_, object)| self.few.is_empty() || !object.fits_packs())
     }
 
     /// Whether all things stand outside the structure, as a few do.
