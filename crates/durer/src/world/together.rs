@@ -111,11 +111,13 @@ fn hit_of(met: PackHit) -> Hit {
     Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 }
 }
 
-/// Rays in the space of an object; those that are not sound meet nothing.
+/// Rays in the space of an object.
 fn local_rays<'r>(object: &Object, rays: impl Iterator<Item = &'r Ray64>) -> [Ray; TOGETHER] {
     let mut local = [NOWHERE; TOGETHER];
-    for (local, ray) in local.iter_mut().zip(rays).filter(|(_, ray)| crate::bvh::is_sound(&ray.rounded)) {
-        *local = object.local_ray(ray);
+    let rays = local.iter_mut().zip(rays);
+    match &object.to_world {
+        None => rays.for_each(|(local, ray)| *local = ray.rounded),
+        Some(to_world) => rays.for_each(|(local, ray)| *local = to_world.inverse_ray(ray)),
     }
     local
 }
