@@ -28,7 +28,7 @@ pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, P
 pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
 use std::sync::OnceLock;
-pub(crate) use surfaces::{LANES, Met, Numbers, PLACES, Surfaces, Vectors};
+pub(crate) use surfaces::{Kind, LANES, Met, Numbers, PLACES, Surfaces, Vectors};
 pub(crate) use together::TOGETHER;
 
 /// A scene ready to be traced.

@@ -37,7 +37,7 @@ impl Vectors {
 
 /// How a surface is found out.
 #[derive(Clone, Copy)]
-enum Kind {
+pub(crate) enum Kind {
     Plane,
     Sphere,
     Triangle,
@@ -70,8 +70,9 @@ impl Met {
 
 /// Hits that are asked about together, and their surfaces as far as light asks.
 pub(crate) struct Surfaces {
-    /// The rays whose hits are of each kind.
-    rays: [Vec<u32>; KINDS],
+    /// How many rays' hits are of each kind, and which rays.
+    counts: [usize; KINDS],
+    rays: [[u32; TOGETHER]; KINDS],
     met: Vec<Met>,
     /// The first place of hits that were met alone.
     others: usize,
@@ -102,7 +103,8 @@ struct Given {
 impl Default for Surfaces {
     fn default() -> Self {
         Surfaces {
-            rays: Default::default(),
+            counts: [0; KINDS],
+            rays: [[0; TOGETHER]; KINDS],
             met: Vec::new(),
             others: 0,
             end: 0,
@@ -122,8 +124,16 @@ impl Default for Surfaces {
 
 impl Surfaces {
     pub(crate) fn clear(&mut self) {
-        self.rays.iter_mut().for_each(Vec::clear);
+        self.counts = [0; KINDS];
         self.met.clear();
+    }
+
+    /// Adds the hit of a ray, by its number, to those that are asked about together.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, ray: usize, kind: Kind) {
+        let count = &mut self.counts[kind as usize];
+        self.rays[kind as usize][*count] = ray as u32;
+        *count += 1;
     }
 
     /// The hits, whose order is not that of the rays.
@@ -177,22 +187,21 @@ impl Surfaces {
 }
 
 impl World {
-    /// Adds a hit of a ray, by its number, to those whose surfaces are asked for together.
+    /// How the surface at a hit is found out, that is made of this.
     #[inline]
-    pub(crate) fn add_met(&self, ray: usize, hit: &Hit, phong: &Phong, surfaces: &mut Surfaces) {
+    pub(crate) fn kind_of(&self, hit: &Hit, phong: &Phong) -> Kind {
         let object = &self.objects()[hit.object as usize];
         let is_plain = object.to_world.is_none()
             && !self.rules().is_official()
             && phong.texture.is_none()
             && phong.noise.is_none()
             && !phong.tinted;
-        let kind = match &object.geometry {
+        match &object.geometry {
             Geometry::Primitive(Primitive::Plane(_)) if is_plain => Kind::Plane,
             Geometry::Primitive(Primitive::Sphere(_)) if is_plain => Kind::Sphere,
             Geometry::Mesh(_) if is_plain => Kind::Triangle,
             _ => Kind::Other,
-        };
-        surfaces.rays[kind as usize].push(ray as u32);
+        }
     }
 
     /// Works out the surfaces that [`World::meet`] finds at those hits of some rays.
@@ -224,7 +233,7 @@ impl World {
             run_plain(SurfaceKernel { first_sphere, first_triangle, end: surfaces.others, surfaces });
         }
         let mut at = Interaction::NOWHERE;
-        for i in 0..surfaces.rays[Kind::Other as usize].len() {
+        for i in 0..surfaces.counts[Kind::Other as usize] {
             let (ray, place) = (surfaces.rays[Kind::Other as usize][i], surfaces.end + i);
             let Some(hit) = hits[ray as usize] else { continue };
             let along = &rays[ray as usize];
@@ -237,7 +246,7 @@ impl World {
             surfaces.view.set(place, along.dir());
             surfaces.met.push(Met { ray, place: place as u32 });
         }
-        surfaces.end = (surfaces.end + surfaces.rays[Kind::Other as usize].len()).next_multiple_of(LANES);
+        surfaces.end = (surfaces.end + surfaces.counts[Kind::Other as usize]).next_multiple_of(LANES);
     }
 
     /// Gives hits of one kind their places, and gathers what their surfaces are worked out of.
@@ -249,8 +258,8 @@ impl World {
         surfaces: &mut Surfaces,
         gather: impl Fn(usize, &Hit, &Geometry, &Ray64, &mut Given),
     ) {
-        let Surfaces { rays: of_kind, met, end, given, view, .. } = surfaces;
-        let of_kind = &of_kind[kind as usize];
+        let Surfaces { rays: of_kind, counts, met, end, given, view, .. } = surfaces;
+        let of_kind = &of_kind[kind as usize][..counts[kind as usize]];
         for (place, &ray) in (*end..PLACES).zip(of_kind) {
             let Some(hit) = &hits[ray as usize] else { continue };
             let along = &rays[ray as usize];

@@ -10,7 +10,7 @@ use crate::integrator::media::{Media, Passage};
 use crate::integrator::trace::TraceListener;
 use crate::math::{Color, Ray64};
 use crate::sampler::SampleId;
-use crate::world::{Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
+use crate::world::{Geometry, Hit, Kind, Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
 use std::cell::RefCell;
 
 /// Fewer rays are followed one by one.
@@ -23,6 +23,18 @@ struct Waiting {
     /// Where its rays that go on end in the list of all.
     branches: usize,
 }
+
+/// What hits of an object have in common, and of which object; of a solid, whose parts differ, only
+/// what one has.
+struct Alike {
+    object: u32,
+    material: u32,
+    /// How surfaces are found out, where lamps can be asked about together.
+    kind: Option<Kind>,
+}
+
+/// The number of no object, and of no material.
+const NONE: u32 = u32::MAX;
 
 /// What is used anew for each few rays of one depth.
 #[derive(Default)]
@@ -120,6 +132,7 @@ impl Whitted<'_> {
         let (mut found, mut colors) = ([None; TOGETHER], [Color::ZERO; TOGETHER]);
         let mut materials = [0; TOGETHER];
         self.world.closest_together(rays, &mut found[..rays.len()]);
+        let mut alike = Alike { object: NONE, material: NONE, kind: None };
         for (i, ray) in rays.iter().enumerate() {
             begin(carried(i).camera as usize);
             tally.ray();
@@ -127,23 +140,34 @@ impl Whitted<'_> {
                 colors[i] = self.world.sky(ray.dir());
                 continue;
             };
-            materials[i] = self.world.material_of(hit);
-            match self.plain(materials[i]) {
-                Some(phong) => self.world.add_met(i, hit, phong, &mut hits.surfaces),
+            if hit.object != alike.object {
+                alike = self.alike(hit);
+            }
+            materials[i] = alike.material;
+            match alike.kind {
+                Some(kind) => hits.surfaces.add(i, kind),
                 None => colors[i] = self.trace(ray, found[i], hits.path(carried(i), bounces), tally),
             }
         }
         self.world.meet_together(rays, &found, &mut hits.surfaces);
         self.find_sides(&hits.surfaces, &mut hits.lit);
         let goes_on = self.goes_on(bounces);
+        // Most hits are of the same as the one before.
+        let (mut of, mut mixed) = (NONE, None);
         for n in 0..hits.surfaces.met().len() {
             let met = hits.surfaces.met()[n];
             let (i, place) = (met.ray(), met.place());
-            let (Some(hit), Some(phong)) = (&found[i], self.plain(materials[i])) else { continue };
-            let path = hits.path(carried(i), bounces);
-            let (blend, leaving) = (Blend::of(&[WeightedMaterial { phong, share: 1.0 }]), hits.lit.sees_back(place));
+            if materials[i] != of {
+                of = materials[i];
+                mixed = self.plain(of).map(|phong| {
+                    let blend = Blend::of(&[WeightedMaterial { phong, share: 1.0 }]);
+                    (phong, blend, blend.reflective != Color::ZERO, blend.transparent != Color::ZERO)
+                });
+            }
+            let (Some(hit), Some((phong, blend, reflects, transmits))) = (&found[i], mixed) else { continue };
+            let (path, leaving) = (hits.path(carried(i), bounces), hits.lit.sees_back(place));
             let mut passage = (1.0, 1.0, AIR);
-            if blend.transparent != Color::ZERO {
+            if transmits {
                 let Passage { here, there, behind, hidden } =
                     self.passage_through(hit.object, rays[i].rounded.origin, blend, leaving, path.media);
                 if hidden {
@@ -155,7 +179,7 @@ impl Whitted<'_> {
             }
             let Hits { surfaces, lit, partings, .. } = hits;
             colors[i] = self.unlit(met, surfaces.diffuse(place, phong), phong, lit);
-            if goes_on && (blend.reflective != Color::ZERO || blend.transparent != Color::ZERO) {
+            if goes_on && (reflects || transmits) {
                 partings.push(met, blend, leaving, passage);
             }
         }
@@ -171,6 +195,14 @@ impl Whitted<'_> {
             first = end;
         }
         (0..rays.len()).for_each(|i| take(i, colors[i]));
+    }
+
+    /// What hits have in common with one.
+    fn alike(&self, hit: &Hit) -> Alike {
+        let (object, material) = (&self.world.objects()[hit.object as usize], self.world.material_of(hit));
+        let is_solid = matches!(object.geometry, Geometry::Solid(_));
+        let kind = self.plain(material).map(|phong| self.world.kind_of(hit, phong));
+        Alike { object: if is_solid { NONE } else { hit.object }, material, kind }
     }
 
     /// A material, by number, if the lamps of what is made of it can be asked about together with
