@@ -6,11 +6,10 @@ use super::{Facing, Side, Whitted};
 use crate::bvh::internal::{PlainKernel, run_plain};
 use crate::integrator::trace::TraceListener;
 use crate::light::{Emitter as _, Illumination, Light};
-use crate::math::{self, Color, Ray, Ray64, fp, reflect};
+use crate::math::{self, Color, Ray, Ray64, Vec3, fp, reflect};
 use crate::world::{HighlightModel, Met, Numbers, PLACES, Phong, Surfaces, TOGETHER, Vectors};
 
 /// Hits that wait for the light of lamps, and what is worked out for one lamp.
-#[derive(Default)]
 pub(super) struct LampHits {
     hits: Vec<Met>,
     /// Whether some have highlights.
@@ -18,8 +17,21 @@ pub(super) struct LampHits {
     sides: Box<Sides>,
     seen: Box<Seen>,
     /// The light that hits scatter of a lamp if nothing is in the way, with the rays that ask.
-    lights: Vec<(usize, Color)>,
-    shadows: Vec<Ray64>,
+    lights: [(u32, Color); TOGETHER],
+    shadows: [Ray64; TOGETHER],
+}
+
+impl Default for LampHits {
+    fn default() -> Self {
+        LampHits {
+            hits: Vec::new(),
+            shines: false,
+            sides: Box::default(),
+            seen: Box::default(),
+            lights: [(0, Color::ZERO); TOGETHER],
+            shadows: [Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)); TOGETHER],
+        }
+    }
 }
 
 /// The sides of surfaces that are shaded, and how they scatter light.
@@ -158,8 +170,7 @@ impl Whitted<'_> {
     ) {
         let LampHits { hits, shines, sides, seen, lights, shadows } = lit;
         run_plain(LampKernel { whitted: self, lamp, surfaces, sides, seen, shines: *shines });
-        lights.clear();
-        shadows.clear();
+        let mut asked = 0;
         for &met in hits.iter() {
             let place = met.place();
             let light = match seen.is_known[place] > 0.0 {
@@ -170,28 +181,31 @@ impl Whitted<'_> {
                 continue;
             }
             tally.ray();
-            lights.push((met.ray(), light));
+            lights[asked] = (met.ray() as u32, light);
+            let shadow = &mut shadows[asked];
+            asked += 1;
             // Each is written to its place at once: what goes round by another would be waited for.
             if let solid @ Some(_) = surfaces.solid(place) {
-                shadows.push(self.shadow_ray(&surfaces.get(place, solid), &seen.get(place)));
+                *shadow = self.shadow_ray(&surfaces.get(place, solid), &seen.get(place));
                 continue;
             }
             let (t_min, t_max) = (seen.t_min[place], seen.t_max[place]);
             let rounded = Ray { origin: seen.origin.get(place), dir: seen.to_light.get(place), t_min, t_max };
-            shadows.push(Ray64 { rounded, rest: seen.rest.get(place), side: math::Side::ANY });
+            *shadow = Ray64 { rounded, rest: seen.rest.get(place), side: math::Side::ANY };
         }
+        let (lights, shadows) = (&lights[..asked], &shadows[..asked]);
         if self.settings.transparent_shadows {
             let mut found = [None; TOGETHER];
-            self.world.closest_together(shadows, &mut found[..shadows.len()]);
+            self.world.closest_together(shadows, &mut found[..asked]);
             for ((&(ray, light), shadow), hit) in lights.iter().zip(shadows).zip(found) {
                 let share = hit.map_or(Color::ONE, |_| self.let_through(*shadow, hit, shadow.dir(), tally));
-                colors[ray] += if share == Color::ZERO { Color::ZERO } else { share * light };
+                colors[ray as usize] += if share == Color::ZERO { Color::ZERO } else { share * light };
             }
         } else {
             let mut blocked = [false; TOGETHER];
-            self.world.occluded_together(shadows, &mut blocked[..shadows.len()]);
+            self.world.occluded_together(shadows, &mut blocked[..asked]);
             for (&(ray, light), blocked) in lights.iter().zip(blocked) {
-                colors[ray] += if blocked { Color::ZERO } else { light };
+                colors[ray as usize] += if blocked { Color::ZERO } else { light };
             }
         }
     }
