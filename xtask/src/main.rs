@@ -72,6 +72,8 @@ const USAGE: &str = "Commands:
       into target/peers.
   cargo xtask peers --time [--python PROGRAM] [--side 256] [--samples 64] [--runs 5] [--threads 2] [--only TEXT]
       Time of the processor until the noise is equal, ours and Mitsuba's (llvm_ad_rgb), in turns.
+  cargo xtask peers --direct [--python PROGRAM] [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
+      What direct light of point lamps costs us, Mitsuba 3's `direct`, and Blender's Cycles where the package index has it.
   cargo xtask validate [--samples N]
       Light against answers in closed form, white furnaces, directions against their densities, and docs/validation.md.
   cargo xtask lamps

@@ -1,5 +1,6 @@
 //! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared,
-//! `peers_time.py` how their times are.
+//! `peers_time.py` how their times are, and `peers_direct.py` those of direct light, which Blender's
+//! Cycles has too.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -7,13 +8,15 @@ use std::process::{Command, ExitCode};
 
 /// The version that the figures of docs/validation.md are of.
 const MITSUBA: &str = "mitsuba==3.9.1";
+const BLENDER: &str = "bpy==5.0.1";
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
-    let (mut python, mut time, mut rest) = (None, false, Vec::new());
+    let (mut python, mut script, mut rest) = (None, "peers.py", Vec::new());
     let mut given = arguments.iter();
     while let Some(argument) = given.next() {
         match argument.as_str() {
-            "--time" => time = true,
+            "--time" => script = "peers_time.py",
+            "--direct" => script = "peers_direct.py",
             "--python" => python = Some(PathBuf::from(given.next().context("--python PROGRAM")?)),
             _ => rest.push(argument),
         }
@@ -21,25 +24,28 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let root = crate::root()?;
     let python = match python {
         Some(python) => python,
-        None => environment(&root.join("target/peers"))?,
+        None => environment(&root.join("target/peers"), script == "peers_direct.py")?,
     };
-    let program = crate::build::durer()?;
     let mut command = Command::new(python);
-    match time {
-        true => command.arg(root.join("xtask/src/peers_time.py")).arg(program).arg(crate::corpus().join("meshes")),
-        false => command.arg(root.join("xtask/src/peers.py")).arg(program),
-    };
+    command.arg(root.join("xtask/src").join(script)).arg(crate::build::durer()?);
+    if script != "peers.py" {
+        command.arg(crate::corpus().join("meshes"));
+    }
     let status = command.args(rest).status()?;
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// A Python with Mitsuba, made once from the package index.
-fn environment(folder: &Path) -> Result<PathBuf> {
+/// A Python with Mitsuba, made once from the package index; with Blender too, if there is one for
+/// this Python.
+fn environment(folder: &Path, blender: bool) -> Result<PathBuf> {
     let python = folder.join("bin/python");
     if !python.exists() {
         did(Command::new("python3").args(["-m", "venv"]).arg(folder))?;
     }
     did(Command::new(&python).args(["-m", "pip", "install", "--quiet", MITSUBA, "numpy"]))?;
+    if blender && did(Command::new(&python).args(["-m", "pip", "install", "--quiet", BLENDER])).is_err() {
+        eprintln!("there is no {BLENDER} for this Python: Cycles is left out");
+    }
     Ok(python)
 }
 
