@@ -72,13 +72,24 @@ pub trait Integrate {
         tally: &mut T,
         colors: &mut [Color],
     ) {
-        for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
-            *color = self.radiance(&ray.rounded, begin(i), tally);
-        }
+        one_by_one(self, rays, begin, tally, colors);
     }
 
     /// Makes what the samples of some number need, by all threads, before they are taken.
     fn prepare(&self, _sample: u32) {}
+}
+
+/// [`Integrate::radiances`] of an integrator that gains nothing from several.
+fn one_by_one<T: TraceListener>(
+    integrator: &(impl Integrate + ?Sized),
+    rays: &[Ray64],
+    begin: impl Fn(usize) -> SampleId,
+    tally: &mut T,
+    colors: &mut [Color],
+) {
+    for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
+        *color = integrator.radiance(&ray.rounded, begin(i), tally);
+    }
 }
 
 macro_rules! delegate {

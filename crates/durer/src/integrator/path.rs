@@ -7,7 +7,7 @@
 
 use super::media::{Media, Passage};
 use super::trace::{Bounce, HitRecord, RayKind, TermKind, TermValue, TraceListener};
-use super::{Integrate, Settings};
+use super::{Integrate, Settings, one_by_one};
 use crate::bsdf::lobe::diffuse::Diffuse;
 use crate::bsdf::{Bsdf, Frame};
 use crate::camera::RayCone;
@@ -16,7 +16,7 @@ use crate::medium::{Flight, HenyeyGreenstein, Way};
 use crate::sampler::SampleId;
 use crate::shape::Surface;
 use crate::spectrum::{Lanes, Spectrum};
-use crate::world::{Interaction, Shading, World};
+use crate::world::{Hit, Interaction, Shading, TOGETHER, World};
 use glam::DVec3;
 pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{Gathered, PhotonMap, Photons};
@@ -137,11 +137,35 @@ impl Integrate for Path<'_> {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
         tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let ray = Ray64::from(ray);
-        let (sum, scale) = self.trace(&ray, &mut self.start(ray.origin()), &sample, tally);
+        let mut ray = Ray64::from(ray);
+        let hit = self.world.closest_along(&mut ray, tally);
+        let (sum, scale) = self.trace(&ray, hit, &mut self.start(ray.origin()), &sample, tally);
         let light = sum * scale;
         tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
+    }
+
+    /// What camera rays hit is asked for together.
+    fn radiances<T: TraceListener>(
+        &self,
+        rays: &[Ray64],
+        begin: impl Fn(usize) -> SampleId,
+        tally: &mut T,
+        colors: &mut [Color],
+    ) {
+        if T::LISTENS || T::COUNTS_WORK {
+            return one_by_one(self, rays, begin, tally, colors);
+        }
+        let mut found = [None; TOGETHER];
+        for (part, (rays, colors)) in rays.chunks(TOGETHER).zip(colors.chunks_mut(TOGETHER)).enumerate() {
+            self.world.closest_together(rays, &mut found[..rays.len()]);
+            for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
+                tally.ray();
+                let sample = self.sample(begin(part * TOGETHER + i));
+                let (sum, scale) = self.trace(ray, found[i], &mut self.start(ray.origin()), &sample, tally);
+                *color = sample.lanes.color(sum * scale);
+            }
+        }
     }
 
     fn prepare(&self, sample: u32) {
@@ -200,16 +224,17 @@ impl<'w> Path<'w> {
         Vertex { place, state, numbers: sample.bounce(state.depth).pairs() }
     }
 
-    /// The light along a ray: a sum, and what the way to it leaves of it.
+    /// The light along a ray to its first hit: a sum, and what the way to it leaves of it.
     fn trace<T: TraceListener>(
         &self,
         ray: &Ray64,
+        hit: Option<Hit>,
         state: &mut State,
         sample: &Sample,
         tally: &mut T,
     ) -> (Spectrum, Spectrum) {
         let mut at = Interaction::NOWHERE;
-        let (end, scale) = self.fly(ray, &mut at, state, sample, tally);
+        let (end, scale) = self.fly((ray, hit), &mut at, state, sample, tally);
         let sum = match end {
             End::Lost => Spectrum::ZERO,
             End::Sky(dir) => {
@@ -242,7 +267,7 @@ impl<'w> Path<'w> {
     /// it. What it meets is written where it stays: a copy of what was just written takes long.
     fn fly<T: TraceListener>(
         &self,
-        ray: &Ray64,
+        (ray, mut hit): (&Ray64, Option<Hit>),
         at: &mut Interaction,
         state: &mut State,
         sample: &Sample,
@@ -255,70 +280,72 @@ impl<'w> Path<'w> {
         let mut numbers = sample.id.stream(state.depth, 0);
         let whole = state.throughput;
         loop {
-            let hit = self.world.closest_along(&mut rest, tally);
-            let stretch = ray.dir().length();
-            let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
-            if let Some(medium) = self.world.medium(state.media.object()) {
-                let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
-                match medium.flight(&way, state.throughput, &sample.lanes, &mut || numbers.number()) {
-                    Flight::Passed(left) => scale *= left,
-                    Flight::Scattered(distance, left) => {
-                        scale *= left;
-                        state.throughput = whole * scale;
-                        // Never beyond what bounds it.
-                        let distance = distance.min(length * (1.0 - gamma(16)));
-                        let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
-                        if self.world.is_open(state.media.object()) {
-                            return (End::Medium(point, way.dir, medium.phase), scale);
+            'passed: {
+                let stretch = ray.dir().length();
+                let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
+                if let Some(medium) = self.world.medium(state.media.object()) {
+                    let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
+                    match medium.flight(&way, state.throughput, &sample.lanes, &mut || numbers.number()) {
+                        Flight::Passed(left) => scale *= left,
+                        Flight::Scattered(distance, left) => {
+                            scale *= left;
+                            state.throughput = whole * scale;
+                            // Never beyond what bounds it.
+                            let distance = distance.min(length * (1.0 - gamma(16)));
+                            let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
+                            if self.world.is_open(state.media.object()) {
+                                return (End::Medium(point, way.dir, medium.phase), scale);
+                            }
+                            // No lamp is seen from inside: the way is followed until it leads out.
+                            scattered += 1;
+                            let survival = match scattered {
+                                0..16 => 1.0,
+                                _ => state.throughput.max_element().min(1.0),
+                            };
+                            let cancelled = scattered % 256 == 0 && self.is_cancelled();
+                            if scattered > MAX_WALK || cancelled || numbers.number() >= survival {
+                                return (End::Lost, scale);
+                            }
+                            scale /= survival;
+                            let dir = medium.phase.sample(way.dir, numbers.pair());
+                            ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
+                            (rest, walked, state.from, state.from_camera) = (ray, 0.0, None, None);
+                            state.throughput = whole * scale;
+                            break 'passed;
                         }
-                        // No lamp is seen from inside: the way is followed until it leads out.
-                        scattered += 1;
-                        let survival = match scattered {
-                            0..16 => 1.0,
-                            _ => state.throughput.max_element().min(1.0),
-                        };
-                        let cancelled = scattered % 256 == 0 && self.is_cancelled();
-                        if scattered > MAX_WALK || cancelled || numbers.number() >= survival {
-                            return (End::Lost, scale);
-                        }
-                        scale /= survival;
-                        let dir = medium.phase.sample(way.dir, numbers.pair());
-                        ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
-                        (rest, walked, state.from, state.from_camera) = (ray, 0.0, None, None);
-                        state.throughput = whole * scale;
-                        continue;
+                    }
+                    state.throughput = whole * scale;
+                }
+                let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
+                walked = length;
+                self.world.meet(&ray, hit, at);
+                if let (Some(cone), Some(before)) = (&self.cone, state.from_camera) {
+                    at.width = cone.width_at(before + length);
+                }
+                if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), at) {
+                    rest.rounded.t_min = hit.t;
+                    break 'passed;
+                }
+                if self.world.has_cutouts() {
+                    let opacity = self.world.opacity(at);
+                    layers += 1;
+                    // What is not there at all does not count as a bounce.
+                    if opacity < 1.0 && sample.id.layer(state.depth, layers) >= opacity {
+                        rest.rounded.t_min = hit.t;
+                        break 'passed;
                     }
                 }
-                state.throughput = whole * scale;
-            }
-            let Some(hit) = hit else { return (End::Sky(ray.dir()), scale) };
-            walked = length;
-            self.world.meet(&ray, hit, at);
-            if let (Some(cone), Some(before)) = (&self.cone, state.from_camera) {
-                at.width = cone.width_at(before + length);
-            }
-            if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), at) {
-                rest.rounded.t_min = hit.t;
-                continue;
-            }
-            if self.world.has_cutouts() {
-                let opacity = self.world.opacity(at);
-                layers += 1;
-                // What is not there at all does not count as a bounce.
-                if opacity < 1.0 && sample.id.layer(state.depth, layers) >= opacity {
-                    rest.rounded.t_min = hit.t;
-                    continue;
+                match self.passage(at, &state.media, &sample.lanes) {
+                    Some(passage) if self.is_nothing(at, &passage) => {
+                        (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
+                    }
+                    passage => {
+                        state.from_camera = state.from_camera.map(|before| before + length);
+                        return (End::Surface(passage), scale);
+                    }
                 }
             }
-            match self.passage(at, &state.media, &sample.lanes) {
-                Some(passage) if self.is_nothing(at, &passage) => {
-                    (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
-                }
-                passage => {
-                    state.from_camera = state.from_camera.map(|before| before + length);
-                    return (End::Surface(passage), scale);
-                }
-            }
+            hit = self.world.closest_along(&mut rest, tally);
         }
     }
 
@@ -450,7 +477,7 @@ impl<'w> Path<'w> {
             alone: state.alone,
             from_camera: state.from_camera.filter(|_| delta),
         };
-        let ray = place.spawn(chosen.wi);
+        let mut ray = place.spawn(chosen.wi);
         tally.begin(|| TermKind::Ray {
             from: match (delta, chosen.passes) {
                 (true, false) => RayKind::Reflected,
@@ -466,7 +493,8 @@ impl<'w> Path<'w> {
             }),
         });
         let indirect = state.depth > 0;
-        let (sum, scale) = self.trace(&ray, &mut below, sample, tally);
+        let hit = self.world.closest_along(&mut ray, tally);
+        let (sum, scale) = self.trace(&ray, hit, &mut below, sample, tally);
         let scale = scale * self.clamped(sum * scale * weight * state.throughput, indirect);
         let light = sum * scale;
         tally.end(sample.told(weight), sample.told(scale), sample.told(light));

@@ -193,7 +193,8 @@ impl Photons {
         let mut met = Interaction::NOWHERE;
         let mut first = true;
         loop {
-            let (end, _) = path.fly(&ray, &mut met, &mut state, &sample, &mut ());
+            let hit = path.world.closest_along(&mut ray, &mut ());
+            let (end, _) = path.fly((&ray, hit), &mut met, &mut state, &sample, &mut ());
             // What fog scatters before anything throws it on, paths look for.
             if let End::Medium(point, dir, _) = end
                 && !first

@@ -7,6 +7,7 @@ use super::secondary::Blend;
 use super::{Path, Whitted};
 use crate::dialect::Compat;
 use crate::integrator::media::{Media, Passage};
+use crate::integrator::one_by_one;
 use crate::integrator::trace::TraceListener;
 use crate::math::{Color, Ray64};
 use crate::sampler::SampleId;
@@ -94,11 +95,7 @@ impl Whitted<'_> {
         colors: &mut [Color],
     ) {
         if T::LISTENS || T::COUNTS_WORK {
-            for (i, (ray, color)) in rays.iter().zip(colors).enumerate() {
-                begin(i);
-                *color = self.radiance(&ray.rounded, tally);
-            }
-            return;
+            return one_by_one(self, rays, begin, tally, colors);
         }
         let bounces = self.settings.bounces;
         SCRATCH.with_borrow_mut(|Scratch { levels, hits }| {
