@@ -118,6 +118,8 @@ fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_v
         MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
         MeshNormals::SmoothByArea | MeshNormals::SmoothAbove(_) => Some(smooth(mesh, vertices, |cross| cross)),
         MeshNormals::SmoothByFace => Some(smooth(mesh, vertices, DVec3::normalize_or_zero)),
+        // Triangles that share no vertex have no neighbours to be smooth with.
+        MeshNormals::Crease(_) if !shares_vertices(mesh) => None,
         MeshNormals::Crease(degrees) => Some(creased(mesh, degrees, by_vertex)),
         MeshNormals::Flat => None,
     }
@@ -145,6 +147,13 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
     }
     let values = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
     Normals { values, corners: Corners::Listed(triangles) }
+}
+
+/// Whether some vertex belongs to two triangles.
+fn shares_vertices(mesh: &impl Triangles) -> bool {
+    let mut seen = vec![false; mesh.vertices()];
+    let mut is_second = |vertex: u32| std::mem::replace(&mut seen[vertex as usize], true);
+    (0..mesh.len()).any(|i| mesh.triangle(i).into_iter().any(&mut is_second))
 }
 
 /// One normal a corner: the sum, by angle, over the faces around its vertex that are not beyond a

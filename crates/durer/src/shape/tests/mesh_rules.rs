@@ -111,6 +111,28 @@ fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
     }
 }
 
+/// Triangles that share no vertex, and one that touches another by one of its corners.
+#[test]
+fn triangles_that_share_nothing_have_no_normals_of_their_own() {
+    let apart = |count: u32| {
+        let cube = cube();
+        let corners: Vec<u32> = cube.triangles[..count as usize].iter().flatten().copied().collect();
+        let positions = corners.iter().map(|&i| cube.positions[i as usize]).collect();
+        let triangles = (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        MeshData { positions, triangles, ..MeshData::default() }
+    };
+    let rule = MeshNormals::Crease(40.0);
+    let mesh = Mesh::new(apart(12), rule, true);
+    assert!(mesh.is_flat() && (0..12).all(|part| mesh.corner_normals(part).is_none()));
+    for (part, uv) in (0..12).flat_map(|part| CORNERS.map(|uv| (part, uv))) {
+        let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
+        assert_eq!((surface.n_shade, surface.shadow_offsets), (surface.n_geo, [Vec3::ZERO; 2]));
+    }
+    let mut touching = apart(2);
+    touching.triangles[1][0] = touching.triangles[0][0];
+    assert!(!Mesh::new(touching, rule, true).is_flat());
+}
+
 #[test]
 fn tiny_meshes_are_as_smooth_as_others() {
     for rule in [MeshNormals::SmoothByArea, MeshNormals::SmoothByFace, MeshNormals::Crease(40.0)] {
