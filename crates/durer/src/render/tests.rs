@@ -147,8 +147,10 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
     for (text, rules, settings) in worlds {
         let (world, found) = testing::try_read(&text, rules, AccelKind::Bvh, folder.path());
         let (world, stop) = (world.unwrap_or_else(|| panic!("{found:?}\n{text}")), AtomicBool::new(false));
-        for job in jobs().into_iter().filter(|job| job.sampling.is_local()) {
-            let job = Job { settings, ..job };
+        let whitted = jobs().into_iter().map(|job| (job, Method::WHITTED));
+        let all_jobs = whitted.chain([(Job { sampling: filtered(5), ..small() }, Method::PATH)]);
+        for (job, method) in all_jobs.filter(|(job, _)| job.sampling.is_local()) {
+            let job = Job { settings, method, ..job };
             let samples = samples::Samples::new(&world, &job, &stop);
             let part = Crop { left: 3, top: 2, width: 27, height: 25 };
             let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
@@ -166,7 +168,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
                     alone.add_if_seen(x, y, sample, color, weight);
                 }
             }
-            assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{text} {:?}", job.sampling);
+            assert_eq!((&together, rays[0].0), (&alone, rays[1].0), "{text} {:?} {method:?}", job.sampling);
         }
     }
 }
