@@ -10,7 +10,6 @@ looks at both from each hit and theirs at one: their samples cost less, and have
 Cycles is left out where Blender (`bpy` of the package index) is missing, and where a scene has a sphere, which it does not know but as a mesh.
 """
 
-import argparse
 import json
 import math
 import pathlib
@@ -182,22 +181,10 @@ def race(given, scene, folder):
 def main():
     if sys.argv[1:2] == ["--cycles"]:
         return cycles(sys.argv[2])
-    import drjit as dr
-    import peers
     import peers_time
-    arguments = argparse.ArgumentParser()
-    arguments.add_argument("program")
-    arguments.add_argument("meshes", type=pathlib.Path)
-    for name, value in [("side", 512), ("samples", 16), ("runs", 3), ("threads", 2)]:
-        arguments.add_argument(f"--{name}", type=int, default=value)
-    arguments.add_argument("--only", default="")
-    given = arguments.parse_args()
-    mi = peers_time.mi
-    mi.set_variant("llvm_ad_rgb")
-    dr.set_thread_count(given.threads)
-    peers.T = mi.ScalarTransform4f
+    given = peers_time.begun(side=512, samples=16, runs=3, threads=2)
     print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, "
-          f"Mitsuba {mi.__version__}\n\n| scene | ours | Mitsuba | ours over its | Cycles | ours over its | means |\n"
+          f"Mitsuba {peers_time.mi.__version__}\n\n| scene | ours | Mitsuba | ours over its | Cycles | ours over its | means |\n"
           "| --- | --- | --- | --- | --- | --- | --- |")
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)

@@ -169,17 +169,23 @@ def race(given, scene, folder):
               f"| **{ratio:.2f}** |", flush=True)
 
 
-def main():
+def begun(**numbers):
+    """The options, numbers with what they are where they are not given; Mitsuba is ready then."""
     arguments = argparse.ArgumentParser()
     arguments.add_argument("program")
     arguments.add_argument("meshes", type=pathlib.Path)
-    for name, value in [("side", 256), ("samples", 64), ("runs", 5), ("threads", 2)]:
+    for name, value in numbers.items():
         arguments.add_argument(f"--{name}", type=int, default=value)
     arguments.add_argument("--only", default="")
     given = arguments.parse_args()
     mi.set_variant("llvm_ad_rgb")
     dr.set_thread_count(given.threads)
     peers.T = mi.ScalarTransform4f
+    return given
+
+
+def main():
+    given = begun(side=256, samples=64, runs=5, threads=2)
     print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, Mitsuba {mi.__version__}\n\n"
           "| scene | ours | Mitsuba | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
           "| --- | --- | --- | --- | --- | --- | --- |")
