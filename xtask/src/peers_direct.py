@@ -15,7 +15,6 @@ import math
 import pathlib
 import subprocess
 import sys
-import tempfile
 import time
 
 
@@ -186,11 +185,7 @@ def main():
     print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, "
           f"Mitsuba {peers_time.mi.__version__}\n\n| scene | ours | Mitsuba | ours over its | Cycles | ours over its | means |\n"
           "| --- | --- | --- | --- | --- | --- | --- |")
-    with tempfile.TemporaryDirectory() as folder:
-        folder = pathlib.Path(folder)
-        for scene in scenes(given.meshes, folder):
-            if given.only in scene.name:
-                race(given, scene, folder)
+    peers_time.each(given, scenes, race)
 
 
 if __name__ == "__main__":

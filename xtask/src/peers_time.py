@@ -184,16 +184,21 @@ def begun(**numbers):
     return given
 
 
-def main():
-    given = begun(side=256, samples=64, runs=5, threads=2)
-    print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, Mitsuba {mi.__version__}\n\n"
-          "| scene | ours | Mitsuba | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
-          "| --- | --- | --- | --- | --- | --- | --- |")
+def each(given, scenes, race):
+    """Lets all race in each scene that is wanted."""
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
         for scene in scenes(given.meshes, folder):
             if given.only in scene.name:
                 race(given, scene, folder)
+
+
+def main():
+    given = begun(side=256, samples=64, runs=5, threads=2)
+    print(f"{given.side} x {given.side} pixels, {given.samples} samples, {given.threads} threads each, {given.runs} runs in turns, Mitsuba {mi.__version__}\n\n"
+          "| scene | ours | Mitsuba | our error | its error | mean, ours over its | time to equal error, ours over its |\n"
+          "| --- | --- | --- | --- | --- | --- | --- |")
+    each(given, scenes, race)
 
 
 if __name__ == "__main__":

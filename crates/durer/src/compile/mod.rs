@@ -183,10 +183,12 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
         boxes.fill(None);
     }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
-    let mut packable: Vec<u32> = loose.iter().copied().filter(|&i| objects[i as usize].fits_packs()).collect();
+    let packable: Vec<u32> = loose.iter().copied().filter(|&i| objects[i as usize].fits_packs()).collect();
     let mut few = PrimitivePacks::default();
     if packable.len() <= FEW_TOGETHER {
-        packable.retain(|&i| objects[i as usize].add_to(&mut few, i));
+        for &i in &packable {
+            objects[i as usize].add_to(&mut few, i);
+        }
     }
     if packable.len() >= MIN_PACKED {
         loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
