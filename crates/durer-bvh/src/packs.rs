@@ -1,4 +1,4 @@
-//! Planes and spheres, of which eight are tested at once.
+//! Simple shapes, of which eight are tested at once.
 //!
 //! For scenes of a few things, where a tree would cost more than it saves, and for planes, which
 //! have no box. What is computed is what a test of one thing alone computes, in double precision
@@ -7,15 +7,17 @@
 use super::TraversalCounter;
 use super::lanes::{Available, Kernel, Lanes, WIDTH, numbers_of};
 use crate::math::{Doubles, Ray, Triple, Vec3};
+use glam::DVec3;
 
-/// Planes and spheres under the caller's numbers.
+/// Planes, spheres, discs, rectangles and boxes under the caller's numbers.
 #[derive(Clone, Debug)]
 pub struct PrimitivePacks {
-    /// normal · p = size.
-    planes: Vec<Pack>,
-    /// |p - center|^2 = size.
-    spheres: Vec<Pack>,
-    /// How many there are of both.
+    planes: Vec<Pack<PLANE>>,
+    spheres: Vec<Pack<SPHERE>>,
+    discs: Vec<Pack<DISC>>,
+    rectangles: Vec<Pack<RECTANGLE>>,
+    boxes: Vec<Pack<BOX>>,
+    /// How many there are of all.
     count: usize,
     level: Available,
 }
@@ -25,20 +27,19 @@ pub struct PrimitivePacks {
 pub struct PackHit {
     /// Position along the ray.
     pub t: f32,
-    /// Number of the plane or sphere.
+    /// Its number.
     pub number: u32,
 }
 
-/// Eight things of a kind: of each a normal or a centre, and a size. The size of a lane without a
-/// thing is no number, so that nothing is met there.
+/// Eight things of a kind, each of which is given by so many numbers. Those of a lane without a
+/// thing are no numbers, so that nothing is met there.
 #[derive(Clone, Copy, Debug)]
-struct Pack {
-    vectors: [[f64; WIDTH]; 3],
-    sizes: [f64; WIDTH],
+struct Pack<const N: usize> {
+    of: [[f64; WIDTH]; N],
     numbers: [u32; WIDTH],
 }
 
-impl Pack {
+impl<const N: usize> Pack<N> {
     /// The lanes that have a thing.
     #[inline(always)]
     fn things(&self) -> std::ops::Range<usize> {
@@ -48,28 +49,81 @@ impl Pack {
         }
         0..end
     }
+
+    /// A thing in each lane.
+    #[inline(always)]
+    fn eight<L: Lanes>(&self, lanes: L) -> [L::Doubles; N] {
+        let mut of = [lanes.splat_double(0.0); N];
+        for (to, from) in of.iter_mut().zip(&self.of) {
+            *to = lanes.load_doubles(from);
+        }
+        of
+    }
+
+    /// One thing in all lanes.
+    #[inline(always)]
+    fn one<L: Lanes>(&self, lanes: L, thing: usize) -> [L::Doubles; N] {
+        let mut of = [lanes.splat_double(0.0); N];
+        for (to, from) in of.iter_mut().zip(&self.of) {
+            *to = lanes.splat_double(from[thing]);
+        }
+        of
+    }
 }
 
 impl Default for PrimitivePacks {
     fn default() -> Self {
-        PrimitivePacks { planes: Vec::new(), spheres: Vec::new(), count: 0, level: Available::chosen() }
+        PrimitivePacks {
+            planes: Vec::new(),
+            spheres: Vec::new(),
+            discs: Vec::new(),
+            rectangles: Vec::new(),
+            boxes: Vec::new(),
+            count: 0,
+            level: Available::chosen(),
+        }
     }
 }
 
 impl PrimitivePacks {
     /// Adds the plane normal · p = offset.
     pub fn push_plane(&mut self, number: u32, normal: Vec3, offset: f32) {
-        push(&mut self.planes, number, normal, f64::from(offset));
+        let n = normal.as_dvec3();
+        push(&mut self.planes, number, [n.x, n.y, n.z, f64::from(offset)]);
         self.count += 1;
     }
 
     /// Adds the sphere |p - center| = radius.
     pub fn push_sphere(&mut self, number: u32, center: Vec3, radius: f32) {
-        push(&mut self.spheres, number, center, f64::from(radius) * f64::from(radius));
+        let c = center.as_dvec3();
+        push(&mut self.spheres, number, [c.x, c.y, c.z, f64::from(radius) * f64::from(radius)]);
         self.count += 1;
     }
 
-    /// How many planes and spheres there are.
+    /// Adds the disc around a centre, across a unit normal, from an inner radius to an outer one.
+    pub fn push_disc(&mut self, number: u32, center: Vec3, normal: DVec3, [inner, outer]: [f32; 2]) {
+        let (c, n) = (center.as_dvec3(), normal);
+        push(&mut self.discs, number, [n.x, n.y, n.z, c.x, c.y, c.z, f64::from(inner), f64::from(outer)]);
+        self.count += 1;
+    }
+
+    /// Adds the parallelogram of a corner and two edges.
+    pub fn push_rectangle(&mut self, number: u32, corner: Vec3, edges: [Vec3; 2]) {
+        let (c, [e, f]) = (corner.as_dvec3(), edges.map(|edge| edge.as_dvec3()));
+        let n = e.cross(f);
+        let of = [c.x, c.y, c.z, e.x, e.y, e.z, f.x, f.y, f.z, n.x, n.y, n.z, n.length_squared()];
+        push(&mut self.rectangles, number, of);
+        self.count += 1;
+    }
+
+    /// Adds the box between two corners.
+    pub fn push_box(&mut self, number: u32, min: Vec3, max: Vec3) {
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        push(&mut self.boxes, number, [min.x, min.y, min.z, max.x, max.y, max.z]);
+        self.count += 1;
+    }
+
+    /// How many things there are.
     pub fn len(&self) -> usize {
         self.count
     }
@@ -111,23 +165,183 @@ impl PrimitivePacks {
 }
 
 /// Adds a thing in the first lane that is free.
-fn push(packs: &mut Vec<Pack>, number: u32, vector: Vec3, size: f64) {
-    let free = |pack: &Pack| pack.sizes.iter().position(|size| size.is_nan());
-    let mut pack = packs.pop_if(|pack| free(pack).is_some()).unwrap_or(Pack {
-        vectors: [[0.0; WIDTH]; 3],
-        sizes: [f64::NAN; WIDTH],
-        numbers: [u32::MAX; WIDTH],
-    });
-    let lane = free(&pack).unwrap_or(0);
-    (0..3).for_each(|axis| pack.vectors[axis][lane] = f64::from(vector[axis]));
-    (pack.sizes[lane], pack.numbers[lane]) = (size, number);
+fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
+    let nothing = Pack { of: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
+    let mut pack = packs.pop_if(|pack| pack.things().end < WIDTH).unwrap_or(nothing);
+    let lane = pack.things().end;
+    pack.numbers[lane] = number;
+    (0..N).for_each(|i| pack.of[i][lane] = of[i]);
     packs.push(pack);
+}
+
+/// Rays side by side.
+struct Rays<L: Lanes> {
+    origin: [L::Doubles; 3],
+    dir: [L::Doubles; 3],
+    t_min: L::Floats,
+    t_max: L::Floats,
+}
+
+impl<L: Lanes> Rays<L> {
+    /// The lanes in which a place lies in the interval.
+    #[inline(always)]
+    fn contain(&self, lanes: L, t: L::Floats) -> u32 {
+        lanes.lt(self.t_min, t) & lanes.lt(t, self.t_max)
+    }
+
+    #[inline(always)]
+    fn at(&self, t: L::Doubles) -> [L::Doubles; 3] {
+        self.origin.add([t; 3].mul(self.dir))
+    }
+}
+
+/// Things of a kind that are given by `N` numbers.
+trait Form<const N: usize> {
+    /// Where rays first meet things in their interval: a bit for each lane, and the place.
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
+}
+
+/// normal · p = offset.
+struct Planes;
+const PLANE: usize = 4;
+
+impl Form<PLANE> for Planes {
+    #[inline(always)]
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
+        let normal = [x, y, z];
+        // A parallel ray divides by zero, and hits nothing.
+        let t = lanes.singles(offset.sub(normal.dot(rays.origin)).div(normal.dot(rays.dir)));
+        (rays.contain(lanes, t), t)
+    }
+}
+
+/// |p - center|^2 = square.
+struct Spheres;
+const SPHERE: usize = 4;
+
+impl Form<SPHERE> for Spheres {
+    #[inline(always)]
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
+        // The discriminant is taken from the point of the ray nearest to the centre, which keeps
+        // small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
+        // (2019), chapter 7.
+        let o = rays.origin.sub([x, y, z]);
+        let (dd, b) = (rays.dir.dot(rays.dir), o.dot(rays.dir).mul(lanes.splat_double(-1.0)));
+        let along = b.div(dd);
+        let near = o.add([along; 3].mul(rays.dir));
+        let discriminant = square.sub(near.dot(near));
+        // Where a sphere is missed, it is negative or no number, and so are the roots.
+        if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
+            return (0, lanes.splat(0.0));
+        }
+        // q has the sign of b, so that neither root loses digits to cancellation.
+        let c = o.dot(o).sub(square);
+        let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
+        let (t0, t1) = (c.div(q), q.div(dd));
+        first(lanes, rays, [t0.min(t1), t1.max(t0)])
+    }
+}
+
+/// normal · (p - center) = 0, as far from the centre as the radii say.
+struct Discs;
+const DISC: usize = 8;
+
+impl Form<DISC> for Discs {
+    #[inline(always)]
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; DISC]) -> (u32, L::Floats) {
+        let &[nx, ny, nz, x, y, z, inner, outer] = of;
+        let (normal, center) = ([nx, ny, nz], [x, y, z]);
+        let t = normal.dot(center.sub(rays.origin)).div(normal.dot(rays.dir));
+        let (way, found) = (rays.at(t).sub(center), lanes.singles(t));
+        let distance = way.dot(way).sqrt();
+        let on = lanes.le_doubles(inner, distance) & lanes.le_doubles(distance, outer);
+        (rays.contain(lanes, found) & on, found)
+    }
+}
+
+/// corner + u e + v f, u and v from 0 to 1.
+struct Rectangles;
+const RECTANGLE: usize = 13;
+
+impl Form<RECTANGLE> for Rectangles {
+    #[inline(always)]
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; RECTANGLE]) -> (u32, L::Floats) {
+        let &[x, y, z, ex, ey, ez, fx, fy, fz, nx, ny, nz, square] = of;
+        let (corner, e, f, n) = ([x, y, z], [ex, ey, ez], [fx, fy, fz], [nx, ny, nz]);
+        let t = n.dot(corner.sub(rays.origin)).div(n.dot(rays.dir));
+        let found = lanes.singles(t);
+        let met = rays.contain(lanes, found);
+        // Most rays do not meet the plane in their interval.
+        if met == 0 {
+            return (0, found);
+        }
+        // Cramer's rule.
+        let q = rays.at(t).sub(corner);
+        let (u, v) = (q.cross(f).dot(n).div(square), e.cross(q).dot(n).div(square));
+        let (zero, one) = (lanes.splat_double(0.0), lanes.splat_double(1.0));
+        let on = lanes.le_doubles(zero, u) & lanes.le_doubles(u, one);
+        (met & on & lanes.le_doubles(zero, v) & lanes.le_doubles(v, one), found)
+    }
+}
+
+/// What lies between two corners: three slabs cut the ray. Source: Kay and Kajiya, *Ray Tracing
+/// Complex Scenes*, SIGGRAPH 1986.
+struct Boxes;
+const BOX: usize = 6;
+
+impl Form<BOX> for Boxes {
+    #[inline(always)]
+    fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; BOX]) -> (u32, L::Floats) {
+        let infinity = lanes.splat_double(f64::INFINITY);
+        let (mut enter, mut leave) = (lanes.splat_double(f64::NEG_INFINITY), infinity);
+        for axis in 0..3 {
+            // Of a ray along the slab both ends are infinite: on different sides inside, on the
+            // same outside, and none on a face, for no zero here is negative.
+            let (o, d) = (rays.origin[axis], rays.dir[axis].add(lanes.splat_double(0.0)));
+            let (a, b) = (of[axis].sub(o).div(d), of[axis + 3].sub(o).div(d));
+            // Of what is no number the other end is left, or none.
+            enter = b.min(a).max(enter);
+            leave = a.max(b).min(leave);
+        }
+        let inside = !lanes.le_doubles(leave, enter);
+        let (met, t) = first(lanes, rays, [enter, leave]);
+        (met & inside, t)
+    }
+}
+
+/// The first of two places that lies in the interval.
+#[inline(always)]
+fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u32, L::Floats) {
+    let (near, far) = (lanes.singles(near), lanes.singles(far));
+    let in_near = rays.contain(lanes, near);
+    (in_near | rays.contain(lanes, far), lanes.select(in_near, near, far))
 }
 
 /// One ray's way through all packs; `ANY`: the first thing found will do.
 struct Query<'a, const ANY: bool> {
     packs: &'a PrimitivePacks,
     ray: &'a Ray,
+}
+
+impl<const ANY: bool> Query<'_, ANY> {
+    /// Its way through packs of one kind; whether something was found that will do.
+    #[inline(always)]
+    fn among<L: Lanes, F: Form<N>, const N: usize>(
+        lanes: L,
+        ray: &Rays<L>,
+        packs: &[Pack<N>],
+        best: &mut PackHit,
+    ) -> bool {
+        for pack in packs {
+            let (met, t) = F::meet(lanes, ray, &pack.eight(lanes));
+            if ANY && met != 0 {
+                best.number = 0;
+                return true;
+            }
+            *best = nearest(lanes.store(t), met, &pack.numbers, *best);
+        }
+        false
+    }
 }
 
 impl<const ANY: bool> Kernel for Query<'_, ANY> {
@@ -137,27 +351,17 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     fn run<L: Lanes>(self, lanes: L) -> PackHit {
         let Query { packs, ray } = self;
         let mut best = PackHit { t: ray.t_max, number: u32::MAX };
-        let origin = lanes.doubles3(lanes.splat3(ray.origin.to_array()));
-        let dir = lanes.doubles3(lanes.splat3(ray.dir.to_array()));
-        let (t_min, t_max) = (lanes.splat(ray.t_min), lanes.splat(ray.t_max));
-        for pack in &packs.planes {
-            let t = plane(lanes, origin, dir, load3(lanes, &pack.vectors), lanes.load_doubles(&pack.sizes));
-            let met = lanes.lt(t_min, t) & lanes.lt(t, t_max);
-            if ANY && met != 0 {
-                return PackHit { number: 0, ..best };
-            }
-            best = nearest(lanes.store(t), met, &pack.numbers, best);
-        }
-        for pack in &packs.spheres {
-            let (center, square) = (load3(lanes, &pack.vectors), lanes.load_doubles(&pack.sizes));
-            let Some([near, far]) = sphere(lanes, origin, dir, center, square) else { continue };
-            let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
-            let met = in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max);
-            if ANY && met != 0 {
-                return PackHit { number: 0, ..best };
-            }
-            best = nearest(lanes.store(lanes.select(in_near, near, far)), met, &pack.numbers, best);
-        }
+        let rays = Rays {
+            origin: lanes.doubles3(lanes.splat3(ray.origin.to_array())),
+            dir: lanes.doubles3(lanes.splat3(ray.dir.to_array())),
+            t_min: lanes.splat(ray.t_min),
+            t_max: lanes.splat(ray.t_max),
+        };
+        let _found = Self::among::<L, Planes, PLANE>(lanes, &rays, &packs.planes, &mut best)
+            || Self::among::<L, Rectangles, RECTANGLE>(lanes, &rays, &packs.rectangles, &mut best)
+            || Self::among::<L, Discs, DISC>(lanes, &rays, &packs.discs, &mut best)
+            || Self::among::<L, Boxes, BOX>(lanes, &rays, &packs.boxes, &mut best)
+            || Self::among::<L, Spheres, SPHERE>(lanes, &rays, &packs.spheres, &mut best);
         best
     }
 }
@@ -166,6 +370,25 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
 struct Together<'a> {
     packs: &'a PrimitivePacks,
     rays: [&'a Ray; WIDTH],
+}
+
+impl Together<'_> {
+    /// Their ways through packs of one kind.
+    #[inline(always)]
+    fn among<L: Lanes, F: Form<N>, const N: usize>(
+        (lanes, rays, sound): (L, &Rays<L>, u32),
+        packs: &[Pack<N>],
+        best: &mut [PackHit; WIDTH],
+    ) {
+        for pack in packs {
+            for thing in pack.things() {
+                let (met, t) = F::meet(lanes, rays, &pack.one(lanes, thing));
+                if met & sound != 0 {
+                    nearer(lanes.store(t), met & sound, pack.numbers[thing], best);
+                }
+            }
+        }
+    }
 }
 
 impl Kernel for Together<'_> {
@@ -182,23 +405,12 @@ impl Kernel for Together<'_> {
         }
         let [x, y, z, dx, dy, dz, t_min, t_max] = lanes.transpose(rows);
         let sound = sound(lanes, [x, y, z, dx, dy, dz]);
-        let (origin, dir) = (lanes.doubles3([x, y, z]), lanes.doubles3([dx, dy, dz]));
-        for pack in &packs.planes {
-            for thing in pack.things() {
-                let t = plane(lanes, origin, dir, splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
-                let met = sound & lanes.lt(t_min, t) & lanes.lt(t, t_max);
-                nearer(lanes.store(t), met, pack.numbers[thing], &mut best);
-            }
-        }
-        for pack in &packs.spheres {
-            for thing in pack.things() {
-                let (center, square) = (splat3(lanes, pack, thing), lanes.splat_double(pack.sizes[thing]));
-                let Some([near, far]) = sphere(lanes, origin, dir, center, square) else { continue };
-                let in_near = lanes.lt(t_min, near) & lanes.lt(near, t_max);
-                let met = sound & (in_near | lanes.lt(t_min, far) & lanes.lt(far, t_max));
-                nearer(lanes.store(lanes.select(in_near, near, far)), met, pack.numbers[thing], &mut best);
-            }
-        }
+        let rays = &Rays { origin: lanes.doubles3([x, y, z]), dir: lanes.doubles3([dx, dy, dz]), t_min, t_max };
+        Self::among::<L, Planes, PLANE>((lanes, rays, sound), &packs.planes, &mut best);
+        Self::among::<L, Rectangles, RECTANGLE>((lanes, rays, sound), &packs.rectangles, &mut best);
+        Self::among::<L, Discs, DISC>((lanes, rays, sound), &packs.discs, &mut best);
+        Self::among::<L, Boxes, BOX>((lanes, rays, sound), &packs.boxes, &mut best);
+        Self::among::<L, Spheres, SPHERE>((lanes, rays, sound), &packs.spheres, &mut best);
         best
     }
 }
@@ -216,59 +428,6 @@ fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
         all &= lanes.lt(size, infinity);
     }
     all
-}
-
-/// Where rays meet planes.
-#[inline(always)]
-fn plane<L: Lanes>(
-    lanes: L,
-    origin: [L::Doubles; 3],
-    dir: [L::Doubles; 3],
-    normal: [L::Doubles; 3],
-    offset: L::Doubles,
-) -> L::Floats {
-    // A parallel ray divides by zero, and hits nothing.
-    lanes.singles(offset.sub(normal.dot(origin)).div(normal.dot(dir)))
-}
-
-/// Where rays enter and leave spheres; `None` where all are missed.
-#[inline(always)]
-fn sphere<L: Lanes>(
-    lanes: L,
-    origin: [L::Doubles; 3],
-    dir: [L::Doubles; 3],
-    center: [L::Doubles; 3],
-    square: L::Doubles,
-) -> Option<[L::Floats; 2]> {
-    // The discriminant is taken from the point of the ray nearest to the centre, which keeps small,
-    // far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems* (2019),
-    // chapter 7.
-    let o = origin.sub(center);
-    let (dd, b) = (dir.dot(dir), o.dot(dir).mul(lanes.splat_double(-1.0)));
-    let along = b.div(dd);
-    let near = o.add([along; 3].mul(dir));
-    let discriminant = square.sub(near.dot(near));
-    // Where a sphere is missed, it is negative or no number, and so are the roots.
-    if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
-        return None;
-    }
-    // q has the sign of b, so that neither root loses digits to cancellation.
-    let c = o.dot(o).sub(square);
-    let q = b.add(dd.mul(discriminant).sqrt().copysign(b));
-    let (t0, t1) = (c.div(q), q.div(dd));
-    Some([lanes.singles(t0.min(t1)), lanes.singles(t1.max(t0))])
-}
-
-#[inline(always)]
-fn load3<L: Lanes>(lanes: L, [x, y, z]: &[[f64; WIDTH]; 3]) -> [L::Doubles; 3] {
-    [lanes.load_doubles(x), lanes.load_doubles(y), lanes.load_doubles(z)]
-}
-
-/// The vector of one thing of a pack in each lane.
-#[inline(always)]
-fn splat3<L: Lanes>(lanes: L, pack: &Pack, thing: usize) -> [L::Doubles; 3] {
-    let [x, y, z] = &pack.vectors;
-    [lanes.splat_double(x[thing]), lanes.splat_double(y[thing]), lanes.splat_double(z[thing])]
 }
 
 /// Takes one thing for the hit of the rays that meet it and nothing better yet.

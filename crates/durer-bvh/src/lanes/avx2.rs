@@ -368,6 +368,13 @@ impl Lanes for Avx2 {
         to
     }
     #[inline(always)]
+    fn le_doubles(self, a: (Four, Four), b: (Four, Four)) -> u32 {
+        proven! {
+            let low = _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.0.0, b.0.0));
+            (low | _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(a.1.0, b.1.0)) << 4) as u32
+        }
+    }
+    #[inline(always)]
     fn singles(self, (low, high): (Four, Four)) -> __m256 {
         proven!(_mm256_set_m128(_mm256_cvtpd_ps(high.0), _mm256_cvtpd_ps(low.0)))
     }

@@ -73,6 +73,10 @@ impl Lanes for Avx512 {
         to
     }
     #[inline(always)]
+    fn le_doubles(self, a: Eight, b: Eight) -> u32 {
+        proven!(u32::from(_mm512_cmp_pd_mask::<_CMP_LE_OQ>(a.0, b.0)))
+    }
+    #[inline(always)]
     fn singles(self, a: Eight) -> __m256 {
         proven!(_mm512_cvtpd_ps(a.0))
     }

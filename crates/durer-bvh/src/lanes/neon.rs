@@ -162,6 +162,16 @@ impl Lanes for Neon {
         to
     }
     #[inline(always)]
+    fn le_doubles(self, a: Self::Doubles, b: Self::Doubles) -> u32 {
+        proven! {
+            let two = |a: TwoDoubles, b: TwoDoubles| vmovn_u64(vcleq_f64(a.0, b.0));
+            let four = |(a, b): (TwoDoubles, TwoDoubles), (c, d): (TwoDoubles, TwoDoubles)| {
+                vcombine_u32(two(a, c), two(b, d))
+            };
+            bits(four(a.0, b.0), four(a.1, b.1))
+        }
+    }
+    #[inline(always)]
     fn singles(self, (low, high): Self::Doubles) -> Pair {
         proven! {
             let four = |(a, b): (TwoDoubles, TwoDoubles)| vcvt_high_f32_f64(vcvt_f32_f64(a.0), b.0);

@@ -56,6 +56,8 @@ pub(crate) trait Lanes: Numbers {
     fn splat_double(self, x: f64) -> Self::Doubles;
     fn load_doubles(self, from: &[f64; WIDTH]) -> Self::Doubles;
     fn store_doubles(self, a: Self::Doubles) -> [f64; WIDTH];
+    /// A bit for each lane where a <= b.
+    fn le_doubles(self, a: Self::Doubles, b: Self::Doubles) -> u32;
 
     /// A vector in each lane.
     #[inline(always)]

@@ -117,6 +117,10 @@ impl Lanes for Scalar {
         a.0
     }
     #[inline(always)]
+    fn le_doubles(self, a: Plain, b: Plain) -> u32 {
+        mask(|i| a.0[i] <= b.0[i])
+    }
+    #[inline(always)]
     fn singles(self, a: Plain) -> F {
         a.0.map(|x| x as f32)
     }

@@ -110,6 +110,7 @@ impl Kernel for Everything<'_> {
         let of_one = [p, p.sqrt(), p.copysign(signed)];
         for doubles in of_one.into_iter().chain([p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)]) {
             let numbers = lanes.store_doubles(doubles);
+            found.extend([lanes.le_doubles(doubles, q), lanes.le_doubles(p, doubles)]);
             found.extend(numbers.into_iter().flat_map(bits));
             let again = lanes.load_doubles(&numbers).add(lanes.splat_double(numbers[0]));
             found.extend(lanes.store(lanes.singles(again)).map(number));

@@ -22,6 +22,8 @@ const END: u32 = u32::MAX;
 
 /// Of a tree of fewer bytes, most is near: there, rays are faster one by one.
 const MAX_CACHED_BYTES: usize = 8 << 20;
+/// Fewer rays do not wait for each other long enough to be worth a place for each.
+const FEWEST: usize = 4;
 
 impl TriangleBvh {
     /// Answers a question for each of the rays with these numbers.
@@ -31,7 +33,7 @@ impl TriangleBvh {
         numbers: &[u32],
         mut answer: impl FnMut(usize, F::Answer),
     ) {
-        match self.memory_usage() < MAX_CACHED_BYTES {
+        match numbers.len() < FEWEST || self.memory_usage() < MAX_CACHED_BYTES {
             true => numbers.iter().for_each(|&i| answer(i as usize, self.query::<_, F>(&rays[i as usize], ()))),
             false => self.stream::<F>(rays, numbers, answer),
         }
@@ -129,7 +131,8 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
     fn run<L: Lanes>(mut self, lanes: L) {
         let bvh = self.bvh;
         let places = Places::new(bvh);
-        let mut rooms: Vec<StackStorage> = (0..IN_FLIGHT).map(|_| StackStorage::new()).collect();
+        let count = IN_FLIGHT.min(self.numbers.len());
+        let mut rooms: Vec<StackStorage> = (0..count).map(|_| StackStorage::new()).collect();
         let mut stacks: Vec<Stack> = rooms.iter_mut().map(Stack::new).collect();
         const NOWHERE: &Ray = &Ray::new(Vec3::ZERO, Vec3::X);
         let boxes = TraversalRay::robust(NOWHERE, bvh.reach).expect("a sound ray");
@@ -140,7 +143,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
             t_max: 0.0,
             child: END,
         };
-        let mut flights: Vec<InFlightRay<F>> = (0..IN_FLIGHT).map(place).collect();
+        let mut flights: Vec<InFlightRay<F>> = (0..count).map(place).collect();
         let (mut inner, mut leaves) = (List::EMPTY, List::EMPTY);
         for (number, (flight, stack)) in flights.iter_mut().zip(&mut stacks).enumerate() {
             let started = self.start(lanes, flight, stack);

@@ -22,7 +22,7 @@ use crate::shape::{Mesh, Primitive, Shape, Triangle};
 use crate::source::Source;
 use crate::texture::Sky;
 use crate::texture::sky::SUN_RADIUS;
-use crate::world::{Accel, Assets, Contents, Geometry, Object, Phong, World};
+use crate::world::{Accel, Assets, Contents, Few, Geometry, Object, Phong, World};
 use glam::DAffine3;
 pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
@@ -174,28 +174,35 @@ pub fn compile(
 
 /// Makes the structure over a world's objects: at first, and anew after they were moved.
 pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
-    let mut packs = PrimitivePacks::default();
     let objects = world.objects();
     let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
     let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
-    let spheres = bounded().filter(|(object, _)| object.fits_packs()).count();
-    if kind == AccelKind::Bvh && bounded().count() - spheres <= FEW && spheres <= FEW_SPHERES {
+    let (simple, others): (Vec<u32>, Vec<u32>) =
+        (0..objects.len() as u32).partition(|&i| objects[i as usize].simple().is_some());
+    let work: usize = objects.iter().filter_map(Object::simple).sum();
+    let few = (kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE).then(|| {
+        let mut few = Few { others, ..Few::default() };
+        for &i in &simple {
+            objects[i as usize].add_to(&mut few.simple, i);
+        }
+        few
+    });
+    let of_one_ray = || bounded().filter_map(|(object, _)| object.simple_for_one_ray());
+    if kind == AccelKind::Bvh
+        && bounded().count() - of_one_ray().count() <= FEW
+        && of_one_ray().sum::<usize>() <= FEW_SIMPLE
+    {
         boxes.fill(None);
     }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
-    let packable: Vec<u32> = loose.iter().copied().filter(|&i| objects[i as usize].fits_packs()).collect();
-    let mut few = PrimitivePacks::default();
-    if packable.len() <= FEW_TOGETHER {
-        for &i in &packable {
-            objects[i as usize].add_to(&mut few, i);
-        }
-    }
-    if packable.len() >= MIN_PACKED {
-        loose.retain(|&i| !objects[i as usize].add_to(&mut packs, i));
+    let mut packs = PrimitivePacks::default();
+    let is_simple = |&i: &u32| objects[i as usize].simple_for_one_ray().is_some();
+    if loose.iter().filter(|i| is_simple(i)).count() >= MIN_PACKED {
+        loose.retain(|i| !(is_simple(i) && objects[*i as usize].add_to(&mut packs, *i)));
     }
     let accel = build_accel(world, kind, boxes)?;
     let spheres = match &accel {
-        Accel::Bvh(bvh) if spheres > 0 => {
+        Accel::Bvh(bvh) if objects.iter().any(|object| object.sphere().radius > 0.0) => {
             bvh.primitive_indices().iter().map(|&i| objects[i as usize].sphere()).collect()
         }
         _ => Vec::new(),
@@ -204,15 +211,12 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
     Ok(())
 }
 
-/// So many objects are tested one after the other, and so many spheres eight at a time: a tree over
-/// them would cost more than it saves.
+/// So many objects are tested one after the other, and simple shapes that take as long as so many
+/// spheres eight at a time, or by eight rays: a tree over them would cost more than it saves.
 const FEW: usize = 2;
-const FEW_SPHERES: usize = 16;
-/// Up to so many planes and spheres, eight rays against one thing are faster than one ray against
-/// eight.
-const FEW_TOGETHER: usize = 16;
+const FEW_SIMPLE: usize = 16;
 
-/// Fewer planes and spheres than this are tested one after the other: eight at a time take longer.
+/// Fewer simple shapes than this are tested one after the other: eight at a time take longer.
 const MIN_PACKED: usize = 4;
 
 /// `bounds` are those of objects that do not stand outside.

@@ -2,7 +2,7 @@
 
 use super::verify::{Way, compare};
 use super::*;
-use crate::bvh::{PrimitivePacks, RayCount};
+use crate::bvh::RayCount;
 use crate::compile::{AccelKind, testing};
 use crate::dialect::Dialect;
 use crate::film::aov::{AOVS, Aov};
@@ -338,7 +338,7 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let mut boxes = vec![Aabb::EMPTY; 1000];
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(crate::bvh::Bvh::build(&boxes));
-    broken.few = PrimitivePacks::default();
+    broken.few = None;
     let job = Job { sampling: filtered(4), width: 64, height: 64, ..Job::default() };
     let part = PartialRender::new(&broken, &job, Shard::WHOLE).unwrap();
     let control = Control { threads: Some(1), ..Control::default() };

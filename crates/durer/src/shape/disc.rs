@@ -21,19 +21,19 @@ described! {
 }
 
 impl Disc {
-    fn normal(&self) -> DVec3 {
+    pub(crate) fn unit_normal(&self) -> DVec3 {
         self.normal.as_dvec3().normalize_or(DVec3::Y)
     }
 }
 
 impl Shape for Disc {
     fn bounds(&self) -> Option<Aabb> {
-        let (center, reach) = (self.center.as_dvec3(), f64::from(self.radius) * disc_reach(self.normal()));
+        let (center, reach) = (self.center.as_dvec3(), f64::from(self.radius) * disc_reach(self.unit_normal()));
         Some(padded(center - reach, center + reach))
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        let (n, center) = (self.normal(), self.center.as_dvec3());
+        let (n, center) = (self.unit_normal(), self.center.as_dvec3());
         let t = n.dot(center - line.origin) / n.dot(line.dir);
         let distance = (line.at(t) - center).length();
         // A parallel line divides by zero, and is nowhere within the radius.
@@ -47,7 +47,7 @@ impl Shape for Disc {
     }
 
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
-        let (n, center, radius) = (self.normal(), self.center.as_dvec3(), f64::from(self.radius));
+        let (n, center, radius) = (self.unit_normal(), self.center.as_dvec3(), f64::from(self.radius));
         let q = point - center;
         let q = (q - n.dot(q) * n).clamp_length_max(radius);
         let (x, z) = n.any_orthonormal_pair();

@@ -246,6 +246,11 @@ impl Mesh {
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
+    /// Whether triangles may have normals at their corners.
+    pub(crate) fn has_normals(&self) -> bool {
+        self.made.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
+    }
+
     /// The normals at a triangle's corners, if it has any.
     #[inline]
     pub(crate) fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {

@@ -29,7 +29,7 @@ pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
 pub use shading::Shading;
 use std::sync::OnceLock;
 pub(crate) use surfaces::{Kind, LANES, Met, Numbers, PLACES, Surfaces, Vectors};
-pub(crate) use together::TOGETHER;
+pub(crate) use together::{Few, TOGETHER};
 
 /// A scene ready to be traced.
 #[derive(Clone, Debug)]
@@ -50,11 +50,10 @@ pub struct World {
     /// The extent of each object, found when it is first asked for; nothing where light goes into
     /// no object.
     extents: Vec<OnceLock<Option<f32>>>,
-    /// Planes and spheres that stand outside the structure, tested eight at a time.
+    /// Simple shapes that stand outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
-    /// The planes and spheres that stand outside, where they are a few: for rays that are asked
-    /// together.
-    pub(crate) few: PrimitivePacks,
+    /// All things, where they are a few: for rays that are asked about together.
+    pub(crate) few: Option<Few>,
     /// What else stands outside: objects without end, and all where they are so few that no tree
     /// pays.
     pub(crate) loose: Vec<u32>,
@@ -117,7 +116,7 @@ impl World {
             bodies: Vec::new(),
             extents: Vec::new(),
             packs: PrimitivePacks::default(),
-            few: PrimitivePacks::default(),
+            few: None,
             loose: Vec::new(),
             accel: Accel::None,
             spheres: Vec::new(),
@@ -200,7 +199,8 @@ impl World {
             }
         };
         if let Some(met) = self.packs.closest(&ray.rounded, counter) {
-            offer(&mut best, ray, met.number, Some((ShapeHit { t: met.t, uv: Vec2::ZERO }, 0)));
+            let crossing = self.objects()[met.number as usize].crossing_at(met.t, ray);
+            offer(&mut best, ray, met.number, Some((crossing, 0)));
         }
         for &object in &self.loose {
             let found = self.objects()[object as usize].closest(object, ray, false, counter);

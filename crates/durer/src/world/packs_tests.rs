@@ -1,16 +1,16 @@
-//! Planes and spheres that are tested eight at a time are hit where each is hit alone.
+//! Simple shapes that are tested eight at a time are hit where each is hit alone.
 
 use crate::bvh::PrimitivePacks;
 use crate::math::random::{Random, rounds};
 use crate::math::{Ray, Vec3};
-use crate::shape::{Plane, Primitive, Shape, Sphere};
+use crate::shape::{Cuboid, Disc, Plane, Primitive, Rectangle, Shape, Sphere};
 
 fn vector(random: &mut Random, size: f32) -> Vec3 {
     Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
 }
 
-/// 10^5 rays, in sets of up to 20 planes and 20 spheres, many of them twice: t and number have the
-/// same bits, also where eight rays are asked for together.
+/// 10^5 rays, in sets of up to 20 of each kind, many of them twice, and many of the rays along faces
+/// or edges: t and number have the same bits, also where eight rays are asked for together.
 #[test]
 fn packs_hit_as_shapes_do() {
     let mut random = Random(8);
@@ -34,14 +34,46 @@ fn packs_hit_as_shapes_do() {
             packs.push_sphere(number, sphere.center, sphere.radius);
             shapes.push(sphere.into());
         }
+        for _ in 0..random.below(21) {
+            let center = [Vec3::ZERO, vector(&mut random, size)][random.below(2)];
+            let normal = [Vec3::X, -3.0 * Vec3::Z, vector(&mut random, 1.0) + Vec3::splat(1e-6)][random.below(3)];
+            let radius = [size, random.between(0.01, 1.0) * size][random.below(2)];
+            let inner_radius = [0.0, 0.5 * radius][random.below(2)];
+            let disc = Disc { center, normal, radius, inner_radius };
+            packs.push_disc(shapes.len() as u32, center, disc.unit_normal(), [inner_radius, radius]);
+            shapes.push(disc.into());
+        }
+        for _ in 0..random.below(21) {
+            let corner = [Vec3::ZERO, vector(&mut random, size)][random.below(2)];
+            let edge0 = [size * Vec3::X, vector(&mut random, size) + Vec3::splat(1e-9)][random.below(2)];
+            let edge1 = [size * Vec3::Y, vector(&mut random, size) + Vec3::splat(1e-9)][random.below(2)];
+            let rectangle = Rectangle { corner, edge0, edge1 };
+            if rectangle.flaw().is_none() {
+                packs.push_rectangle(shapes.len() as u32, corner, [edge0, edge1]);
+                shapes.push(rectangle.into());
+            }
+        }
+        for _ in 0..random.below(21) {
+            let min = [Vec3::ZERO, vector(&mut random, size)][random.below(2)];
+            let max = min + [Vec3::splat(size), vector(&mut random, size).abs() + 1e-3 * size][random.below(2)];
+            packs.push_box(shapes.len() as u32, min, max);
+            shapes.push(Cuboid { min, max }.into());
+        }
         assert_eq!(packs.len(), shapes.len());
         let mut asked = Vec::new();
         for _ in 0..100 {
-            let dirs = [Vec3::X, -Vec3::Z, vector(&mut random, 1.0) + Vec3::splat(1e-6), 1e-20 * Vec3::Y];
-            let origins = [Vec3::ZERO, size * Vec3::X, vector(&mut random, 2.0 * size)];
+            let dirs = [
+                Vec3::X,
+                -Vec3::Z,
+                vector(&mut random, 1.0) + Vec3::splat(1e-6),
+                1e-20 * Vec3::Y,
+                Vec3::new(-0.0, random.between(-1.0, 1.0), 1.0),
+            ];
+            let mut origins = [Vec3::ZERO, size * Vec3::X, vector(&mut random, 2.0 * size), Vec3::ZERO];
+            origins[3] = Vec3::new(0.0, origins[2].y, -size);
             let t_min = [0.0, f32::NEG_INFINITY, size][random.below(3)];
             let t_max = [f32::INFINITY, 1.5 * size][random.below(2)];
-            let ray = Ray { t_min, t_max, ..Ray::new(origins[random.below(3)], dirs[random.below(4)]) };
+            let ray = Ray { t_min, t_max, ..Ray::new(origins[random.below(4)], dirs[random.below(5)]) };
             if !crate::bvh::is_sound(&ray) {
                 continue;
             }

@@ -40,12 +40,14 @@ impl Vectors {
 pub(crate) enum Kind {
     Plane,
     Sphere,
+    /// Of a mesh without normals.
+    Flat,
     Triangle,
     /// Alone, as [`World::meet`] does it.
     Other,
 }
 
-const KINDS: usize = 4;
+const KINDS: usize = 5;
 
 /// A hit whose surface is worked out together with those of others.
 #[derive(Clone, Copy)]
@@ -199,6 +201,7 @@ impl World {
         match &object.geometry {
             Geometry::Primitive(Primitive::Plane(_)) if is_plain => Kind::Plane,
             Geometry::Primitive(Primitive::Sphere(_)) if is_plain => Kind::Sphere,
+            Geometry::Mesh(tree) if is_plain && !tree.mesh.has_normals() => Kind::Flat,
             Geometry::Mesh(_) if is_plain => Kind::Triangle,
             _ => Kind::Other,
         }
@@ -216,6 +219,15 @@ impl World {
             let Geometry::Primitive(Primitive::Sphere(sphere)) = object else { return };
             given.set_ray(place, ray, hit.t, sphere.center, sphere.radius);
         });
+        let first_flat = surfaces.end;
+        self.meet_kind((rays, hits), Kind::Flat, surfaces, |place, hit, object, _, given| {
+            let Geometry::Mesh(tree) = object else { return };
+            let [a, b, c] = tree.mesh.corners(hit.part);
+            given.vectors[0].set(place, a);
+            given.vectors[1].set(place, b);
+            given.vectors[2].set(place, c);
+            (given.numbers[0][place], given.numbers[1][place]) = hit.uv.into();
+        });
         let first_triangle = surfaces.end;
         self.meet_kind((rays, hits), Kind::Triangle, surfaces, |place, hit, object, _, given| {
             let Geometry::Mesh(tree) = object else { return };
@@ -230,7 +242,8 @@ impl World {
         });
         surfaces.others = surfaces.end.min(PLACES);
         if surfaces.others > 0 {
-            run_plain(SurfaceKernel { first_sphere, first_triangle, end: surfaces.others, surfaces });
+            let firsts = [first_sphere, first_flat, first_triangle, surfaces.others];
+            run_plain(SurfaceKernel { firsts, surfaces });
         }
         let mut at = Interaction::NOWHERE;
         for i in 0..surfaces.counts[Kind::Other as usize] {
@@ -280,12 +293,11 @@ impl Given {
     }
 }
 
-/// Planes, then spheres, then triangles. What lies between them was there before.
+/// Planes, then spheres, then flat triangles, then others. What lies between them was there before.
 struct SurfaceKernel<'a> {
     surfaces: &'a mut Surfaces,
-    first_sphere: usize,
-    first_triangle: usize,
-    end: usize,
+    /// The first of each kind after planes, and the end.
+    firsts: [usize; 4],
 }
 
 impl PlainKernel for SurfaceKernel<'_> {
@@ -293,19 +305,25 @@ impl PlainKernel for SurfaceKernel<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let SurfaceKernel { surfaces, first_sphere, first_triangle, end } = self;
+        let SurfaceKernel { surfaces, firsts: [first_sphere, first_flat, first_triangle, end] } = self;
         let first_triangle = first_triangle.min(end);
-        let first_sphere = first_sphere.min(first_triangle);
+        let first_flat = first_flat.min(first_triangle);
+        let first_sphere = first_sphere.min(first_flat);
         // Closures given to generic functions of others would be called like any function.
         for i in 0..first_sphere {
             let (normal, offset) = (surfaces.given.vectors[0].get(i), surfaces.given.numbers[0][i]);
             let (point, crossing) = surfaces.crossing(i);
             surfaces.set_bent(i, Plane { normal, offset }.surface(point, &crossing));
         }
-        for i in first_sphere..first_triangle {
+        for i in first_sphere..first_flat {
             let (center, radius) = (surfaces.given.vectors[0].get(i), surfaces.given.numbers[0][i]);
             let (point, crossing) = surfaces.crossing(i);
             surfaces.set_bent(i, Sphere { center, radius }.surface(point, &crossing));
+        }
+        for i in first_flat..first_triangle {
+            let [a, b, c, ..] = &surfaces.given.vectors;
+            let uv = Vec2::new(surfaces.given.numbers[0][i], surfaces.given.numbers[1][i]);
+            surfaces.set(i, &triangle::triangle_surface([a.get(i), b.get(i), c.get(i)], None, uv));
         }
         for i in first_triangle..end {
             let [a, b, c, na, nb, nc] = &surfaces.given.vectors;

@@ -1,13 +1,23 @@
 //! Rays that go nearly the same way, asked about together: with the answers that each has alone.
 
-use super::{Accel, Geometry, Hit, Object, World};
-use crate::bvh::{PackHit, TriangleHit};
-use crate::math::{Ray, Ray64, Vec2, Vec3};
+use super::{Geometry, Hit, Object, World};
+use crate::bvh::{PackHit, PrimitivePacks, TriangleHit};
+use crate::math::{Ray, Ray64, Vec3};
 use crate::shape::ShapeHit;
 use std::array::from_fn;
 
 /// As many rays are asked about together at most.
 pub(crate) const TOGETHER: usize = 64;
+
+/// A world of a few things, as rays see it that are asked about together: whatever structure others
+/// go through.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Few {
+    /// Simple shapes, for eight rays at once.
+    pub(crate) simple: PrimitivePacks,
+    /// The numbers of all others.
+    pub(crate) others: Vec<u32>,
+}
 
 /// A ray that meets nothing.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
@@ -15,28 +25,26 @@ const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 impl World {
     /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
     pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
-        if !self.is_loose() {
+        let Some(few) = &self.few else {
             hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray, &mut ()));
             return;
-        }
+        };
         let offer = |best: &mut Option<Hit>, hit: Option<Hit>| {
             if let Some(hit) = hit.filter(|hit| hit.is_before(best)) {
                 *best = Some(hit);
             }
         };
         let sound = |i: usize| crate::bvh::is_sound(&rays[i].rounded);
-        if !self.few.is_empty() {
-            self.few_together(rays, |i, met| hits[i] = met.map(hit_of));
-        } else {
-            for (i, hit) in hits.iter_mut().enumerate() {
-                let found = if sound(i) { self.packs.closest(&rays[i].rounded, &mut ()) } else { None };
-                *hit = found.map(hit_of);
-            }
-        }
-        for (number, object) in self.others() {
+        few.meet(rays, |i, met| hits[i] = met.map(|met| self.hit_of_pack(met, &rays[i])));
+        for &number in &few.others {
+            let object = &self.objects()[number as usize];
             if let Geometry::Mesh(tree) = &object.geometry {
                 let mut found = [const { None::<TriangleHit> }; TOGETHER];
-                let local = local_rays(object, rays.iter());
+                let mut local = local_rays(object, rays.iter());
+                // A tie is decided by the order of hits, so a ray may reach just to what it met.
+                for (local, hit) in local.iter_mut().zip(&*hits) {
+                    local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
+                }
                 tree.bvh.closest_batch(&local[..rays.len()], &mut found[..rays.len()]);
                 for (best, found) in hits.iter_mut().zip(found) {
                     offer(best, found.map(|h| Hit { t: h.t, uv: h.uv, object: number, part: h.triangle }));
@@ -53,26 +61,21 @@ impl World {
     /// Whether anything is hit by each of up to [`TOGETHER`] rays, as [`World::occluded`] has it one
     /// by one.
     pub(crate) fn occluded_together(&self, rays: &[Ray64], blocked: &mut [bool]) {
-        if !self.is_loose() {
+        let Some(few) = &self.few else {
             blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
             return;
-        }
+        };
         let sound = |i: usize| crate::bvh::is_sound(&rays[i].rounded);
-        if !self.few.is_empty() {
-            self.few_together(rays, |i, met| blocked[i] = met.is_some());
-        } else {
-            for (i, blocked) in blocked.iter_mut().enumerate() {
-                *blocked = sound(i) && self.packs.occluded(&rays[i].rounded, &mut ());
-            }
-        }
+        few.meet(rays, |i, met| blocked[i] = met.is_some());
         // Those that are in the dark already need not be asked about.
+        let others = || few.others.iter().map(|&number| (number, &self.objects()[number as usize]));
         let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
-        for (number, object) in self.others().filter(|(_, object)| !is_mesh(object)) {
+        for (number, object) in others().filter(|(_, object)| !is_mesh(object)) {
             for i in (0..rays.len()).filter(|&i| sound(i)) {
                 blocked[i] = blocked[i] || object.closest(number, &rays[i], true, &mut ()).is_some();
             }
         }
-        for (_, object) in self.others() {
+        for (_, object) in others() {
             let Geometry::Mesh(tree) = &object.geometry else { continue };
             let (mut open, mut count) = ([0; TOGETHER], 0);
             for i in (0..rays.len()).filter(|&i| !blocked[i]) {
@@ -86,29 +89,26 @@ impl World {
         }
     }
 
-    /// What stands outside the structure beside planes and spheres that are tested together, with
-    /// numbers.
-    fn others(&self) -> impl Iterator<Item = (u32, &Object)> {
-        let object = |&number: &u32| (number, &self.objects()[number as usize]);
-        self.loose.iter().map(object).filter(|(_, object)| self.few.is_empty() || !object.fits_packs())
-    }
-
-    /// Whether all things stand outside the structure, as a few do.
-    fn is_loose(&self) -> bool {
-        matches!(&self.accel, Accel::Bvh(bvh) if bvh.is_empty())
-    }
-
-    fn few_together(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
-        for start in (0..rays.len()).step_by(8) {
-            let ray = |i: usize| rays.get(start + i).map_or(&NOWHERE, |ray| &ray.rounded);
-            let met = self.few.closest_of_eight(from_fn(ray));
-            met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
-        }
+    /// What a ray met of what is tested together.
+    #[inline]
+    fn hit_of_pack(&self, PackHit { t, number }: PackHit, ray: &Ray64) -> Hit {
+        let ShapeHit { t, uv } = self.objects()[number as usize].crossing_at(t, ray);
+        Hit { t, uv, object: number, part: 0 }
     }
 }
 
-fn hit_of(met: PackHit) -> Hit {
-    Hit { t: met.t, uv: Vec2::ZERO, object: met.number, part: 0 }
+impl Few {
+    /// Offers the first hit of each ray with simple shapes, if there is one.
+    fn meet(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
+        if self.simple.is_empty() {
+            return (0..rays.len()).for_each(|i| take(i, None));
+        }
+        for start in (0..rays.len()).step_by(8) {
+            let ray = |i: usize| rays.get(start + i).map_or(&NOWHERE, |ray| &ray.rounded);
+            let met = self.simple.closest_of_eight(from_fn(ray));
+            met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
+        }
+    }
 }
 
 /// Rays in the space of an object.

@@ -7,11 +7,14 @@ use crate::triangles::tree::TriangleBvh;
 
 /// How many rays may be in a packet.
 pub const RAYS: usize = 64;
+/// Room for its rays.
+pub type Sixteens = [PacketRays; RAYS / WIDE];
+
 pub struct Packet<'a> {
     pub bvh: &'a TriangleBvh,
     pub axes: Axes,
     pub numbers: [u32; RAYS],
-    pub sixteens: [PacketRays; RAYS / WIDE],
+    pub sixteens: &'a mut Sixteens,
     /// How many of the sixteens hold rays.
     pub groups: usize,
     /// Whether all begin at the same point.

@@ -30,7 +30,7 @@ mod walk;
 use super::tree::{TriangleBvh, TriangleHit};
 use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
-use bundle::{Packet, RAYS};
+use bundle::{Packet, RAYS, Sixteens};
 use glam::Vec3A;
 use rays::PacketRays;
 use shared::{Axes, Meeting};
@@ -69,16 +69,21 @@ impl TriangleBvh {
 }
 
 /// What is used anew for each batch, one a thread: batches may be small.
-#[derive(Default)]
 struct Scratch {
     /// Numbers of rays that do not go together.
     rest: Vec<u32>,
     meetings: Vec<Meeting>,
     stack: Vec<Entry>,
+    sixteens: Box<Sixteens>,
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::default();
+    static SCRATCH: RefCell<Scratch> = RefCell::new(Scratch {
+        rest: Vec::new(),
+        meetings: Vec::new(),
+        stack: Vec::new(),
+        sixteens: Box::new([PacketRays::EMPTY; RAYS / WIDE]),
+    });
 }
 
 struct Packets<'a, A, const ANY: bool> {
@@ -93,12 +98,12 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
 
     #[inline(always)]
     fn run<L: Lanes>(mut self, lanes: L) {
-        let Scratch { rest, meetings, stack } = self.scratch;
+        let Scratch { rest, meetings, stack, sixteens } = self.scratch;
         let mut packet = Packet {
             bvh: self.bvh,
             axes: Axes::of_key(0),
             numbers: [0; RAYS],
-            sixteens: [PacketRays::EMPTY; RAYS / WIDE],
+            sixteens,
             groups: 0,
             is_point: false,
             alive: 0,
@@ -123,8 +128,10 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             }
             packet.load(lanes, self.rays, rays.len(), rays);
             // What is next comes near while these rays are on their way.
-            for line in 0..RAYS / 2 {
-                lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
+            if self.rays.len() > first as usize + RAYS {
+                for line in 0..RAYS / 2 {
+                    lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
+                }
             }
             let signs = packet.signs(lanes);
             // Usually all have the same key, and are where they should be; else those of each key

@@ -39,6 +39,8 @@ impl Branches {
 pub(super) struct Partings {
     /// The hits, with the number of what light runs in behind them.
     hits: Vec<(Met, u32)>,
+    /// Whether light goes through some of them.
+    transmits: bool,
     given: Given,
     mirrored: Way,
     transmitted: Way,
@@ -70,6 +72,7 @@ impl Default for Partings {
         let way = || Way { color: Vectors::ZERO, origin: Vectors::ZERO, rest: Vectors::ZERO, dir: Vectors::ZERO };
         Partings {
             hits: Vec::new(),
+            transmits: false,
             given: Given {
                 reflective: Vectors::ZERO,
                 transparent: Vectors::ZERO,
@@ -87,6 +90,7 @@ impl Default for Partings {
 impl Partings {
     pub(super) fn clear(&mut self) {
         self.hits.clear();
+        self.transmits = false;
     }
 
     pub(super) fn is_empty(&self) -> bool {
@@ -103,6 +107,7 @@ impl Partings {
         given.fresnel[place] = f32::from(u8::from(blend.fresnel));
         (given.here[place], given.there[place]) = (here, there);
         given.leaving[place] = f32::from(u8::from(leaving));
+        self.transmits |= blend.transparent != Color::ZERO;
         self.hits.push((met, behind));
     }
 }
@@ -117,6 +122,7 @@ impl Whitted<'_> {
         branches: &mut Branches,
         mut ends: impl FnMut(usize, usize),
     ) {
+        let transmits = partings.transmits;
         let places = || partings.hits.iter().map(|(met, _)| met.place());
         let (first, last) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
         run_plain(PartingKernel { whitted: self, surfaces, partings, first: first / LANES * LANES, end: last + 1 });
@@ -124,7 +130,8 @@ impl Whitted<'_> {
         let Partings { hits, mirrored, transmitted, .. } = &*partings;
         for &(met, behind) in hits {
             let (place, before) = (met.place(), carried(met.ray()));
-            for (way, media) in [(mirrored, before.media), (transmitted, behind)] {
+            let ways = [(mirrored, before.media), (transmitted, behind)];
+            for &(way, media) in &ways[..if transmits { 2 } else { 1 }] {
                 let color = way.color.get(place);
                 let weight = self.weight_after(before.weight, color);
                 let counts = color.max_element() > 0.0 && weight >= self.settings.least_weight;
@@ -163,6 +170,16 @@ impl PlainKernel for PartingKernel<'_> {
 
     #[inline(always)]
     fn run(self) {
+        match self.partings.transmits {
+            true => self.divide::<true>(),
+            false => self.divide::<false>(),
+        }
+    }
+}
+
+impl PartingKernel<'_> {
+    #[inline(always)]
+    fn divide<const TRANSMITS: bool>(self) {
         let PartingKernel { whitted, surfaces, partings, first, end } = self;
         let Partings { given, mirrored, transmitted, .. } = partings;
         let (division, settings, epsilon) = (whitted.division(), whitted.settings, whitted.world.rules().epsilon);
@@ -179,6 +196,9 @@ impl PlainKernel for PartingKernel<'_> {
             let Parted { mirrored: dir, reflective, .. } = parted;
             let reflective = if settings.reflection { reflective } else { Color::ZERO };
             mirrored.set(i, reflective, &spawn_ray(&surface, dir, f32::INFINITY, epsilon));
+            if !TRANSMITS {
+                continue;
+            }
             let goes_on = parted.passes && settings.refraction;
             let transparent = if goes_on { parted.transparent } else { Color::ZERO };
             let dir = if goes_on { parted.transmitted } else { dir };
