@@ -233,8 +233,8 @@ fn a_changed_world_has_the_identity_of_what_it_holds() {
     assert_eq!(all.len(), 6);
 }
 
-/// Planes, spheres, solids and meshes, some of them turned or far away, asked about by neighbours
-/// and by rays from anywhere, sound or not.
+/// Simple shapes, solids and meshes, some of them turned or far away, asked about by neighbours and
+/// by rays from anywhere, sound or not: as one by one, and as without a structure.
 #[test]
 fn rays_that_are_asked_about_together_have_their_own_answers() {
     let folder = tempfile::tempdir().unwrap();
@@ -251,6 +251,12 @@ fn rays_that_are_asked_about_together_have_their_own_answers() {
         ),
         format!("{mesh} Intersection {{ Box {{ min -1 -1 -1 max 1 1 1 }} Sphere {{ center 0 0 0 radius 1.2 }} }}"),
         format!("{mesh} Transform {{ Translate 0.5 0 0 {mesh} }}"),
+        "Box { min -1 -1 -1 max 0.2 0.5 0 } Box { min 0 -1 -1 max 1 1 1 } Box { min -1 0 -1 max 1 0.1 1 } Plane { normal 0 1 0 offset -1 }".into(),
+        format!(
+            "Rectangle {{ corner -1 -1 0 edge0 2 0 0.5 edge1 0 2 0 }} Rectangle {{ corner -1 -1 0.2 edge0 2 0 0 edge1 1 2 0 }}
+             Disc {{ center 0 0 0.5 normal 1 0 3 radius 0.7 }} Disc {{ center 0 0 -0.5 normal 1 2 3 radius 1 innerRadius 0.4 }}
+             Box {{ min -0.5 -0.5 -0.5 max 0.3 0.3 0.3 }} Sphere {{ center 0.5 0 0 radius 0.4 }} {mesh}"
+        ),
         "Plane { normal 0 1 0 offset -1 } Difference { Box { min -1 -1 -1 max 1 1 1 } Sphere { center 1 1 1 radius 1 } }".into(),
     ];
     let mut hits = 0;
@@ -261,6 +267,8 @@ fn rays_that_are_asked_about_together_have_their_own_answers() {
         );
         let (world, found) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
         let world = world.unwrap_or_else(|| panic!("{found:?}"));
+        let (plain, _) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::None, folder.path());
+        let plain = plain.unwrap();
         for round in 0..rounds(200) {
             let count = 1 + random.below(TOGETHER);
             let (eye, toward) = (3.0 * random.point(), random.point());
@@ -282,6 +290,7 @@ fn rays_that_are_asked_about_together_have_their_own_answers() {
             for ((ray, hit), blocked) in rays.iter().zip(together).zip(blocked) {
                 assert_eq!(hit, world.closest(ray, &mut ()), "{group} {ray:?}");
                 assert_eq!(blocked, world.occluded(ray, &mut ()), "{group} {ray:?}");
+                assert_eq!(hit, plain.closest(ray, &mut ()), "{group} {ray:?}");
                 hits += usize::from(blocked);
             }
         }
