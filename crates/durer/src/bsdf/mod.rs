@@ -74,6 +74,12 @@ impl<'a> Bsdf<'a> {
         self.lobes.iter().any(|part| !part.lobe.is_delta())
     }
 
+    /// Whether half or more of what is scattered goes into a narrow part of all directions.
+    pub fn is_glossy(&self) -> bool {
+        let glossy = self.lobes.iter().filter(|part| part.lobe.is_glossy());
+        glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
+    }
+
     /// Whether nothing is scattered.
     pub fn is_black(&self) -> bool {
         self.lobes.is_empty()

@@ -49,7 +49,7 @@ enum Use {
     Choices,
     Direction,
     PlaceOnLight,
-    /// Whether the path goes on.
+    /// Whether the path goes on, and which of several directions that were tried is taken.
     Survival,
 }
 
@@ -248,7 +248,7 @@ impl<'w> Path<'w> {
                         .map(|(light, color)| sample.lanes.light_of(color, || self.world.illuminant(light)))
                         .sum::<Spectrum>();
                 }
-                let chance = |from: &Scattered| self.world.emitters().chance_of_sky(self.world, &from.at);
+                let chance = |from: &Scattered| from.tries * self.world.emitters().chance_of_sky(self.world, &from.at);
                 let weight = self.weight(state, self.world.environment().is_some(), |from| pdf * chance(from));
                 tally.begin(|| TermKind::Sky);
                 tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
@@ -468,7 +468,7 @@ impl<'w> Path<'w> {
             depth: state.depth + 1,
             // Nothing can be connected with over a single direction, but straight on.
             from: match delta {
-                false => Some(Scattered { at: vertex.receiver(), pdf: chosen.pdf }),
+                false => Some(Scattered { at: vertex.receiver(), pdf: chosen.pdf, tries: vertex.tries() }),
                 true => state.from.filter(|_| self.is_seen_through(vertex, chosen.lobe)),
             },
             behind_mirrors: delta && (state.broad || state.behind_mirrors),

@@ -314,7 +314,8 @@ pub enum TermKind {
         /// The probability with which it was chosen.
         choice: f32,
         /// The density per solid angle of the direction; 0 for a light without extent, whose
-        /// density counts as 1.
+        /// density counts as 1. Where it was taken of several to the surroundings, what counts as
+        /// its density.
         pdf: f32,
         /// The surface's value times the cosine.
         bsdf: TermValue,

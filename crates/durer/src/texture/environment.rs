@@ -10,8 +10,8 @@ use std::f32::consts::PI;
 use std::sync::Arc;
 
 /// Where a direction lies in the picture, in texels.
-#[derive(Clone, Copy)]
-struct Place {
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
     x: f32,
     y: f32,
     /// The sine of the direction's angle to the axis.
@@ -160,7 +160,7 @@ impl Environment {
     }
 
     /// The light there, mixed of the four texels around.
-    fn light(&self, place: &Place) -> Color {
+    pub fn light(&self, place: &Place) -> Color {
         // Whole numbers from 0, by what lies one texel before.
         let (x, y) = (place.x + 0.5, place.y + 0.5);
         let (right, below) = (x as usize, y as usize);
@@ -211,22 +211,30 @@ impl Environment {
 
     /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
+        let (dir, place, pdf) = self.direction(u)?;
+        Some((dir, self.light(&place), pdf))
+    }
+
+    /// A direction chosen by two numbers from 0 to 1, where it lies in the picture, and its density
+    /// per solid angle.
+    pub fn direction(&self, u: Vec2) -> Option<(Vec3, Place, f32)> {
         let steps = self.width.div_ceil(STEP);
-        let (y, v) = choose(&self.columns, |sum| *sum, &self.column_hints, u.y);
-        let (x, h) = choose(self.row(y), |texel| texel.w, &self.hints[y * steps..(y + 1) * steps], u.x);
+        let (y, v) = choose(&self.columns, |sum| *sum, self.columns[self.height - 1], &self.column_hints, u.y);
+        let hints = &self.hints[y * steps..(y + 1) * steps];
+        let (x, h) = choose(self.row(y), |texel| texel.w, self.rows[y].sum, hints, u.x);
         let [across, down] = [x as f32 + h, y as f32 + v];
         let (sine, cosine) = fp::sin_cos_turn(0.5 * down / self.height as f32);
         let (sin_turn, cos_turn) = fp::sin_cos_turn(across / self.width as f32 + self.turn - 0.5);
         let pdf = self.density_in((x, y), sine);
         let dir = Vec3::new(sine * sin_turn, cosine, -sine * cos_turn);
-        (pdf > 0.0).then(|| (dir, self.light(&Place { x: across, y: down, sine }), pdf))
+        (pdf > 0.0).then_some((dir, Place { x: across, y: down, sine }, pdf))
     }
 }
 
 /// The entry at which a share of the whole sum is reached, and how far in it that is.
-fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, hints: &[u32], u: f32) -> (usize, f32) {
+fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
     let last = entries.len() - 1;
-    let wanted = u * sum(&entries[last]);
+    let wanted = u * whole;
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
     // A hint may be late by a rounding.
     while i > 0 && sum(&entries[i - 1]) > wanted {

@@ -69,6 +69,11 @@ macro_rules! lobes {
                     || matches!(self, Lobe::Rough(rough) if rough.behind)
             }
 
+            /// Whether it may scatter much into a narrow part of all directions.
+            pub fn is_glossy(&self) -> bool {
+                matches!(self, Lobe::Rough(_) | Lobe::RoughGlass(_) | Lobe::Blinn(_))
+            }
+
             /// Its name, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }

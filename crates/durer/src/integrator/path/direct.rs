@@ -3,16 +3,35 @@
 //!
 //! Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 
+use super::vertex::TRIES;
 use super::{Path, Place, Sample, Scattered, State, Use, Vertex};
 use crate::integrator::Direct;
 use crate::integrator::media::Media;
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{Shadow, TermKind, TermValue, TraceListener};
-use crate::math::{Color, Ray64};
+use crate::math::{Color, Ray64, Vec2};
 use crate::medium::Way;
 use crate::spectrum::Spectrum;
 use crate::world::Interaction;
 use crate::world::emitters::{Choice, LightSample};
+
+/// A point of a light, and what is known of it where it was chosen for.
+struct Drawn {
+    light: LightSample,
+    /// The surface's value times the cosine.
+    value: Spectrum,
+    /// The density with which directions there come upon it.
+    pdf: f32,
+    /// The density with which it is taken; of a light without extent the probability.
+    density: f32,
+    /// The density with which it is found, taken or not.
+    found: f32,
+}
+
+/// How far apart the numbers are by which several points of a light are tried: so they lie evenly.
+///
+/// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
+const APART: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
 
 impl Path<'_> {
     /// How much a light counts that a ray met by its direction, where it could have been found in
@@ -47,23 +66,15 @@ impl Path<'_> {
         tally: &mut T,
     ) -> Spectrum {
         let (world, place) = (self.world, &vertex.place);
-        let u = vertex.numbers(Use::PlaceOnLight);
-        let at = |u| world.emitters().sample(world, choice, place.point(), u);
-        let chosen = match (at(u), self.transport.direct) {
-            (Some(any), Direct::Middle) => at(world.emitters().middle(any.light).unwrap_or(u)),
-            (chosen, _) => chosen,
+        let Some(Drawn { light, value, pdf, density, found }) = self.draw(choice, vertex) else {
+            return Spectrum::ZERO;
         };
-        let Some(light) = chosen else { return Spectrum::ZERO };
-        let (value, pdf) = place.eval(light.wi);
         if value == Spectrum::ZERO || light.radiance == Color::ZERO {
             return Spectrum::ZERO;
         }
         // Directions never meet a light without extent.
-        let (density, pdf) = match light.pdf > 0.0 {
-            true => (light.choice * light.pdf, pdf),
-            false => (light.choice, 0.0),
-        };
-        let weight_of = |pdf| self.transport.direct.of_light(density, pdf);
+        let pdf = if light.pdf > 0.0 { pdf } else { 0.0 };
+        let weight_of = |pdf| self.transport.direct.of_light(found, pdf);
         if weight_of(pdf) == 0.0 && !self.world.has_sheets() {
             return Spectrum::ZERO;
         }
@@ -84,6 +95,60 @@ impl Path<'_> {
         let radiance = sample.lanes.light_of(light.radiance, || world.illuminant(light.light));
         tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
         factor * radiance
+    }
+
+    /// Chooses a point of a light.
+    fn draw(&self, choice: &Choice, vertex: &Vertex) -> Option<Drawn> {
+        let (emitters, place, u) = (self.world.emitters(), &vertex.place, vertex.numbers(Use::PlaceOnLight));
+        if choice.is_sky() && vertex.tries() > 1.0 {
+            return self.best_of_sky(choice, vertex);
+        }
+        let at = |u| emitters.sample(self.world, choice, place.point(), u);
+        let light = match (at(u)?, self.transport.direct) {
+            (any, Direct::Middle) => at(emitters.middle(any.light).unwrap_or(u))?,
+            (any, _) => any,
+        };
+        let (value, pdf) = place.eval(light.wi);
+        let density = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
+        Some(Drawn { light, value, pdf, density, found: density })
+    }
+
+    /// Of some directions to the surroundings the one to be taken: by what each would bring if
+    /// nothing were in the way.
+    ///
+    /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
+    /// 2005.
+    fn best_of_sky(&self, choice: &Choice, vertex: &Vertex) -> Option<Drawn> {
+        let (sky, tries, mut u) = (self.world.environment()?, TRIES as f32, vertex.numbers(Use::PlaceOnLight));
+        let (mut best, mut sum, mut rest) = (None, 0.0, vertex.numbers(Use::Survival).y);
+        for _ in 0..TRIES {
+            let direction = sky.direction(u);
+            u += APART;
+            u -= Vec2::new(if u.x < 1.0 { 0.0 } else { 1.0 }, if u.y < 1.0 { 0.0 } else { 1.0 });
+            let Some((wi, place, density)) = direction else { continue };
+            let (value, pdf) = vertex.place.eval(wi);
+            if value == Spectrum::ZERO {
+                continue;
+            }
+            let (density, radiance) = (choice.probability() * density, sky.light(&place));
+            let found = tries * density;
+            let brings = self.transport.direct.of_light(found, pdf) * value.max_element() * radiance.max_element();
+            let share = brings / density;
+            if !(share > 0.0 && share.is_finite()) {
+                continue;
+            }
+            sum += share;
+            let chance = share / sum;
+            if rest < chance {
+                (rest, best) = (rest / chance, Some((wi, radiance, value, pdf, found, brings)));
+            } else {
+                rest = (rest - chance) / (1.0 - chance);
+            }
+        }
+        let (wi, radiance, value, pdf, found, brings) = best?;
+        let density = brings * tries / sum;
+        let light = LightSample::of_sky(choice, wi, radiance, density / choice.probability());
+        Some(Drawn { light, value, pdf, density, found })
     }
 
     /// The share of a light that arrives, and through how many sheets.

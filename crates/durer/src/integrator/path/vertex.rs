@@ -12,6 +12,12 @@ use crate::world::Shading;
 use crate::world::emitters::{LightSample, Receiver};
 use glam::DVec3;
 
+/// So many directions of the surroundings are tried where light is scattered into a narrow part of
+/// all directions, and one of them is taken. (Measured: of two the variance of a rough metal is
+/// 0.72, of four 0.59, of eight 0.54; with four a picture of one takes 1.12 of the time.) Elsewhere
+/// one is as good.
+pub(super) const TRIES: usize = 4;
+
 /// A point from which lights were connected with.
 #[derive(Clone, Copy)]
 pub(super) struct Scattered {
@@ -19,6 +25,8 @@ pub(super) struct Scattered {
     pub(super) at: Receiver,
     /// The density with which the direction was chosen.
     pub(super) pdf: f32,
+    /// How many directions of the surroundings were tried there.
+    pub(super) tries: f32,
 }
 
 /// A point on the way of a path.
@@ -32,6 +40,14 @@ pub(super) struct Vertex<'a, 'w> {
 impl Vertex<'_, '_> {
     pub(super) fn numbers(&self, what: Use) -> Vec2 {
         self.numbers[what as usize]
+    }
+
+    /// How many directions of the surroundings are tried for one that is taken.
+    pub(super) fn tries(&self) -> f32 {
+        match &self.place {
+            Place::Surface(_, shading, _) if shading.bsdf.is_glossy() => TRIES as f32,
+            _ => 1.0,
+        }
     }
 
     /// What lights are chosen for.

@@ -177,6 +177,18 @@ pub struct Choice {
     probability: f32,
 }
 
+impl Choice {
+    /// Whether it is the surroundings.
+    pub fn is_sky(&self) -> bool {
+        matches!(self.of, Of::Sky)
+    }
+
+    /// The probability with which it was chosen.
+    pub fn probability(&self) -> f32 {
+        self.probability
+    }
+}
+
 /// What can be chosen.
 enum Of {
     /// A light of the scene that is not in the tree, by number.
@@ -210,6 +222,20 @@ pub struct LightSample {
 }
 
 impl LightSample {
+    /// The surroundings in a direction of some density.
+    pub fn of_sky(choice: &Choice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
+        LightSample {
+            light: LightId::Environment,
+            wi,
+            reach: f32::INFINITY,
+            error: 0.0,
+            cosine: 1.0,
+            radiance,
+            choice: choice.probability,
+            pdf,
+        }
+    }
+
     /// How far a shadow ray goes from a point that is known to an error: to where neither reaches.
     /// What passes a surface by some distance meets one that is inclined so much earlier.
     pub fn shadow_reach(&self, error: f32) -> f32 {
@@ -338,16 +364,7 @@ impl Emitters {
             Of::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
             Of::Sky => {
                 let (wi, radiance, pdf) = world.environment()?.sample(u)?;
-                Some(LightSample {
-                    light: LightId::Environment,
-                    wi,
-                    reach: f32::INFINITY,
-                    error: 0.0,
-                    cosine: 1.0,
-                    radiance,
-                    choice: probability,
-                    pdf,
-                })
+                Some(LightSample::of_sky(choice, wi, radiance, pdf))
             }
             Of::Source(source) => match &self.sources[source as usize] {
                 Source::Light(light) => Some(of_light(world, *light, point, probability)),
