@@ -14,7 +14,7 @@ use glam::DVec3;
 
 /// So many directions of the surroundings are tried where light is scattered into a narrow part of
 /// all directions, and one of them is taken. (Measured: of two the variance of a rough metal is
-/// 0.72, of four 0.59, of eight 0.54; with four a picture of one takes 1.12 of the time.) Elsewhere
+/// 0.72, of four 0.59, of eight 0.54; with four a picture of one takes 1.2 of the time.) Elsewhere
 /// one is as good.
 pub(super) const TRIES: usize = 4;
 
