@@ -357,11 +357,11 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
             t_min: lanes.splat(ray.t_min),
             t_max: lanes.splat(ray.t_max),
         };
-        let _found = Self::among::<L, Planes, PLANE>(lanes, &rays, &packs.planes, &mut best)
-            || Self::among::<L, Rectangles, RECTANGLE>(lanes, &rays, &packs.rectangles, &mut best)
-            || Self::among::<L, Discs, DISC>(lanes, &rays, &packs.discs, &mut best)
-            || Self::among::<L, Boxes, BOX>(lanes, &rays, &packs.boxes, &mut best)
-            || Self::among::<L, Spheres, SPHERE>(lanes, &rays, &packs.spheres, &mut best);
+        let _found = Self::among::<_, Planes, _>(lanes, &rays, &packs.planes, &mut best)
+            || Self::among::<_, Rectangles, _>(lanes, &rays, &packs.rectangles, &mut best)
+            || Self::among::<_, Discs, _>(lanes, &rays, &packs.discs, &mut best)
+            || Self::among::<_, Boxes, _>(lanes, &rays, &packs.boxes, &mut best)
+            || Self::among::<_, Spheres, _>(lanes, &rays, &packs.spheres, &mut best);
         best
     }
 }
@@ -406,11 +406,11 @@ impl Kernel for Together<'_> {
         let [x, y, z, dx, dy, dz, t_min, t_max] = lanes.transpose(rows);
         let sound = sound(lanes, [x, y, z, dx, dy, dz]);
         let rays = &Rays { origin: lanes.doubles3([x, y, z]), dir: lanes.doubles3([dx, dy, dz]), t_min, t_max };
-        Self::among::<L, Planes, PLANE>((lanes, rays, sound), &packs.planes, &mut best);
-        Self::among::<L, Rectangles, RECTANGLE>((lanes, rays, sound), &packs.rectangles, &mut best);
-        Self::among::<L, Discs, DISC>((lanes, rays, sound), &packs.discs, &mut best);
-        Self::among::<L, Boxes, BOX>((lanes, rays, sound), &packs.boxes, &mut best);
-        Self::among::<L, Spheres, SPHERE>((lanes, rays, sound), &packs.spheres, &mut best);
+        Self::among::<_, Planes, _>((lanes, rays, sound), &packs.planes, &mut best);
+        Self::among::<_, Rectangles, _>((lanes, rays, sound), &packs.rectangles, &mut best);
+        Self::among::<_, Discs, _>((lanes, rays, sound), &packs.discs, &mut best);
+        Self::among::<_, Boxes, _>((lanes, rays, sound), &packs.boxes, &mut best);
+        Self::among::<_, Spheres, _>((lanes, rays, sound), &packs.spheres, &mut best);
         best
     }
 }

@@ -180,13 +180,13 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
     let (simple, others): (Vec<u32>, Vec<u32>) =
         (0..objects.len() as u32).partition(|&i| objects[i as usize].simple().is_some());
     let work: usize = objects.iter().filter_map(Object::simple).sum();
-    let few = (kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE).then(|| {
-        let mut few = Few { others, ..Few::default() };
-        for &i in &simple {
-            objects[i as usize].add_to(&mut few.simple, i);
-        }
-        few
-    });
+    let packed = |numbers: &[u32]| {
+        let mut packs = PrimitivePacks::default();
+        numbers.iter().for_each(|&i| objects[i as usize].add_to(&mut packs, i));
+        packs
+    };
+    let is_few = kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE;
+    let few = is_few.then(|| Few { simple: packed(&simple), others });
     let of_one_ray = || bounded().filter_map(|(object, _)| object.simple_for_one_ray());
     if kind == AccelKind::Bvh
         && bounded().count() - of_one_ray().count() <= FEW
@@ -195,11 +195,13 @@ pub(crate) fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diag
         boxes.fill(None);
     }
     let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
-    let mut packs = PrimitivePacks::default();
     let is_simple = |&i: &u32| objects[i as usize].simple_for_one_ray().is_some();
-    if loose.iter().filter(|i| is_simple(i)).count() >= MIN_PACKED {
-        loose.retain(|i| !(is_simple(i) && objects[*i as usize].add_to(&mut packs, *i)));
+    let mut together: Vec<u32> = loose.iter().copied().filter(is_simple).collect();
+    match together.len() >= MIN_PACKED {
+        true => loose.retain(|i| !is_simple(i)),
+        false => together.clear(),
     }
+    let packs = packed(&together);
     let accel = build_accel(world, kind, boxes)?;
     let spheres = match &accel {
         Accel::Bvh(bvh) if objects.iter().any(|object| object.sphere().radius > 0.0) => {

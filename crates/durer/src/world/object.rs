@@ -321,11 +321,8 @@ impl Object {
         }
     }
 
-    /// Adds it under a number to those that are tested together, if it can be.
-    pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) -> bool {
-        if self.to_world.is_some() {
-            return false;
-        }
+    /// Adds it, which is [simple](Object::simple), under a number to those that are tested together.
+    pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) {
         match &self.geometry {
             Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
             Geometry::Primitive(Primitive::Sphere(sphere)) => packs.push_sphere(number, sphere.center, sphere.radius),
@@ -334,9 +331,8 @@ impl Object {
             }
             Geometry::Primitive(Primitive::Rectangle(r)) => packs.push_rectangle(number, r.corner, [r.edge0, r.edge1]),
             Geometry::Primitive(Primitive::Cuboid(cuboid)) => packs.push_box(number, cuboid.min, cuboid.max),
-            _ => return false,
+            _ => {}
         }
-        true
     }
 
     /// Whether it is closed, so that a point is inside it or outside.

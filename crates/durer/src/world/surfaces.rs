@@ -222,23 +222,17 @@ impl World {
         let first_flat = surfaces.end;
         self.meet_kind((rays, hits), Kind::Flat, surfaces, |place, hit, object, _, given| {
             let Geometry::Mesh(tree) = object else { return };
-            let [a, b, c] = tree.mesh.corners(hit.part);
-            given.vectors[0].set(place, a);
-            given.vectors[1].set(place, b);
-            given.vectors[2].set(place, c);
-            (given.numbers[0][place], given.numbers[1][place]) = hit.uv.into();
+            given.set_triangle(place, tree.mesh.corners(hit.part), hit.uv);
         });
         let first_triangle = surfaces.end;
         self.meet_kind((rays, hits), Kind::Triangle, surfaces, |place, hit, object, _, given| {
             let Geometry::Mesh(tree) = object else { return };
-            let corners = tree.mesh.corners(hit.part);
+            given.set_triangle(place, tree.mesh.corners(hit.part), hit.uv);
             // Of no length where there are none.
             let normals = tree.mesh.corner_normals(hit.part).unwrap_or([Vec3::ZERO; 3]);
-            for i in 0..3 {
-                given.vectors[i].set(place, corners[i]);
-                given.vectors[3 + i].set(place, normals[i]);
+            for (vectors, normal) in given.vectors[3..].iter_mut().zip(normals) {
+                vectors.set(place, normal);
             }
-            (given.numbers[0][place], given.numbers[1][place]) = hit.uv.into();
         });
         surfaces.others = surfaces.end.min(PLACES);
         if surfaces.others > 0 {
@@ -291,6 +285,14 @@ impl Given {
         self.vectors[1].set(place, ray.rounded.origin);
         (self.numbers[0][place], self.numbers[1][place]) = (size, t);
     }
+
+    #[inline(always)]
+    fn set_triangle(&mut self, place: usize, corners: [Vec3; 3], uv: Vec2) {
+        for (vectors, corner) in self.vectors.iter_mut().zip(corners) {
+            vectors.set(place, corner);
+        }
+        (self.numbers[0][place], self.numbers[1][place]) = uv.into();
+    }
 }
 
 /// Planes, then spheres, then flat triangles, then others. What lies between them was there before.
@@ -321,14 +323,12 @@ impl PlainKernel for SurfaceKernel<'_> {
             surfaces.set_bent(i, Sphere { center, radius }.surface(point, &crossing));
         }
         for i in first_flat..first_triangle {
-            let [a, b, c, ..] = &surfaces.given.vectors;
-            let uv = Vec2::new(surfaces.given.numbers[0][i], surfaces.given.numbers[1][i]);
-            surfaces.set(i, &triangle::triangle_surface([a.get(i), b.get(i), c.get(i)], None, uv));
+            let (corners, uv) = surfaces.triangle(i);
+            surfaces.set(i, &triangle::triangle_surface(corners, None, uv));
         }
         for i in first_triangle..end {
-            let [a, b, c, na, nb, nc] = &surfaces.given.vectors;
-            let [corners, normals] = [[a.get(i), b.get(i), c.get(i)], [na.get(i), nb.get(i), nc.get(i)]];
-            let uv = Vec2::new(surfaces.given.numbers[0][i], surfaces.given.numbers[1][i]);
+            let ([.., a, b, c], (corners, uv)) = (&surfaces.given.vectors, surfaces.triangle(i));
+            let normals = [a.get(i), b.get(i), c.get(i)];
             surfaces.set(i, &triangle::triangle_surface(corners, Some(normals), uv));
         }
     }
@@ -341,6 +341,13 @@ impl Surfaces {
         let (origin, t) = (self.given.vectors[1].get(i), self.given.numbers[1][i]);
         let line = Line { origin: origin.as_dvec3(), dir: self.view.get(i).as_dvec3() };
         (line.at(t.into()), ShapeHit { t, uv: Vec2::ZERO })
+    }
+
+    /// The corners of a triangle, and where in it it is met.
+    #[inline(always)]
+    fn triangle(&self, i: usize) -> ([Vec3; 3], Vec2) {
+        let Given { vectors: [a, b, c, ..], numbers: [u, v] } = &self.given;
+        ([a.get(i), b.get(i), c.get(i)], Vec2::new(u[i], v[i]))
     }
 
     /// Sets what may be bent.

@@ -11,7 +11,7 @@ pub(crate) const TOGETHER: usize = 64;
 
 /// A world of a few things, as rays see it that are asked about together: whatever structure others
 /// go through.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Few {
     /// Simple shapes, for eight rays at once.
     pub(crate) simple: PrimitivePacks,

@@ -32,7 +32,6 @@ use crate::lanes::{Kernel, Lanes, Numbers, WIDE, WIDTH, Wide, numbers_of};
 use crate::math::{Ray, Vec2};
 use bundle::{Packet, RAYS, Sixteens};
 use glam::Vec3A;
-use rays::PacketRays;
 use shared::{Axes, Meeting};
 use std::cell::RefCell;
 use walk::Entry;
@@ -69,6 +68,7 @@ impl TriangleBvh {
 }
 
 /// What is used anew for each batch, one a thread: batches may be small.
+#[derive(Default)]
 struct Scratch {
     /// Numbers of rays that do not go together.
     rest: Vec<u32>,
@@ -78,12 +78,7 @@ struct Scratch {
 }
 
 thread_local! {
-    static SCRATCH: RefCell<Scratch> = RefCell::new(Scratch {
-        rest: Vec::new(),
-        meetings: Vec::new(),
-        stack: Vec::new(),
-        sixteens: Box::new([PacketRays::EMPTY; RAYS / WIDE]),
-    });
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
 struct Packets<'a, A, const ANY: bool> {

@@ -11,12 +11,10 @@ use glam::Vec3A;
 /// A number for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
 
-const ZERO: PerRay = [0.0; WIDE];
-
 /// Sixteen rays of one octant and one longest axis, prepared for boxes as in
 /// [`TraversalRay`](crate::traverse::TraversalRay), though with somewhat less padding, and for
 /// triangles as in [`WatertightRay`](crate::watertight::WatertightRay).
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct PacketRays {
     pub origin: [PerRay; 3],
@@ -43,23 +41,6 @@ pub struct PacketRays {
 }
 
 impl PacketRays {
-    pub const EMPTY: PacketRays = PacketRays {
-        origin: [ZERO; 3],
-        dir: [ZERO; 3],
-        inverse: [ZERO; 3],
-        near_from: [ZERO; 3],
-        far_from: [ZERO; 3],
-        near_origin: [ZERO; 3],
-        far_origin: [ZERO; 3],
-        shear: [ZERO; 2],
-        inverse_z: [[0.0; WIDTH]; 2],
-        t_min: ZERO,
-        t_max: ZERO,
-        t_last: ZERO,
-        heights: [ZERO; 4],
-        meetings: ZERO,
-    };
-
     /// Sets half of the rays, each given as origin, direction and interval.
     #[inline(always)]
     pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
@@ -128,7 +109,7 @@ impl PacketRays {
             *inverse = lanes.store_doubles(lanes.splat_double(1.0).div(dz));
         }
         self.t_max = self.t_last;
-        self.meetings = ZERO;
+        self.meetings = PerRay::default();
         self.bound(lanes, axes);
         fast
     }

@@ -123,8 +123,7 @@ impl Path<'_> {
         let (mut best, mut sum, mut rest) = (None, 0.0, vertex.numbers(Use::Survival).y);
         for _ in 0..TRIES {
             let direction = sky.direction(u);
-            u += APART;
-            u -= Vec2::new(if u.x < 1.0 { 0.0 } else { 1.0 }, if u.y < 1.0 { 0.0 } else { 1.0 });
+            u = (u + APART).map(|x| if x < 1.0 { x } else { x - 1.0 });
             let Some((wi, place, density)) = direction else { continue };
             let (value, pdf) = vertex.place.eval(wi);
             if value == Spectrum::ZERO {
