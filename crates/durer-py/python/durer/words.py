@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
 
 
 class Background(Thing):
@@ -1253,6 +1253,50 @@ class PrincipledMaterial(Material):
             ("opacityTexture", opacity_texture),
             ("walls", walls),
             ("backs", backs),
+        ])
+
+
+class HairMaterial(Material):
+    """Hair or fur, for paths: what mirrors light, lets it through and colours it on the way. It is meant for thin tubes, along which the texture coordinate u grows, as curves of other programs become them; from inside they are not seen. `absorption` counts, else `color`, else the melanins.
+
+    eumelanin: number, 0 or more; 1.3 where it is not given. How much of brown and black pigment there is: 0.3 in blond hair, 1.3 in brown, 8 in black.
+
+    pheomelanin: number, 0 or more; 0 where it is not given. How much of yellow and red pigment there is: 1.2 or more in red hair.
+
+    color: three numbers. The colour that many fibres show together, from 0 to 1.
+
+    absorption: three numbers. How much light loses inside for each radius of a fibre, for red, green and blue.
+
+    longitudinal_roughness: number, from 0 to 1; 0.3 where it is not given. How much light spreads along a fibre.
+
+    azimuthal_roughness: number, from 0 to 1; 0.3 where it is not given. How much light spreads around a fibre.
+
+    scale_tilt: number, from -45 to 45; 2 where it is not given. By how many degrees the scales of a fibre rise towards its end.
+
+    ior: number, from 1 to 4; 1.55 where it is not given. Index of refraction.
+    """
+
+    def __init__(
+        self,
+        *,
+        eumelanin: Optional[float] = None,
+        pheomelanin: Optional[float] = None,
+        color: Optional[npt.ArrayLike] = None,
+        absorption: Optional[npt.ArrayLike] = None,
+        longitudinal_roughness: Optional[float] = None,
+        azimuthal_roughness: Optional[float] = None,
+        scale_tilt: Optional[float] = None,
+        ior: Optional[float] = None,
+    ) -> None:
+        super().__init__("HairMaterial", [
+            ("eumelanin", eumelanin),
+            ("pheomelanin", pheomelanin),
+            ("color", color),
+            ("absorption", absorption),
+            ("longitudinalRoughness", longitudinal_roughness),
+            ("azimuthalRoughness", azimuthal_roughness),
+            ("scaleTilt", scale_tilt),
+            ("ior", ior),
         ])
 
 

@@ -80,6 +80,11 @@ impl<'a> Bsdf<'a> {
         glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
     }
 
+    /// Whether some of it is a fibre, whose light may leave on any side.
+    pub fn is_fibre(&self) -> bool {
+        self.lobes.iter().any(|part| matches!(part.lobe, Lobe::Hair(_)))
+    }
+
     /// Whether nothing is scattered.
     pub fn is_black(&self) -> bool {
         self.lobes.is_empty()

@@ -5,16 +5,18 @@
 use super::lobe::blinn::Blinn;
 use super::lobe::diffuse::{Diffuse, DiffuseTransmission};
 use super::lobe::fuzz::Fuzz;
+use super::lobe::hair::Fibre;
 use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use super::{Bsdf, BsdfSample, Lobe, Scatter, Tables, fresnel, layers, warp};
 use crate::material::principled::Walls;
-use crate::material::{Parameters, PrincipledMaterial};
+use crate::material::{HairMaterial, Parameters, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
 use crate::sampler;
 use crate::spectrum::{Lanes, Spectrum};
 use std::f64::consts::{PI, TAU};
+use std::sync::LazyLock;
 
 /// Cells of equal solid angle, and how many samples are sorted into them.
 #[derive(Clone, Copy, Debug)]
@@ -113,6 +115,12 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
             transmitted: Spectrum::ONE,
         })
     };
+    static FIBRES: LazyLock<[Fibre; 2]> = LazyLock::new(|| {
+        [(0.3, 0.4, 0.3), (0.8, 0.9, 0.0)].map(|(longitudinal_roughness, azimuthal_roughness, eumelanin)| {
+            Fibre::new(&HairMaterial { eumelanin, longitudinal_roughness, azimuthal_roughness, ..Default::default() })
+        })
+    });
+    let hair = |i: usize| Lobe::from(FIBRES[i].seen(&Lanes::Rgb));
     let leaning = Vec3::new(0.6, 0.0, 0.8);
     vec![
         ("Lambert", Diffuse::lambert(Spectrum::ONE).into()),
@@ -135,6 +143,8 @@ pub fn broad() -> Vec<(&'static str, Lobe<'static>)> {
         ),
         ("rough glass", glass(0.5, 1.5)),
         ("rough glass from inside", glass(0.6, 1.0 / 1.5)),
+        ("hair", hair(0)),
+        ("fur", hair(1)),
     ]
 }
 

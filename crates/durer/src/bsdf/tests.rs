@@ -14,8 +14,8 @@ fn lobes_sample_what_their_density_says() {
     for (name, lobe) in broad() {
         for (cosine, turn) in [(0.95, 0.1), (0.6, 0.7), (0.25, 0.35)] {
             let verdict = cells.lobe(11, lobe, warp::polar(cosine, turn));
-            // 42 tests at a significance of 0.01 in all, by Sidak: 2.4e-4 each.
-            assert!(verdict.density < 1.005 && verdict.deviate < 3.49, "{name} at {cosine}: {verdict:?}");
+            // 48 tests at a significance of 0.01 in all, by Sidak: 2.1e-4 each.
+            assert!(verdict.density < 1.005 && verdict.deviate < 3.53, "{name} at {cosine}: {verdict:?}");
         }
     }
 }
@@ -23,8 +23,10 @@ fn lobes_sample_what_their_density_says() {
 #[test]
 fn reflecting_lobes_are_the_same_both_ways() {
     let mut random = Random(12);
-    // A normal for shading is that of the cosine on one side only.
-    for (name, lobe) in broad().into_iter().filter(|(name, _)| *name != "matte with a normal of its own") {
+    // A normal for shading is that of the cosine on one side only, and light enters a fibre where it
+    // is seen.
+    let others = ["matte with a normal of its own", "hair", "fur"];
+    for (name, lobe) in broad().into_iter().filter(|(name, _)| !others.contains(name)) {
         for _ in 0..500 {
             let wo = warp::polar(random.between(0.05, 1.0), random.between(0.0, 1.0));
             let wi = warp::polar(random.between(0.05, 1.0), random.between(0.0, 1.0));

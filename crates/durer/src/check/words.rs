@@ -65,7 +65,7 @@ fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
         Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
-        Material::Principled(..) => false,
+        Material::Principled(..) | Material::Hair(..) => false,
         Material::Solid(..) => true,
     };
     let flat = scene.lights.is_none()

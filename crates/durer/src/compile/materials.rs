@@ -3,6 +3,7 @@
 use super::files::Loader;
 use super::media;
 use crate::bsdf::Tables;
+use crate::bsdf::lobe::hair::Fibre;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::dialect::{Compat, Highlight, Rules, Secondary};
 use crate::material::checkerboard::Checkerboard;
@@ -58,6 +59,13 @@ pub(super) fn compile(
                 })),
                 ..plain(layers)
             })
+        }
+        scene::Material::Hair(hair) => {
+            let fibre = Fibre::new(hair);
+            // What Whitted's light makes of it.
+            let highlight = Some((Color::splat(0.2), 20.0, HighlightModel::Blinn));
+            let diffuse = fibre.color();
+            Material::Phong(Phong { diffuse, highlight, fibre: Some(Arc::new(fibre)), ..Phong::default() })
         }
         scene::Material::Phong(phong, noise) => {
             let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
@@ -128,6 +136,7 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
         ior: ior.unwrap_or(1.0),
         fresnel: ior.is_some() && glass(m, rules).is_some(),
         principled: None,
+        fibre: None,
         emission: None,
     }
 }

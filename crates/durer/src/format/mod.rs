@@ -29,6 +29,7 @@ mod smooth;
 mod sticks;
 mod stl;
 mod threemf;
+mod tubes;
 pub mod vol;
 mod xml;
 mod zip;

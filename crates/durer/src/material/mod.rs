@@ -1,7 +1,8 @@
 //! Materials: what a surface does with light. One file each; the list is [`Solid`] beside
-//! [`PhongMaterial`] and [`PrincipledMaterial`].
+//! [`PhongMaterial`], [`PrincipledMaterial`] and [`HairMaterial`].
 
 pub mod checkerboard;
+pub mod hair;
 pub mod marble;
 pub mod mix;
 pub mod parameters;
@@ -14,6 +15,7 @@ pub mod wood;
 use crate::describe::{Field, described_list};
 use crate::dialect::{Compat, CompatSet};
 use crate::math::Vec3;
+pub use hair::HairMaterial;
 pub use parameters::Parameters;
 pub use phong::{ColorNoise, PhongMaterial};
 pub use principled::PrincipledMaterial;

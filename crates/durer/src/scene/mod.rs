@@ -12,7 +12,7 @@ use crate::describe::{FileName, Rule, described};
 use crate::diag::Span;
 use crate::dialect::set;
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -217,7 +217,7 @@ impl Scene {
     /// Whether it has light or materials that only a path tracer shows: layers, surfaces that
     /// shine, an environment.
     pub fn is_physical(&self) -> bool {
-        let layered = |material: &Spanned<Material>| matches!(material.value, Material::Principled(_));
+        let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;
         background.environment.is_some()
             || background.sun().is_some()
@@ -255,6 +255,8 @@ pub enum Material {
     Phong(Box<PhongMaterial>, Option<ColorNoise>),
     /// Layers, as in OpenPBR.
     Principled(Box<PrincipledMaterial>),
+    /// Fibres.
+    Hair(HairMaterial),
     /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
     Solid(Solid, Vec<MatrixOp>),
 }

@@ -1,6 +1,7 @@
 //! Materials with the rules of their dialect worked in.
 
 use crate::bsdf::Tables;
+use crate::bsdf::lobe::hair::Fibre;
 use crate::bsdf::microfacet::Ggx;
 use crate::material::principled::Walls;
 use crate::material::{ColorNoise, Parameters, PrincipledMaterial, Solid};
@@ -130,6 +131,8 @@ pub struct Phong {
     pub fresnel: bool,
     /// What a path tracer takes instead of all this.
     pub principled: Option<Arc<Principled>>,
+    /// Or this.
+    pub fibre: Option<Arc<Fibre>>,
     /// The light of its own, which path tracers see.
     pub emission: Option<Emission>,
 }
@@ -173,6 +176,7 @@ impl Default for Phong {
             ior: 1.0,
             fresnel: false,
             principled: None,
+            fibre: None,
             emission: None,
         }
     }

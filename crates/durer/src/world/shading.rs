@@ -36,7 +36,7 @@ impl Shading<'_> {
     pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let local = self.frame.to_local(wi);
         let (value, pdf) = self.bsdf.eval(self.wo, local);
-        let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0);
+        let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0) || self.bsdf.is_fibre();
         (if same_side { value } else { Spectrum::ZERO }, pdf)
     }
 }
@@ -101,6 +101,10 @@ impl World {
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
         let bsdf = &mut shading.bsdf;
         for part in &parts {
+            if let Some(fibre) = &part.phong.fibre {
+                bsdf.push(fibre.seen(lanes), Spectrum::splat(part.share), part.share);
+                continue;
+            }
             match &part.phong.principled {
                 Some(own) => {
                     let here = self.parameters_at(own, at);
@@ -116,6 +120,9 @@ impl World {
     /// longer than wide.
     fn frame(&self, parts: &[WeightedMaterial], at: &Interaction, n: Vec3) -> Frame {
         // No picture makes anything of 0.
+        if parts.iter().any(|part| part.phong.fibre.is_some()) {
+            return Frame::along(n, self.tangent(at));
+        }
         let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
         let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
         let mut long = long.map(|own| self.parameters_at(own, at));
@@ -207,7 +214,12 @@ impl World {
 
     /// The share of a surface that is there.
     pub fn opacity(&self, at: &Interaction) -> f32 {
-        let own = |phong: &Phong| phong.principled.as_ref().map_or(1.0, |own| self.opacity_at(own, at));
+        let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
+            // All that light does in it is worked out where it comes in.
+            (Some(_), _) => f32::from(u8::from(!at.inside())),
+            (None, Some(own)) => self.opacity_at(own, at),
+            (None, None) => 1.0,
+        };
         self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
@@ -224,7 +236,8 @@ impl World {
 
     /// Whether some material is there in part only.
     pub(crate) fn finds_cutouts(&self) -> bool {
-        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
+        let own =
+            |phong: &Phong| phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
         let clear = |object: &Object| match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.colors().iter().any(|color| color[3] < 1.0),
             _ => false,

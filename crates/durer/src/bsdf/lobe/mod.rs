@@ -4,6 +4,7 @@ pub mod blinn;
 pub mod diffuse;
 pub mod fuzz;
 pub mod glass;
+pub mod hair;
 pub mod rough;
 pub mod rough_glass;
 
@@ -65,7 +66,7 @@ macro_rules! lobes {
         impl Lobe<'_> {
             /// Whether it scatters light from behind the surface into many directions.
             pub fn passes_light(&self) -> bool {
-                matches!(self, Lobe::DiffuseTransmission(_) | Lobe::RoughGlass(_))
+                matches!(self, Lobe::DiffuseTransmission(_) | Lobe::RoughGlass(_) | Lobe::Hair(_))
                     || matches!(self, Lobe::Rough(rough) if rough.behind)
             }
 
@@ -101,4 +102,6 @@ lobes! {
     Through(glass::Through),
     /// Fibres that stand out.
     Fuzz(fuzz::Fuzz),
+    /// One fibre.
+    Hair(hair::Hair<'a>),
 }

@@ -5,7 +5,7 @@ use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
 use crate::dialect::Dialect;
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::scene::{
@@ -198,6 +198,8 @@ impl Random {
                 Material::Solid(self.thing::<Solid>(i), self.matrices())
             } else if dialect == Dialect::Durer && self.below(3) == 0 {
                 Material::Principled(Box::new(self.thing::<PrincipledMaterial>(i)))
+            } else if dialect == Dialect::Durer && self.below(4) == 0 {
+                Material::Hair(self.thing::<HairMaterial>(i))
             } else {
                 let noise = (self.below(3) == 0).then(|| self.thing::<ColorNoise>(i));
                 Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)

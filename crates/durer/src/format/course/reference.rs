@@ -9,7 +9,7 @@ use crate::camera::Camera;
 use crate::describe::{DescribedList, Kind, Rule, Value};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
 use crate::math::Vec3;
 use crate::medium::Fog;
 use crate::scene::{Background, NamedTexture, Operation};
@@ -174,7 +174,7 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 28] = [
+const EXAMPLES: [(&str, &str); 29] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
@@ -187,6 +187,7 @@ const EXAMPLES: [(&str, &str); 28] = [
         "PhongMaterial { diffuseColor 0.2 0.4 0.6 specularColor 0.8 0.8 0.8 exponent 60 reflectiveColor 0.2 0.2 0.2 }",
     ),
     ("PrincipledMaterial", "PrincipledMaterial { baseColor 0.9 0.55 0.3 baseMetalness 1 specularRoughness 0.25 }"),
+    ("HairMaterial", "HairMaterial { eumelanin 0.4 pheomelanin 0.5 longitudinalRoughness 0.25 }"),
     ("Checkerboard", "Checkerboard { Transform { UniformScale 0.5 } materialIndex 1 materialIndex 2 }"),
     ("Noise", "Noise { Transform { UniformScale 0.12 } materialIndex 1 materialIndex 2 octaves 2 }"),
     ("Marble", "Marble { materialIndex 1 materialIndex 2 octaves 4 frequency 6 amplitude 5 }"),
@@ -307,6 +308,7 @@ pub fn entries() -> Vec<Entry> {
     all.extend(of::<Light>(Chapter::Lights));
     all.extend(of::<PhongMaterial>(Chapter::Materials));
     all.extend(of::<PrincipledMaterial>(Chapter::Materials));
+    all.extend(of::<HairMaterial>(Chapter::Materials));
     let noise = of::<ColorNoise>(Chapter::Materials);
     all.extend(noise.into_iter().map(|entry| Entry { example: example_of("Noise in a material"), ..entry }));
     all.extend(of::<Solid>(Chapter::Materials));

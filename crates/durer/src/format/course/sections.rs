@@ -10,7 +10,7 @@ use crate::diag::{Diagnostic, Span, did_you_mean};
 use crate::dialect::{Dialect, DialectSet, set};
 use crate::light::Light;
 use crate::material::presets;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
 use crate::medium::Fog;
 use crate::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -257,10 +257,16 @@ impl Reader<'_, '_> {
             });
             return Some(Material::Principled(Box::new(principled)));
         }
+        if let Some(mut hair) = HairMaterial::from_keyword(word) {
+            self.check_keyword(&hair, span);
+            self.fields(&mut hair, span, Order::Any, |_, _, _| false);
+            return Some(Material::Hair(hair));
+        }
         let Some(mut phong) = PhongMaterial::from_keyword(word) else {
             let known = [
                 "PhongMaterial",
                 "PrincipledMaterial",
+                "HairMaterial",
                 "Material",
                 "Checkerboard",
                 "Noise",

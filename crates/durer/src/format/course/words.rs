@@ -4,7 +4,7 @@ use crate::camera::Camera;
 use crate::describe::DescribedList;
 use crate::dialect::{DialectSet, set};
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
 use crate::medium::Fog;
 use crate::scene::{Background, NamedTexture, Operation};
 use crate::shape::{HeightField, Primitive, TriangleMesh, VoxelGrid};
@@ -60,6 +60,7 @@ static WORDS: LazyLock<HashMap<&'static str, DialectSet>> = LazyLock::new(|| {
     list::<Solid>(&mut words);
     list::<PhongMaterial>(&mut words);
     list::<PrincipledMaterial>(&mut words);
+    list::<HairMaterial>(&mut words);
     list::<ColorNoise>(&mut words);
     list::<TriangleMesh>(&mut words);
     list::<HeightField>(&mut words);
@@ -103,7 +104,8 @@ pub(super) fn begins_block(word: &str) -> bool {
 pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
-        "PhongMaterial" | "PrincipledMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood" | "Mix" => "Materials",
+        "PhongMaterial" | "PrincipledMaterial" | "HairMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood"
+        | "Mix" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Texture" => "Textures",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"

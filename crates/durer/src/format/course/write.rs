@@ -111,6 +111,7 @@ impl Writer {
                 });
             }
             Material::Principled(principled) => self.thing(&**principled),
+            Material::Hair(hair) => self.thing(hair),
             Material::Solid(solid, transform) => self.block(solid.keyword(self.dialect), |w| {
                 if !transform.is_empty() {
                     w.block("Transform", |w| transform.iter().for_each(|op| w.matrix(op)));

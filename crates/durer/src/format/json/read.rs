@@ -10,7 +10,7 @@ use crate::format::course::{flat, senseless};
 use crate::format::report::{Report, counted, shown};
 use crate::format::said::meant;
 use crate::light::Light;
-use crate::material::{ColorNoise, Pattern, PhongMaterial, PrincipledMaterial, Solid, presets};
+use crate::material::{ColorNoise, HairMaterial, Pattern, PhongMaterial, PrincipledMaterial, Solid, presets};
 use crate::math::Vec3;
 use crate::scene::{Group, Material, MatrixOp, NamedTexture, Node as What, Object, Operation, Scene};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -143,6 +143,9 @@ impl Reader<'_> {
             let mut principled = preset.unwrap_or_default();
             self.fields(&mut principled, &mut members);
             Material::Principled(Box::new(principled))
+        } else if let Some(mut hair) = schema::of_keyword::<HairMaterial>(word) {
+            self.fields(&mut hair, &mut members);
+            Material::Hair(hair)
         } else {
             let mut phong = PhongMaterial::default();
             let noise = members.take("noise").map(|node| self.thing(ColorNoise::default(), node, "noise"));

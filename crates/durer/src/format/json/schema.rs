@@ -6,7 +6,7 @@ use crate::camera::Camera;
 use crate::describe::{DescribedList, Field, Kind, Rule};
 use crate::dialect::Dialect;
 use crate::light::Light;
-use crate::material::{ColorNoise, PhongMaterial, PrincipledMaterial, Solid, presets};
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, presets};
 use crate::medium::Fog;
 use crate::scene::{Background, MatrixOp, NamedTexture, Operation};
 use crate::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
@@ -29,7 +29,8 @@ pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
 
 /// What a material may be.
 pub(super) fn materials() -> Vec<&'static str> {
-    [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<Solid>()].concat()
+    let own = [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<HairMaterial>()].concat();
+    [own, keywords::<Solid>()].concat()
 }
 
 /// What an object may be.
@@ -196,6 +197,7 @@ fn material_things() -> Vec<Value> {
         json!({"preset": {"enum": presets, "description": "A real material, which the other members change."}});
     let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
     let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
+    all.extend(things::<HairMaterial>());
     all.extend(Solid::kinds().iter().map(|solid| named(solid, &transform)));
     all
 }

@@ -89,6 +89,7 @@ fn material(material: &Material) -> Json {
             typed(word(&**phong), fields(&**phong).into_iter().chain(noise).collect())
         }
         Material::Principled(principled) => typed(word(&**principled), fields(&**principled)),
+        Material::Hair(hair) => typed(word(hair), fields(hair)),
         Material::Solid(solid, transform) => {
             let transform = (!transform.is_empty()).then(|| ("transform", matrices(transform)));
             typed(word(solid), transform.into_iter().chain(fields(solid)).collect())

@@ -2,7 +2,7 @@
 
 use super::plugin::Key;
 use crate::diag::Span;
-use crate::material::PrincipledMaterial;
+use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Color, Vec3};
 use crate::scene::Picture;
 use glam::DAffine3;
@@ -11,6 +11,7 @@ use std::rc::Rc;
 /// A material as written.
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>),
+    Hair(HairMaterial),
     /// Two others, and the share of the first.
     Mix(Rc<Made>, Rc<Made>, f32),
     /// What is not there at all.
@@ -32,6 +33,7 @@ impl Made {
                 Made::Layers(layers)
             }
             Made::Mix(a, b, share) => Made::Mix(a.changed(change).into(), b.changed(change).into(), *share),
+            Made::Hair(hair) => Made::Hair(hair.clone()),
             Made::Nothing => Made::Nothing,
         }
     }

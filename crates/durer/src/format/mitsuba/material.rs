@@ -16,12 +16,12 @@ use crate::format::pictures::asset;
 use crate::format::said::meant;
 use crate::material::mix::Mix;
 use crate::material::principled::Walls;
-use crate::material::{PrincipledMaterial, Solid};
+use crate::material::{HairMaterial, PrincipledMaterial, Solid};
 use crate::math::{Vec3, fp};
 use crate::scene::{Material, Spanned};
 use std::rc::Rc;
 
-const KNOWN: [&str; 17] = [
+const KNOWN: [&str; 18] = [
     "diffuse",
     "dielectric",
     "thindielectric",
@@ -39,6 +39,7 @@ const KNOWN: [&str; 17] = [
     "bumpmap",
     "normalmap",
     "mixturebsdf",
+    "hair",
 ];
 
 /// The index of refraction of air.
@@ -71,6 +72,7 @@ impl Reader<'_> {
             "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
             "plastic" | "roughplastic" => self.plastic(plugin, &mut m),
             "principled" | "principledthin" => m = self.principled(plugin),
+            "hair" => return Rc::new(self.hair(plugin)),
             "null" => return Rc::new(Made::Nothing),
             "twosided" => {
                 let parts = self.parts(plugin, Some("bsdf"));
@@ -110,6 +112,28 @@ impl Reader<'_> {
             }
         }
         Rc::new(Made::Layers(Box::new(m)))
+    }
+
+    /// Hair by what it absorbs, or by its melanins.
+    fn hair(&self, plugin: &Plugin) -> Made {
+        let usual = HairMaterial::default();
+        let number = |name| plugin.number(self.said, name);
+        let share = |name, usual: f32| number(name).unwrap_or(usual).clamp(0.0, 1.0);
+        let absorption = plugin
+            .get("sigma_a")
+            .is_some()
+            .then(|| number("scale").unwrap_or(1.0) * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO));
+        plugin.known(&["scale"]);
+        Made::Hair(HairMaterial {
+            eumelanin: number("eumelanin").unwrap_or(1.3).max(0.0),
+            pheomelanin: number("pheomelanin").unwrap_or(0.2).max(0.0),
+            color: None,
+            absorption,
+            longitudinal_roughness: share("longitudinal_roughness", usual.longitudinal_roughness),
+            azimuthal_roughness: share("azimuthal_roughness", usual.azimuthal_roughness),
+            scale_tilt: number("scale_tilt").unwrap_or(usual.scale_tilt).clamp(-45.0, 45.0),
+            ior: self.relative_index(plugin, usual.ior).clamp(1.0, 4.0),
+        })
     }
 
     /// The material that another holds.
@@ -315,6 +339,12 @@ impl Reader<'_> {
                     }
                 }
                 Material::Principled(layers)
+            }
+            Made::Hair(hair) => {
+                if shine.is_some() {
+                    self.said.once(at, "hair does not shine");
+                }
+                Material::Hair(hair.clone())
             }
             Made::Mix(a, b, share) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
                 (Some(material1), Some(material2)) => {

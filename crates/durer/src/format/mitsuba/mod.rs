@@ -6,6 +6,7 @@
 
 mod camera;
 mod color;
+mod curve;
 mod light;
 mod load;
 mod made;

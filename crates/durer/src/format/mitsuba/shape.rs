@@ -2,6 +2,7 @@
 //!
 //! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
 
+use super::curve;
 use super::plugin::{Key, Plugin};
 use super::solid;
 use super::state::Reader;
@@ -19,8 +20,20 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
-const KNOWN: [&str; 10] =
-    ["sphere", "disk", "rectangle", "cube", "cylinder", "obj", "ply", "shapegroup", "instance", "merge"];
+const KNOWN: [&str; 12] = [
+    "sphere",
+    "disk",
+    "rectangle",
+    "cube",
+    "cylinder",
+    "obj",
+    "ply",
+    "shapegroup",
+    "instance",
+    "merge",
+    "bsplinecurve",
+    "linearcurve",
+];
 
 impl Reader<'_> {
     /// Adds what a plugin shows.
@@ -46,6 +59,7 @@ impl Reader<'_> {
             "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
             "cylinder" => self.cylinder(plugin, map),
             "obj" | "ply" => self.file(plugin, map),
+            "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
             "serialized" => {
                 let help = "open the scene in Mitsuba and write its meshes by `mesh.write_ply(\"a.ply\")`";
                 let error = Diagnostic::error("meshes of `serialized` are not read").code("bad-value").at(at);
@@ -275,6 +289,19 @@ impl Reader<'_> {
             }
             Some(if over { solid::turned_over(data) } else { data })
         })
+    }
+
+    /// Curves of a file, as tubes.
+    fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let Some(name) = plugin.text(said, "filename") else {
+            said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+            return None;
+        };
+        let (path, at) = (self.loader.path(&name), plugin.place("filename"));
+        let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
+        let key = if is_spline { path.clone() } else { format!("{path}#linear") };
+        self.mesh(plugin, &key, map, || curve::tubes(input, said, (&path, at), is_spline))
     }
 
     /// A mesh with v downwards, in its place.

@@ -89,9 +89,9 @@ fn what_is_wrong_is_told_at_its_place() {
             "warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
         ),
         (
-            "<shape type='sphere'><bsdf type='hair'/></shape>",
-            "hair",
-            "warning the material `hair` has no counterpart: matte grey is taken",
+            "<shape type='sphere'><bsdf type='measured'/></shape>",
+            "measured",
+            "warning the material `measured` has no counterpart: matte grey is taken",
         ),
         (
             "<shape type='sphere'><float name='a' value='1'/><float name='a' value='2'/></shape>",

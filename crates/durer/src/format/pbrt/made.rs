@@ -2,7 +2,7 @@
 
 use crate::describe::FileName;
 use crate::diag::Span;
-use crate::material::PrincipledMaterial;
+use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::Color;
 use crate::scene::Picture;
 use glam::DAffine3;
@@ -10,6 +10,7 @@ use glam::DAffine3;
 /// A material as written.
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>, Span),
+    Hair(HairMaterial, Span),
     /// Two others, by number, and the share of the first.
     Mix {
         parts: [usize; 2],

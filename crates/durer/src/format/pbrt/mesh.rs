@@ -8,6 +8,7 @@ use crate::format::said::Said;
 use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
+use std::sync::Arc;
 
 /// Sides of a cylinder, and of a patch that is not flat.
 const SIDES: u32 = 128;
@@ -174,18 +175,31 @@ pub(super) fn file(input: &Input, said: &Said, name: &str, at: Span, reversed: b
     written_in_file(input, said, name, at).map(|data| oriented(data, reversed))
 }
 
-/// A mesh as it is in a file of any format, packed or not.
-pub(in crate::format) fn written_in_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
-    let bytes = match input.source.read_unpacked(name) {
-        Ok(bytes) => bytes,
+/// The bytes of a file that is named, and its number; says it of `what` where they cannot be had.
+pub(in crate::format) fn named_bytes(
+    input: &Input,
+    said: &Said,
+    what: &str,
+    name: &str,
+    at: Span,
+) -> Option<(Arc<[u8]>, u32)> {
+    match input.source.read_unpacked(name) {
+        Ok(bytes) => {
+            let file = input.files.borrow_mut().add(name, bytes.clone());
+            Some((bytes, file))
+        }
         Err(error) => {
             let help = error.help();
-            let missing = Diagnostic::error(format!("the mesh cannot be had: {error}")).code("missing-file").at(at);
+            let missing = Diagnostic::error(format!("{what} cannot be had: {error}")).code("missing-file").at(at);
             said.push(Diagnostic { help, ..missing });
-            return None;
+            None
         }
-    };
-    let file = input.files.borrow_mut().add(name, bytes.clone());
+    }
+}
+
+/// A mesh as it is in a file of any format, packed or not.
+pub(in crate::format) fn written_in_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, said, "the mesh", name, at)?;
     let plain = name.strip_suffix(".gz").unwrap_or(name);
     let mut own = Diagnostics::default();
     let data = read_mesh(&bytes, file, plain, &mut own);

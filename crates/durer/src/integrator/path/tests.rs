@@ -326,6 +326,8 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
         "PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0.5 }",
         "PrincipledMaterial { baseColor 1 1 1 specularRoughness 0.2 coatWeight 1 }",
         "PrincipledMaterial { baseColor 0 0 0 opacity 0 }",
+        "HairMaterial { absorption 0 0 0 }",
+        "HairMaterial { color 1 1 1 longitudinalRoughness 0.8 azimuthalRoughness 0.7 }",
         "PhongMaterial { diffuseColor 0 0 0 transparentColor 1 1 1 indexOfRefraction 1.4 }",
     ] {
         let text = format!(

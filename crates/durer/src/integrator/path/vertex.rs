@@ -118,8 +118,8 @@ impl Place<'_, '_> {
             Place::Surface(_, shading, _) => {
                 let chosen = shading.bsdf.sample(shading.wo, choice, u)?;
                 let wi = shading.frame.to_world(chosen.wi);
-                let passes = chosen.wi.z < 0.0;
-                if passes != (wi.dot(shading.n_geo) < 0.0) {
+                let passes = wi.dot(shading.n_geo) < 0.0;
+                if passes != (chosen.wi.z < 0.0) && !shading.bsdf.is_fibre() {
                     return None;
                 }
                 Some(Chosen { wi, weight: chosen.weight, pdf: chosen.pdf, passes, lobe: chosen.lobe })

@@ -2,6 +2,7 @@
 //! than they are read.
 
 use super::Writer;
+use crate::bsdf::lobe::hair::Fibre;
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::material::parameters::TEXTURED;
@@ -28,6 +29,12 @@ impl Writer<'_> {
                     self.left_out("glTF has no noise: the material's own colour is written");
                 }
                 Some(self.layers(&alike(phong), holes))
+            }
+            Material::Hair(hair) => {
+                self.left_out("glTF has no hair: a matte colour is written");
+                let base_color = Fibre::new(hair).color();
+                let matte = PrincipledMaterial { base_color, specular_roughness: 1.0, ..PrincipledMaterial::default() };
+                Some(self.layers(&matte, holes))
             }
             Material::Solid(solid, _) => {
                 self.left_out("glTF has no patterns of two materials: the first is written");

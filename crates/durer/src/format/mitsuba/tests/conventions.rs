@@ -5,8 +5,8 @@ use super::{clean, folder, material, objects, read, read_in};
 use crate::camera::{Camera, Handedness};
 use crate::describe::FileName;
 use crate::light::Light;
-use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
+use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
 use crate::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
 
@@ -408,5 +408,55 @@ fn axes_of_cylinders_are_those_of_mitsuba() {
         });
         let found = map.transform_vector3(corner.unwrap().with_z(0.0).as_dvec3()).as_vec3();
         assert!((found - Vec3::from_array(start)).length() < 2e-3, "{to:?}: {found} and not {start:?}");
+    }
+}
+
+#[test]
+fn hair_on_curves_of_a_file() {
+    let folder = folder(&[
+        ("hair.txt", b"0 0 0 0.1\n1 0 0 0.1\n2 0 0 0.1\n3 0 0 0.1\n\n0 1 0 0.2\n1 1 0 0.2\n2 1 0 0.2\n3 1 0 0.2\n"),
+        ("short.txt", b"0 0 0 0.1\n1 0 0 0.1\n"),
+        ("bad.txt", b"0 0 0 0.1\n1 0 0\n"),
+        ("thin.txt", b"0 0 0 0.1\n1 0 0 -1\n"),
+    ]);
+    let text = |kind: &str, file: &str| {
+        format!(
+            "<scene version='3.0.0'><shape type='{kind}'><string name='filename' value='{file}'/>\
+             <bsdf type='hair'><float name='eumelanin' value='0.5'/><float name='scale_tilt' value='3'/>\
+             <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
+        )
+    };
+    for (kind, from, to) in [("bsplinecurve", 1.0, 2.0), ("linearcurve", 0.0, 3.0)] {
+        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
+        assert_eq!(told, [""; 0]);
+        let scene = scene.unwrap();
+        let Material::Hair(hair) = material(&scene) else { panic!("{kind}") };
+        let wanted =
+            HairMaterial { eumelanin: 0.5, pheomelanin: 0.2, scale_tilt: 3.0, ior: 1.6, ..HairMaterial::default() };
+        assert_eq!(*hair, wanted);
+        let data = scene.assets.meshes.values().next().unwrap();
+        let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        assert!((ends.0 - from).abs() < 1e-5 && (ends.1 - to).abs() < 1e-5, "{kind}: {ends:?}");
+        // Two tubes, each as wide as its radius says; u grows along them.
+        let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
+        assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
+        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (p.x - from - uv.x * (to - from)).abs() < 1e-4));
+    }
+    for (file, kind, wanted) in [
+        ("short.txt", "bsplinecurve", "short.txt:3:1 error a curve of 2 points: it needs 4"),
+        (
+            "bad.txt",
+            "linearcurve",
+            "bad.txt:2:1 error a point of a curve is four numbers: where it is, and the radius there",
+        ),
+        (
+            "thin.txt",
+            "linearcurve",
+            "thin.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more",
+        ),
+        ("none.txt", "linearcurve", "error the curves cannot be had"),
+    ] {
+        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, file));
+        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{told:#?}");
     }
 }

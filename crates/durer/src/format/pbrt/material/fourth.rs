@@ -157,21 +157,7 @@ impl Reader<'_> {
                 m = matte(Vec3::splat(0.5));
                 self.said.once(at, "measured materials have no counterpart: matte grey is taken");
             }
-            "hair" => {
-                params.known(&[
-                    "sigma_a",
-                    "reflectance",
-                    "color",
-                    "eumelanin",
-                    "pheomelanin",
-                    "eta",
-                    "beta_m",
-                    "beta_n",
-                    "alpha",
-                ]);
-                m = matte(Vec3::new(0.2, 0.12, 0.07));
-                self.said.once(at, "hair has no counterpart: matte brown is taken");
-            }
+            "hair" => return self.hair(params, &["reflectance", "color"], at),
             "mix" => return self.mixed(params, at),
             "interface" | "" | "none" => return Made::Nothing,
             other => {

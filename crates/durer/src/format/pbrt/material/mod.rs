@@ -2,6 +2,7 @@
 
 mod disney;
 mod fourth;
+mod hair;
 mod parts;
 mod rough;
 mod substrate;
@@ -43,7 +44,7 @@ impl Made {
         match self {
             Made::Layers(layers, _) => layers.has_pictures(),
             Made::Mix { pictured, .. } => *pictured,
-            Made::Nothing => false,
+            Made::Hair(..) | Made::Nothing => false,
         }
     }
 }
@@ -182,6 +183,16 @@ impl Reader<'_> {
                     self.shine(&mut m, light, color);
                 }
                 Some(self.scene_material(Material::Principled(m), at))
+            }
+            Made::Hair(hair, at) => {
+                let (hair, at) = (hair.clone(), *at);
+                if light.is_some() {
+                    self.said.once(at, "hair does not shine");
+                }
+                if opacity.share < 1.0 || opacity.picture.is_some() {
+                    self.said.once(at, "hair is there everywhere, its opacity is left out");
+                }
+                Some(self.scene_material(Material::Hair(hair), at))
             }
             Made::Mix { parts: [a, b], share, at, .. } => {
                 let (a, b, share, at) = (*a, *b, *share, *at);

@@ -111,16 +111,12 @@ impl Reader<'_> {
             "disney" => return self.disney(params, at),
             "subsurface" | "kdsubsurface" => vec![self.below(kind, params)],
             "mix" => return self.mix_of_two(params, at),
+            "hair" => return self.hair(params, &["color"], at),
             "" | "none" => return Made::Nothing,
             "fourier" => {
                 params.known(&["bsdffile"]);
                 self.said.once(at, "measured materials have no counterpart: matte grey is taken");
                 vec![Part { layers: matte(Vec3::splat(0.5)), most: 1.0 }]
-            }
-            "hair" => {
-                params.known(&["sigma_a", "color", "eumelanin", "pheomelanin", "eta", "beta_m", "beta_n", "alpha"]);
-                self.said.once(at, "hair has no counterpart: matte brown is taken");
-                vec![Part { layers: matte(Vec3::new(0.2, 0.12, 0.07)), most: 1.0 }]
             }
             other => {
                 let is_new = NEW_MATERIALS.contains(&other);

@@ -119,7 +119,7 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
     let text = "Integrator \"bdpt\" Camera \"perspective\"\nWorldBegin\n\
                 MakeNamedMedium \"fog\" \"string type\" \"cloud\" MediumInterface \"\" \"fog\"\n\
                 LightSource \"infinite\" \"point3 portal\" [ 0 0 0 ] Shape \"sphere\" \"float radiu\" 2\n\
-                Material \"hair\" Shape \"sphere\"";
+                Material \"measured\" Shape \"sphere\"";
     let (scene, told) = read(text);
     assert_eq!(scene.unwrap().root.unwrap().objects.len(), 2);
     assert_eq!(
@@ -129,7 +129,7 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
             "scene.pbrt:3:18 warning media that are not the same everywhere have no counterpart: light goes through them as if they were not there",
             "scene.pbrt:4:25 warning `portal` has no counterpart: light is looked for all around",
             "scene.pbrt:4:66 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",
-            "scene.pbrt:5:11 warning hair has no counterpart: matte brown is taken",
+            "scene.pbrt:5:11 warning measured materials have no counterpart: matte grey is taken",
         ]
     );
 }

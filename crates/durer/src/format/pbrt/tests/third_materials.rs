@@ -3,6 +3,7 @@
 use super::super::material::alpha_of_roughness;
 use super::third::{close, parts};
 use super::*;
+use crate::material::HairMaterial;
 use crate::math::Vec3;
 
 #[test]
@@ -122,4 +123,37 @@ fn textures_have_pbrt_v3_s_parameters() {
         color("Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float amount\" 0.25"),
         Vec3::new(0.75, 0.0, 0.25),
     );
+}
+
+#[test]
+fn hair_is_hair_in_both_languages() {
+    let hair = |text: &str| {
+        let scene = clean(&format!(
+            "Camera \"perspective\" WorldBegin {text} Shape \"curve\" \"point3 P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ] \"string type\" \"cylinder\""
+        ));
+        let number = scene.root.as_ref().unwrap().objects[0].material.unwrap() as usize;
+        let Material::Hair(hair) = &scene.materials[number].value else { panic!("{text}") };
+        hair.clone()
+    };
+    let usual = HairMaterial::default();
+    assert_eq!(hair("Material \"hair\""), usual);
+    let red = "\"float pheomelanin\" 2 \"float beta_m\" 0.2 \"float beta_n\" 0.4 \"float alpha\" 3 \"float eta\" 1.6";
+    let [longitudinal_roughness, azimuthal_roughness] = [0.2, 0.4];
+    let wanted = HairMaterial {
+        eumelanin: 0.0,
+        pheomelanin: 2.0,
+        longitudinal_roughness,
+        azimuthal_roughness,
+        scale_tilt: 3.0,
+        ior: 1.6,
+        ..usual
+    };
+    assert_eq!(hair(&format!("Material \"hair\" {red}")), wanted);
+    for word in ["reflectance", "color"] {
+        let made = hair(&format!("Material \"hair\" \"rgb {word}\" [ 0.5 0.25 0.125 ]"));
+        close(made.color.unwrap(), Vec3::new(0.5, 0.25, 0.125));
+    }
+    // What is absorbed counts first, here in pbrt-v3.
+    let made = hair("Material \"matte\" Material \"hair\" \"rgb sigma_a\" [ 1 2 3 ] \"rgb color\" [ 0.5 0.5 0.5 ]");
+    assert_eq!((made.absorption, made.color), (Some(Vec3::new(1.0, 2.0, 3.0)), None));
 }

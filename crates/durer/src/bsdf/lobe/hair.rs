@@ -1,0 +1,352 @@
+//! A fibre seen from outside: hair and fur.
+//!
+//! Light is mirrored by the fibre, goes through it, or goes through after it was mirrored inside
+//! once, twice, ... Along the fibre it spreads as its scales are rough, and around it as its section
+//! is not round. The local x axis lies along the fibre; where across it light meets it follows from
+//! how the normal leans.
+//!
+//! Sources: Marschner, Jensen, Cammarano, Worley and Hanrahan, *Light Scattering from Human Hair
+//! Fibers*, SIGGRAPH 2003 (the ways of light); d'Eon, Francois, Hill, Letteri and Aubry, *An
+//! Energy-Conserving Hair Reflectance Model*, EGSR 2011 (the spread along the fibre, the melanins);
+//! Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model for
+//! Production Path Tracing*, Eurographics 2016 (the spread around it, roughness and colour).
+
+use super::{Scatter, Scattered};
+use crate::bsdf::fresnel;
+use crate::material::HairMaterial;
+use crate::math::{Color, Vec2, Vec3, fp};
+use crate::spectrum::{Lanes, Spectrum};
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
+
+/// Ways of light that are told apart: mirrored, straight through, mirrored inside once, and more
+/// often.
+const WAYS: usize = 4;
+
+/// The last of them, which spreads evenly around the fibre.
+const MORE: usize = WAYS - 1;
+
+/// What all points of a fibre have in common.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fibre {
+    pigment: Pigment,
+    /// The index of refraction inside over that outside.
+    eta: f32,
+    /// Sine and cosine of the angles by which scales turn the first ways.
+    tilts: [Vec2; MORE],
+    /// How wide each way spreads along the fibre.
+    variances: [f32; WAYS],
+    spread: Logistic,
+}
+
+/// What takes light away inside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Pigment {
+    /// As much per radius.
+    Absorption(Color),
+    /// As much as gives many fibres a colour; and what divides the logarithm of that.
+    Color(Color, f32),
+}
+
+impl Fibre {
+    /// What a material says.
+    pub fn new(m: &HairMaterial) -> Self {
+        // Scales turn what is mirrored outside by twice their angle, back; the others by half as
+        // much and by twice as much, on.
+        let tilt = |by: f64| {
+            let (sin, cos) = fp::sin_cos_degrees(by * f64::from(m.scale_tilt));
+            Vec2::new(sin as f32, cos as f32)
+        };
+        let along = m.longitudinal_roughness.max(0.02);
+        let deviation = 0.726 * along + 0.812 * along * along + 3.7 * fp::pow(along, 20.0);
+        let variance = deviation * deviation;
+        let around = m.azimuthal_roughness.max(0.02);
+        let scale = 0.265 * around + 1.194 * around * around + 5.372 * fp::pow(around, 22.0);
+        let melanin = m.eumelanin * Color::new(0.419, 0.697, 1.37) + m.pheomelanin * Color::new(0.187, 0.4, 1.05);
+        let (b, b2) = (m.azimuthal_roughness, m.azimuthal_roughness * m.azimuthal_roughness);
+        let fit = 5.969 - 0.215 * b + 2.532 * b2 - 10.73 * b2 * b + 5.574 * b2 * b2 + 0.245 * b2 * b2 * b;
+        Fibre {
+            pigment: match (m.absorption, m.color) {
+                (Some(absorption), _) => Pigment::Absorption(absorption.max(Color::ZERO)),
+                (None, Some(color)) => Pigment::Color(color, fit),
+                (None, None) => Pigment::Absorption(melanin),
+            },
+            eta: m.ior,
+            tilts: [tilt(-2.0), tilt(1.0), tilt(4.0)],
+            variances: [variance, 0.25 * variance, 4.0 * variance, 4.0 * variance],
+            spread: Logistic::new((PI / 8.0).sqrt() * scale),
+        }
+    }
+
+    /// How many fibres look, nearly.
+    pub fn color(&self) -> Color {
+        match self.pigment {
+            Pigment::Color(color, _) => color,
+            // Of no roughness.
+            Pigment::Absorption(absorption) => absorption.map(|sigma| fp::exp(-5.969 * sigma.sqrt())),
+        }
+    }
+
+    /// As light of some lanes sees it.
+    pub fn seen(&self, lanes: &Lanes) -> Hair<'_> {
+        let absorption = match self.pigment {
+            Pigment::Absorption(absorption) => lanes.coefficient(absorption),
+            Pigment::Color(color, fit) => {
+                let depth = lanes.reflectance(color).map(|share| fp::ln(share.clamp(1e-4, 1.0))) / fit;
+                depth * depth
+            }
+        };
+        Hair { fibre: self, absorption }
+    }
+
+    /// The direction from which it is seen, turned by the scales on a way.
+    fn turned(&self, way: usize, out: &Direction) -> Vec2 {
+        let Some(tilt) = self.tilts.get(way) else { return out.along };
+        let sine = out.along.x * tilt.y + out.along.y * tilt.x;
+        Vec2::new(sine, (out.along.y * tilt.y - out.along.x * tilt.x).abs())
+    }
+}
+
+/// A point of a fibre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hair<'a> {
+    fibre: &'a Fibre,
+    /// How much light loses inside, per radius.
+    absorption: Spectrum,
+}
+
+/// A direction as a fibre has it.
+struct Direction {
+    /// Sine and cosine of the angle to the plane across the fibre.
+    along: Vec2,
+    /// The angle around the fibre from the y axis to the z axis.
+    around: f32,
+}
+
+impl Direction {
+    fn of(w: Vec3) -> Self {
+        let along = Vec2::new(w.x.clamp(-1.0, 1.0), (w.y * w.y + w.z * w.z).sqrt());
+        Direction { along, around: TAU * fp::atan2_turn(w.z, w.y) }
+    }
+}
+
+/// What becomes of light on its ways.
+struct Ways {
+    shares: [Spectrum; WAYS],
+    /// How often each is chosen, and the sum of that.
+    chances: [f32; WAYS],
+    total: f32,
+    /// The angles to the normal, around the fibre, outside and inside.
+    angles: [f32; 2],
+}
+
+impl Ways {
+    /// By how much a way turns light around the fibre.
+    fn turn(&self, way: usize) -> f32 {
+        let way = way as f32;
+        2.0 * way * self.angles[1] - 2.0 * self.angles[0] + way * PI
+    }
+}
+
+impl Hair<'_> {
+    fn ways(&self, wo: Vec3, out: &Direction) -> Ways {
+        let eta = self.fibre.eta;
+        let (sine, cosine) = (out.along.x, out.along.y.max(1e-6));
+        let outside = out.around - FRAC_PI_2;
+        // The index of a section across the fibre; the sine outside is -cos of the angle from y.
+        let across = (eta * eta - sine * sine).max(1e-12).sqrt() / cosine;
+        let sine_inside = (-wo.y / cosine / across).clamp(-1.0, 1.0);
+        let cosine_inside = (1.0 - sine_inside * sine_inside).sqrt();
+        let cosine_along = (1.0 - sine * sine / (eta * eta)).max(1e-6).sqrt();
+        let through = (self.absorption * (-2.0 * cosine_inside / cosine_along)).map(fp::exp);
+        let mirrored = fresnel::dielectric(wo.z.clamp(0.0, 1.0), eta);
+        let once = (1.0 - mirrored) * (1.0 - mirrored) * through;
+        let inside = mirrored * through;
+        let rest = inside * inside / (Spectrum::ONE - inside).max(Spectrum::splat(1e-6));
+        let shares = [Spectrum::splat(mirrored), once, once * inside, once * rest];
+        let chances = shares.map(|share| share.element_sum());
+        Ways { shares, chances, total: chances.iter().sum(), angles: [outside, fp::asin(sine_inside)] }
+    }
+
+    /// The density of a way along the fibre, per sine, and that around it, per radian.
+    fn density(&self, way: usize, ways: &Ways, out: &Direction, coming: &Direction) -> f32 {
+        let along = longitudinal(self.fibre.variances[way], self.fibre.turned(way, out), coming.along);
+        if way == MORE {
+            return along / TAU;
+        }
+        let off = coming.around - out.around - ways.turn(way);
+        along * self.fibre.spread.density(off - TAU * (off / TAU).round())
+    }
+}
+
+impl Scatter for Hair<'_> {
+    fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
+        let (out, coming) = (Direction::of(wo), Direction::of(wi));
+        let ways = self.ways(wo, &out);
+        let (mut value, mut density) = (Spectrum::ZERO, 0.0);
+        for way in 0..WAYS {
+            let own = self.density(way, &ways, &out, &coming);
+            value += ways.shares[way] * own;
+            density += ways.chances[way] * own;
+        }
+        (value, density / ways.total)
+    }
+
+    fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
+        let out = Direction::of(wo);
+        let ways = self.ways(wo, &out);
+        let (mut rest, mut way) = (choice * ways.total, 0);
+        while way < MORE && rest >= ways.chances[way] {
+            rest -= ways.chances[way];
+            way += 1;
+        }
+        // What is left of the number is uniform again.
+        let again = (rest / ways.chances[way]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let (turned, variance) = (self.fibre.turned(way, &out), self.fibre.variances[way]);
+        // The sine's angle to that of the mirror, as on a sphere.
+        let cosine = 1.0 + variance * fp::ln((u.x + (1.0 - u.x) * fp::exp(-2.0 / variance)).max(f32::MIN_POSITIVE));
+        let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let beside = fp::sin_cos_turn(u.y).1;
+        let along = (sine * beside * turned.y - cosine * turned.x).clamp(-1.0, 1.0);
+        let turn = match way {
+            MORE => TAU * again,
+            _ => ways.turn(way) + self.fibre.spread.sample(again),
+        };
+        let (sin, cos) = fp::sin_cos_turn((out.around + turn) / TAU);
+        let across = (1.0 - along * along).max(0.0).sqrt();
+        Some(Scattered { wi: Vec3::new(along, across * cos, across * sin), value: Spectrum::ONE })
+    }
+}
+
+/// How light spreads along a fibre: a distribution over the sphere around the direction of the
+/// mirror, averaged around the fibre. Both directions by sine and cosine.
+fn longitudinal(variance: f32, out: Vec2, coming: Vec2) -> f32 {
+    let [out, coming] = [out.as_dvec2(), coming.as_dvec2()];
+    // How far the cosine of the angle to the mirror's cone is below 1.
+    let below = (1.0 - (coming.y * out.y - coming.x * out.x)) as f32;
+    let height = variance * (1.0 - fp::exp(-2.0 / variance));
+    bessel((coming.y * out.y) as f32 / variance) * fp::exp(-below / variance) / height
+}
+
+/// The modified Bessel function of the first kind and order 0, over e to the power of x from 0.
+///
+/// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 9.8.1 and 9.8.2.
+fn bessel(x: f32) -> f32 {
+    const NEAR: [f32; 7] = [1.0, 3.515_623, 3.089_942_5, 1.206_749_2, 0.265_973_2, 0.036_076_8, 0.004_581_3];
+    const FAR: [f32; 9] = [
+        0.398_942_3,
+        0.013_285_92,
+        0.002_253_19,
+        -0.001_575_65,
+        0.009_162_81,
+        -0.020_577_06,
+        0.026_355_37,
+        -0.016_476_33,
+        0.003_923_77,
+    ];
+    let sum = |c: &[f32], x: f32| c.iter().rev().fold(0.0, |sum, c| sum * x + c);
+    let t = x / 3.75;
+    if t < 1.0 { sum(&NEAR, t * t) * fp::exp(-x) } else { sum(&FAR, 1.0 / t) / x.sqrt() }
+}
+
+/// A logistic distribution cut to a turn: much like a normal one, and easily sampled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Logistic {
+    scale: f32,
+    /// What lies below -pi, and what between -pi and pi.
+    below: f32,
+    inside: f32,
+}
+
+impl Logistic {
+    fn new(scale: f32) -> Self {
+        let below = 1.0 / (1.0 + fp::exp(PI / scale));
+        Logistic { scale, below, inside: 1.0 - 2.0 * below }
+    }
+
+    fn density(&self, x: f32) -> f32 {
+        let e = fp::exp(-x.abs() / self.scale);
+        e / (self.scale * (1.0 + e) * (1.0 + e) * self.inside)
+    }
+
+    fn sample(&self, u: f32) -> f32 {
+        let u = (self.below + u * self.inside).clamp(f32::MIN_POSITIVE, 1.0 - f32::EPSILON * 0.5);
+        (-self.scale * fp::ln(1.0 / u - 1.0)).clamp(-PI, PI)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bsdf::warp;
+    use crate::math::random::Random;
+
+    fn fibre(longitudinal_roughness: f32, azimuthal_roughness: f32) -> Fibre {
+        let absorption = Some(Color::ZERO);
+        Fibre::new(&HairMaterial { absorption, longitudinal_roughness, azimuthal_roughness, ..Default::default() })
+    }
+
+    /// The mean over all directions, by even ones.
+    fn over_all(random: &mut Random, value: impl Fn(Vec3) -> f32) -> f64 {
+        const MANY: u32 = 200_000;
+        let one = |_| f64::from(value(warp::sphere(Vec2::new(random.unit(), random.unit()))));
+        (0..MANY).map(one).sum::<f64>() / f64::from(MANY) * 4.0 * f64::from(PI)
+    }
+
+    #[test]
+    fn a_fibre_that_absorbs_nothing_gives_back_all_wherever_it_is_met() {
+        let mut random = Random(81);
+        for (along, around) in [(0.3, 0.3), (0.25, 0.7), (0.6, 0.4), (1.0, 1.0)] {
+            let fibre = fibre(along, around);
+            for (cosine, turn) in [(1.0, 0.0), (0.8, 0.1), (0.4, 0.2), (0.4, 0.55), (0.1, 0.9)] {
+                let (hair, wo) = (fibre.seen(&Lanes::Rgb), warp::polar(cosine, turn));
+                let white = over_all(&mut random, |wi| hair.eval(wo, wi).0.x);
+                let density = over_all(&mut random, |wi| hair.eval(wo, wi).1);
+                assert!((white - 1.0).abs() < 0.03 && (density - 1.0).abs() < 0.03, "{along} {around} {wo}: {white}");
+            }
+        }
+    }
+
+    #[test]
+    fn bessel_is_its_series() {
+        for i in 0..120_u8 {
+            let x = 0.1 * f32::from(i);
+            let (mut term, mut sum) = (1.0, 1.0);
+            for k in 1..40_u8 {
+                term *= 0.25 * f64::from(x) * f64::from(x) / (f64::from(k) * f64::from(k));
+                sum += term;
+            }
+            let exact = sum / libm::exp(f64::from(x));
+            assert!((f64::from(bessel(x)) - exact).abs() < 1e-6, "{x}: {} {exact}", bessel(x));
+        }
+    }
+
+    #[test]
+    fn hair_of_a_colour_has_it_and_melanin_is_absorption() {
+        let color = Color::new(0.6, 0.3, 0.1);
+        let of = |m: HairMaterial| Fibre::new(&m).seen(&Lanes::Rgb).absorption.truncate();
+        let by_color = of(HairMaterial { color: Some(color), azimuthal_roughness: 0.0, ..Default::default() });
+        let absorption = Some(by_color);
+        let again = Fibre::new(&HairMaterial { absorption, ..Default::default() }).color();
+        assert!((again - color).abs().max_element() < 1e-4, "{again}");
+        let brown = of(HairMaterial { eumelanin: 2.0, pheomelanin: 1.0, ..Default::default() });
+        assert!((brown - Color::new(1.025, 1.794, 3.79)).abs().max_element() < 1e-4, "{brown}");
+    }
+
+    #[test]
+    fn a_smooth_fibre_mirrors_into_a_cone() {
+        // Marschner's cone: along the fibre light leaves as steeply as it came, less the scales.
+        let m = HairMaterial { longitudinal_roughness: 0.05, scale_tilt: 3.0, ..Default::default() };
+        let fibre = Fibre::new(&HairMaterial { absorption: Some(Color::splat(1e3)), ..m });
+        let hair = fibre.seen(&Lanes::Rgb);
+        let wo = Vec3::new(0.5, 0.0, 0.75_f32.sqrt());
+        let mut random = Random(82);
+        let mut mean = 0.0;
+        for _ in 0..2_000 {
+            let mut unit = || random.unit();
+            let wi = hair.sample(wo, unit(), Vec2::new(unit(), unit())).unwrap().wi;
+            mean += f64::from(fp::asin(wi.x).to_degrees()) / 2_000.0;
+        }
+        // Seen at 30 degrees, turned back by twice the tilt.
+        assert!((mean + 24.0).abs() < 0.5, "{mean}");
+    }
+}
