@@ -443,12 +443,8 @@ fn hair_on_curves_of_a_file() {
         assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (p.x - from - uv.x * (to - from)).abs() < 1e-4));
     }
     for (file, kind, wanted) in [
-        ("short.txt", "bsplinecurve", "short.txt:3:1 error a curve of 2 points: it needs 4"),
-        (
-            "bad.txt",
-            "linearcurve",
-            "bad.txt:2:1 error a point of a curve is four numbers: where it is, and the radius there",
-        ),
+        ("short.txt", "bsplinecurve", "short.txt:3:1 error this ends a curve of 2, which needs 4"),
+        ("bad.txt", "linearcurve", "bad.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more"),
         (
             "thin.txt",
             "linearcurve",
