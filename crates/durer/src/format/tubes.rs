@@ -73,6 +73,11 @@ pub(super) fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
     let sides = SIDES[usize::from(many)];
     // A polygon around the circle and one in it: half way between both.
     let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
+    // Shares of a turn, their sines and cosines.
+    let circle: Vec<(f64, (f64, f64))> = (0..=sides)
+        .map(|k| f64::from(k) / f64::from(sides))
+        .map(|share| (share, fp::sin_cos_degrees(360.0 * share)))
+        .collect();
     let mut across = first.along.any_orthonormal_vector();
     let begin = data.positions.len() as u32;
     for place in places {
@@ -81,9 +86,7 @@ pub(super) fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
             .try_normalize()
             .unwrap_or(place.along.any_orthonormal_vector());
         let other = place.along.cross(across);
-        for k in 0..=sides {
-            let share = f64::from(k) / f64::from(sides);
-            let (sin, cos) = fp::sin_cos_degrees(360.0 * share);
+        for &(share, (sin, cos)) in &circle {
             let normal = across * cos + other * sin;
             data.positions.push((place.point + 0.5 * corner * place.width * normal).as_vec3());
             data.normals.push(normal.as_vec3());

@@ -119,11 +119,9 @@ impl Reader<'_> {
         let usual = HairMaterial::default();
         let number = |name| plugin.number(self.said, name);
         let share = |name, usual: f32| number(name).unwrap_or(usual).clamp(0.0, 1.0);
-        let absorption = plugin
-            .get("sigma_a")
-            .is_some()
-            .then(|| number("scale").unwrap_or(1.0) * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO));
-        plugin.known(&["scale"]);
+        let scale = number("scale").unwrap_or(1.0);
+        let absorbed = || scale * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO);
+        let absorption = plugin.get("sigma_a").is_some().then(absorbed);
         Made::Hair(HairMaterial {
             eumelanin: number("eumelanin").unwrap_or(1.3).max(0.0),
             pheomelanin: number("pheomelanin").unwrap_or(0.2).max(0.0),

@@ -235,14 +235,18 @@ impl Reader<'_> {
         self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
     }
 
-    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        let said = self.said;
-        let Some(name) = plugin.text(said, "filename") else {
-            said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+    /// The file that a shape is in, and where it is named.
+    fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
+        let Some(name) = plugin.text(self.said, "filename") else {
+            self.said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
             return None;
         };
-        let at: Span = plugin.place("filename");
-        let path = self.loader.path(&name);
+        Some((self.loader.path(&name), plugin.place("filename")))
+    }
+
+    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let (path, at) = self.path(plugin)?;
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
         // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
@@ -294,11 +298,7 @@ impl Reader<'_> {
     /// Curves of a file, as tubes.
     fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let said = self.said;
-        let Some(name) = plugin.text(said, "filename") else {
-            said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
-            return None;
-        };
-        let (path, at) = (self.loader.path(&name), plugin.place("filename"));
+        let (path, at) = self.path(plugin)?;
         let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
         let key = if is_spline { path.clone() } else { format!("{path}#linear") };
         self.mesh(plugin, &key, map, || curve::tubes(input, said, (&path, at), is_spline))
