@@ -22,7 +22,7 @@ pub use parameters::{Direct, PhotonParameters, Transport};
 pub use photons::{Gathered, PhotonMap, Photons};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
-use vertex::{Chosen, Place, Scattered, Vertex};
+use vertex::{Chosen, DIRECTIONS, Place, Scattered, TRIES, Vertex};
 
 /// The integrator over one world.
 #[derive(Clone, Debug)]
@@ -76,13 +76,20 @@ impl Sample {
     fn told(&self, light: Spectrum) -> TermValue {
         TermValue::of(&self.lanes, light)
     }
+
+    /// Of several directions from a point one: its numbers lie evenly among those of all samples.
+    fn branch(&self, number: u32, of: u32) -> Sample {
+        let id = self.id.of_sample(self.id.sample.wrapping_mul(of).wrapping_add(number));
+        Sample { id, lanes: self.lanes, photons: self.photons.clone() }
+    }
 }
 
 /// What a ray carries from bounce to bounce.
 struct State {
     /// What the ray runs in.
     media: Media,
-    /// How much it counts for in the pixel, by lane.
+    /// How much it counts for in the pixel, by lane; of several directions from a point, what each
+    /// would alone: that they share must not end them sooner.
     throughput: Spectrum,
     /// How often it was scattered.
     depth: u32,
@@ -221,7 +228,13 @@ impl<'w> Path<'w> {
     }
 
     fn vertex<'a>(&self, place: Place<'a, 'w>, state: &'a State, sample: &Sample) -> Vertex<'a, 'w> {
-        Vertex { place, state, numbers: sample.bounce(state.depth).pairs() }
+        let narrow = self.world.environment().is_some() && place.is_glossy();
+        let (tries, directions) = match (narrow, state.depth) {
+            (true, 0) => (TRIES, DIRECTIONS),
+            (true, _) => (TRIES, 1),
+            (false, _) => (1, 1),
+        };
+        Vertex { place, state, numbers: sample.bounce(state.depth).pairs(), tries: tries as f32, directions }
     }
 
     /// The light along a ray to its first hit: a sum, and what the way to it leaves of it.
@@ -418,17 +431,26 @@ impl<'w> Path<'w> {
         let is_broad = vertex.place.is_broad();
         // A light is waited for, in many it lies far away in memory: meanwhile a direction is chosen.
         let light = if is_broad { self.choose(vertex) } else { None };
-        let direction = vertex.place.sample(vertex.numbers(Use::Choices).x, vertex.numbers(Use::Direction));
+        let direction = if vertex.directions == 1 { vertex.direction() } else { None };
         if let Some(light) = light {
             sum += self.direct(&light, vertex, sample, tally);
         }
         if is_broad {
             sum += self.caustic(vertex, sample, tally);
         }
-        match direction {
-            Some(chosen) => sum + self.indirect(&chosen, vertex, sample, tally),
-            None => sum,
+        if let Some(chosen) = direction {
+            sum += self.indirect(&chosen, vertex, sample, tally);
         }
+        if vertex.directions > 1 {
+            for number in 0..vertex.directions {
+                let sample = sample.branch(number, vertex.directions);
+                let vertex = Vertex { numbers: sample.bounce(vertex.state.depth).pairs(), ..*vertex };
+                if let Some(chosen) = vertex.direction() {
+                    sum += self.indirect(&chosen, &vertex, &sample, tally);
+                }
+            }
+        }
+        sum
     }
 
     /// The light of lamps that mirrors and glass throw on a surface, or into a medium.
@@ -451,6 +473,7 @@ impl<'w> Path<'w> {
     /// The light from a direction that is chosen.
     fn indirect<T: TraceListener>(&self, chosen: &Chosen, vertex: &Vertex, sample: &Sample, tally: &mut T) -> Spectrum {
         let Vertex { place, state, .. } = vertex;
+        let directions = vertex.directions as f32;
         let throughput = state.throughput * chosen.weight;
         // Paths go on with a probability that keeps those that go on equally bright.
         let survival = match state.depth {
@@ -460,7 +483,7 @@ impl<'w> Path<'w> {
         if survival < 1.0 && vertex.numbers(Use::Survival).x >= survival {
             return Spectrum::ZERO;
         }
-        let weight = chosen.weight / survival;
+        let weight = chosen.weight / (survival * directions);
         let delta = chosen.pdf == 0.0;
         let mut below = State {
             media: place.media(state, chosen.wi).clone(),
@@ -468,7 +491,7 @@ impl<'w> Path<'w> {
             depth: state.depth + 1,
             // Nothing can be connected with over a single direction, but straight on.
             from: match delta {
-                false => Some(Scattered { at: vertex.receiver(), pdf: chosen.pdf, tries: vertex.tries() }),
+                false => Some(Scattered { at: vertex.receiver(), pdf: directions * chosen.pdf, tries: vertex.tries }),
                 true => state.from.filter(|_| self.is_seen_through(vertex, chosen.lobe)),
             },
             behind_mirrors: delta && (state.broad || state.behind_mirrors),
@@ -489,7 +512,7 @@ impl<'w> Path<'w> {
             hit: None,
             bounce: Some({
                 let (lobe, probability) = place.lobe(chosen.lobe);
-                Bounce { lobe, probability, pdf: chosen.pdf, survival }
+                Bounce { lobe, probability, pdf: chosen.pdf, survival, directions: vertex.directions }
             }),
         });
         let indirect = state.depth > 0;

@@ -265,6 +265,8 @@ pub struct Bounce {
     pub pdf: f32,
     /// The probability that the path went on here.
     pub survival: f32,
+    /// How many directions were followed from there; each brings its part.
+    pub directions: u32,
 }
 
 /// What stands between a surface and a light.

@@ -100,7 +100,7 @@ impl Path<'_> {
     /// Chooses a point of a light.
     fn draw(&self, choice: &Choice, vertex: &Vertex) -> Option<Drawn> {
         let (emitters, place, u) = (self.world.emitters(), &vertex.place, vertex.numbers(Use::PlaceOnLight));
-        if choice.is_sky() && vertex.tries() > 1.0 {
+        if choice.is_sky() && vertex.tries > 1.0 {
             return self.best_of_sky(choice, vertex);
         }
         let at = |u| emitters.sample(self.world, choice, place.point(), u);
@@ -108,7 +108,7 @@ impl Path<'_> {
             (any, Direct::Middle) => at(emitters.middle(any.light).unwrap_or(u))?,
             (any, _) => any,
         };
-        let (value, pdf) = place.eval(light.wi);
+        let (value, pdf) = vertex.eval(light.wi);
         let density = if light.pdf > 0.0 { light.choice * light.pdf } else { light.choice };
         Some(Drawn { light, value, pdf, density, found: density })
     }
@@ -119,13 +119,13 @@ impl Path<'_> {
     /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
     /// 2005.
     fn best_of_sky(&self, choice: &Choice, vertex: &Vertex) -> Option<Drawn> {
-        let (sky, tries, mut u) = (self.world.environment()?, TRIES as f32, vertex.numbers(Use::PlaceOnLight));
+        let (sky, tries, mut u) = (self.world.environment()?, vertex.tries, vertex.numbers(Use::PlaceOnLight));
         let (mut best, mut sum, mut rest) = (None, 0.0, vertex.numbers(Use::Survival).y);
         for _ in 0..TRIES {
             let direction = sky.direction(u);
             u = (u + APART).map(|x| if x < 1.0 { x } else { x - 1.0 });
             let Some((wi, place, density)) = direction else { continue };
-            let (value, pdf) = vertex.place.eval(wi);
+            let (value, pdf) = vertex.eval(wi);
             if value == Spectrum::ZERO {
                 continue;
             }

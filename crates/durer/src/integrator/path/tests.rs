@@ -4,7 +4,7 @@ use super::*;
 use crate::compile::AccelKind;
 use crate::compile::testing::{self, read};
 use crate::dialect::Dialect;
-use crate::integrator::Direct;
+use crate::integrator::{Direct, TraceNode, TraceRecorder, Tree};
 use crate::math::fp;
 use crate::render::Job;
 use crate::spectrum::ColorMode;
@@ -259,7 +259,7 @@ fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
 }
 
 #[test]
-fn one_of_several_directions_to_the_surroundings_has_the_mean_of_any() {
+fn several_directions_under_surroundings_have_the_mean_of_one() {
     // Rough metal, glass and lacquer under a sky with a bright patch, which chance rarely meets, a
     // light without extent, a lamp, and a wall: of each way the same mean, by z-tests as above (48:
     // 4 standard errors are passed by chance once in 300 runs).
@@ -295,6 +295,21 @@ fn one_of_several_directions_to_the_surroundings_has_the_mean_of_any() {
                 assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{x} {y}: {ways:?}");
             }
         }
+        // From the first point of what is not matte two directions are followed, from all others one.
+        fn follow(node: &TraceNode, directions: u32) -> usize {
+            let below = node.terms.iter().map(|term| match &term.what {
+                TermKind::Ray { bounce: Some(bounce), .. } => {
+                    assert_eq!(bounce.directions, directions);
+                    1 + follow(term, 1)
+                }
+                _ => 0,
+            });
+            below.sum()
+        }
+        let path = Path::new(&world, settings, Transport::default());
+        let directions = if (x, y) == (1.0, -0.9) { 1 } else { 2 };
+        let rays: usize = (0..64).map(|sample| follow(&tree(&path, &ray, sample).root, directions)).sum();
+        assert!(rays > 48, "{x} {y}: {rays}");
     }
 }
 
@@ -420,6 +435,21 @@ fn cameras_and_lights_without_extent_look_through_hidden_backs() {
     }
 }
 
+/// What a path tells of a sample, all of whose sums are looked at.
+fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
+    fn check(node: &TraceNode) {
+        assert_eq!(node.sum(), node.value, "{:?}", node.what);
+        node.terms.iter().for_each(check);
+    }
+    let id = SampleId::new(1, (0, 0), sample);
+    let mut account = TraceRecorder::default();
+    let seen = path.radiance(ray, id, &mut account);
+    let tree = account.into_tree().unwrap();
+    assert_eq!((tree.sum(), path.radiance(ray, id, &mut ())), (seen, seen));
+    check(&tree.root);
+    tree
+}
+
 #[test]
 fn what_a_path_tells_sums_to_its_light() {
     let world = over_floor(
@@ -429,16 +459,7 @@ fn what_a_path_tells_sums_to_its_light() {
     let settings = Settings { bounces: 6, ..Job::default().settings };
     for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
         let path = Path::new(&world, settings, Transport { clamp: Some(0.2), color, ..Transport::default() });
-        let id = SampleId::new(1, (0, 0), sample);
-        let mut account = super::super::TraceRecorder::default();
-        let seen = path.radiance(&to_origin(), id, &mut account);
-        let tree = account.into_tree().unwrap();
-        assert_eq!((tree.sum(), path.radiance(&to_origin(), id, &mut ())), (seen, seen));
-        fn check(node: &super::super::TraceNode) {
-            assert_eq!(node.sum(), node.value, "{:?}", node.what);
-            node.terms.iter().for_each(check);
-        }
-        check(&tree.root);
+        let tree = tree(&path, &to_origin(), sample);
         let lanes = if color == ColorMode::Rgb { 3 } else { 4 };
         assert_eq!(tree.root.value.numbers().len(), lanes);
     }

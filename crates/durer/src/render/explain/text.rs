@@ -416,11 +416,13 @@ fn node_lines(
 
 /// How a direction was chosen.
 fn bounce_line(bounce: &Bounce) -> String {
-    let Bounce { lobe, probability, pdf, survival } = bounce;
+    let Bounce { lobe, probability, pdf, survival, directions } = bounce;
     let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
     let survived =
         if *survival < 1.0 { format!("; went on with probability {}", number(*survival)) } else { String::new() };
-    format!("chosen by {lobe} (probability {}){density}{survived}", number(*probability))
+    let shared =
+        if *directions > 1 { format!("; one of {directions} directions that share alike") } else { String::new() };
+    format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
 }
 
 /// A weight of multiple importance sampling, where it is not 1.
