@@ -249,11 +249,18 @@ impl<'r> Loader<'r> {
     }
 
     /// The densities of a file, and the box that they fill.
-    pub(super) fn density(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
+    pub(super) fn density(
+        &mut self,
+        name: &FileName,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(Aabb, Arc<DensityGrid>)> {
+        if let Some(known) = self.assets.densities.get(&name.path) {
+            return Some(known.clone());
+        }
         let memory = self.resources.memory;
         let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| format::vol::read(bytes, file, memory, own);
         let (bounds, grid) = self.parsed(name, "file of densities", diagnostics, read)?;
-        self.charge(name, grid.bytes() as u64, diagnostics).then_some((bounds, grid))
+        self.charge(name, grid.bytes() as u64, diagnostics).then(|| (bounds, Arc::new(grid)))
     }
 
     /// A measured reflectance.

@@ -41,6 +41,7 @@ pub(super) fn compile(
             let shown = illuminant.as_ref().map_or(Color::ONE, |curve| curve.color());
             let radiance = layers.emission_luminance * layers.emission_color * shown;
             let textured = maps.emission.is_some();
+            let medium = media::inside(layers, loader, diagnostics);
             let tables = Tables::new(layers, measured, &mut tables);
             tables.prepare(layers);
             let emission = Emission { radiance, textured, two_sided: layers.walls == Walls::Thin };
@@ -54,7 +55,7 @@ pub(super) fn compile(
                     parameters: Parameters::of(layers),
                     tables,
                     illuminant,
-                    medium: media::inside(layers),
+                    medium,
                     interface: media::is_interface(layers),
                 })),
                 ..plain(layers)

@@ -4,18 +4,19 @@ use super::files::Loader;
 use crate::diag::{Diagnostic, Diagnostics};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Aabb, Color, Vec3, fp};
+use crate::math::{Aabb, Affine, Color, Vec3, fp};
 use crate::medium::{Fog, HenyeyGreenstein, Medium, Place};
 use crate::scene::Spanned;
-use std::sync::Arc;
+use glam::{DAffine3, DMat3, DVec3};
 
 /// What fills a body of a material, if light loses something there.
-pub(super) fn inside(m: &PrincipledMaterial) -> Option<Medium> {
+pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     if m.walls == Walls::Thin {
         return None;
     }
     if m.transmission_weight > 0.0 {
-        return transmission(m);
+        let medium = transmission(m)?;
+        return Some(Medium { place: density(m, loader, diagnostics), ..medium });
     }
     m.has_subsurface().then(|| subsurface(m))
 }
@@ -35,6 +36,24 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     let extinction = if scattering == Color::ZERO { extinction } else { absorption + scattering };
     let phase = HenyeyGreenstein { anisotropy: m.transmission_scatter_anisotropy };
     (extinction != Color::ZERO).then(|| medium(extinction, scattering, phase))
+}
+
+/// How dense it is inside of a body where it is not the same everywhere.
+fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Place> {
+    let name = m.transmission_density.as_ref()?;
+    let (bounds, grid) = loader.density(name, diagnostics)?;
+    let place = Place { bounds, placed: None, density: Some(grid) };
+    if m.transmission_density_box.is_empty() {
+        return Some(place);
+    }
+    let row = |i: usize| m.transmission_density_box.get(i).map_or(DVec3::ZERO, |row| Vec3::from_array(*row).as_dvec3());
+    let map = DAffine3::from_mat3_translation(DMat3::from_cols(row(1), row(2), row(3)), row(0));
+    let Some(placed) = Affine::new(map) else {
+        let message = "the edges of `transmissionDensityBox` bound no body";
+        diagnostics.push(Diagnostic::error(message).code("bad-value").at(name.span));
+        return None;
+    };
+    Some(Place { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
 }
 
 fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medium {
@@ -97,9 +116,9 @@ pub(super) fn fog(fog: &Spanned<Fog>, loader: &mut Loader, diagnostics: &mut Dia
     };
     let place = match (corners, density) {
         (None, None) => None,
-        (Some(bounds), None) => Some(Place { bounds, density: None }),
+        (Some(bounds), None) => Some(Place { bounds, placed: None, density: None }),
         (corners, Some((bounds, density))) => {
-            Some(Place { bounds: corners.unwrap_or(bounds), density: Some(Arc::new(density)) })
+            Some(Place { bounds: corners.unwrap_or(bounds), placed: None, density: Some(density) })
         }
     };
     let albedo = written.color.clamp(Vec3::ZERO, Vec3::ONE);

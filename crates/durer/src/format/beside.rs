@@ -1,8 +1,8 @@
 //! What a scene has in memory, as files beside its text: meshes as PLY, measured lamps as IES files,
-//! pictures as they are.
+//! densities as Mitsuba's volumes, pictures as they are.
 
 use super::ply::write_whole;
-use super::{extension, photometry};
+use super::{extension, photometry, vol};
 use crate::describe::{DescribedList, FileName, Value};
 use crate::image;
 use crate::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
@@ -35,6 +35,9 @@ pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<B
     put.fields(&mut made.background);
     for light in made.lights.iter_mut().flatten() {
         put.fields(&mut light.value);
+    }
+    if let Some(name) = made.fog.as_mut().and_then(|fog| fog.value.density.as_mut()) {
+        name.path = put.named(&name.path);
     }
     made.assets = Assets { pictures: put.textures.into_values().collect(), ..Assets::default() };
     (made, put.files)
@@ -126,8 +129,8 @@ impl Put<'_> {
         }
     }
 
-    /// The new name of a measured lamp, or of a picture: that of its file, or of a texture that says
-    /// how it lies.
+    /// The new name of a measured lamp, of densities, or of a picture: that of its file, or of a
+    /// texture that says how it lies.
     fn named(&mut self, name: &str) -> String {
         if let Some((known, _)) = self.textures.get(name) {
             return known.clone();
@@ -135,6 +138,9 @@ impl Put<'_> {
         let scene = self.scene;
         if let Some(profile) = scene.assets.profiles.get(name) {
             return self.once("lamp", name, |put| put.file(name, "ies", photometry::write(profile)));
+        }
+        if let Some((bounds, grid)) = scene.assets.densities.get(name) {
+            return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
         let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
             // `lamp.csv:red` and `picture.png:g` are a column and a channel of a file.

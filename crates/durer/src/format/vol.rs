@@ -10,22 +10,44 @@ use crate::medium::DensityGrid;
 
 const HEADER: usize = 48;
 
-/// Reads a file of at most some bytes.
+/// Reads the densities of a file of at most some bytes.
 pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
-    parse(bytes, memory)
-        .map_err(|(at, message)| {
-            let at = at.min(bytes.len()) as u32;
-            let span = Span { file, start: at, end: at };
-            diagnostics.push(Diagnostic::error(message).code("bad-file").at(span));
-        })
-        .ok()
+    told(parse(bytes, memory), bytes, file, diagnostics)
 }
 
-fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), (usize, String)> {
+/// The mean of a file's values, of one or three channels.
+pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
+    let (_, _, channels, values) = told(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
+    let mut sums = [0.0; 3];
+    values.iter().zip((0..channels).cycle()).for_each(|(value, channel)| sums[channel] += f64::from(*value));
+    let count = (values.len() / channels) as f64;
+    Some(Vec3::from_array(std::array::from_fn(|i| (sums[i.min(channels - 1)] / count) as f32)))
+}
+
+/// What was wrong, and at which byte.
+type Wrong = (usize, String);
+
+fn told<T>(read: Result<T, Wrong>, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<T> {
+    let tell = |(at, message): Wrong| {
+        let at = at.min(bytes.len()) as u32;
+        diagnostics.push(Diagnostic::error(message).code("bad-file").at(Span { file, start: at, end: at }));
+    };
+    read.map_err(tell).ok()
+}
+
+fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), Wrong> {
+    let (bounds, counts, _, values) = values(bytes, &[1], memory)?;
+    let grid = DensityGrid::new(counts, values);
+    grid.map(|grid| (bounds, grid)).ok_or((HEADER, "the densities cannot be used".into()))
+}
+
+/// The box, the counts along its axes, the channels, and the values, of a file that has one of some
+/// numbers of channels.
+fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), Wrong> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
         return Err((0, "this is no volume file of Mitsuba: it should begin with `VOL` and the version 3".into()));
     }
-    let word = |at: usize| -> Result<[u8; 4], (usize, String)> {
+    let word = |at: usize| -> Result<[u8; 4], Wrong> {
         let found = bytes.get(at..at + 4).and_then(|four| four.try_into().ok());
         found.ok_or_else(|| (at, format!("the file ends within its header of {HEADER} bytes")))
     };
@@ -39,15 +61,17 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), (usize, Strin
         let [x, y, z] = counts;
         return Err((8, format!("a grid of {x} x {y} x {z} points has nothing in it")));
     }
-    if whole(20)? != 1 {
-        return Err((20, format!("densities have one channel, not {}", whole(20)?)));
-    }
+    let own = whole(20)?;
+    let Some(&channels) = channels.iter().find(|&&n| own == n as i32) else {
+        let wanted: Vec<String> = channels.iter().map(usize::to_string).collect();
+        return Err((20, format!("volumes here have {} channel, not {own}", wanted.join(" or "))));
+    };
     let min = Vec3::new(real(24)?, real(28)?, real(32)?);
     let max = Vec3::new(real(36)?, real(40)?, real(44)?);
     if !(min.is_finite() && max.is_finite() && min.cmplt(max).all()) {
         return Err((24, "the box of this volume has no size".into()));
     }
-    let wanted = counts.iter().fold(1_u64, |product, &n| product.saturating_mul(n as u64));
+    let wanted = counts.iter().fold(channels as u64, |product, &n| product.saturating_mul(n as u64));
     let there = (bytes.len() - HEADER) as u64 / 4;
     if there < wanted {
         return Err((bytes.len(), format!("the file ends after {there} of {wanted} densities")));
@@ -61,8 +85,18 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), (usize, Strin
     if let Some(bad) = bad {
         return Err((HEADER + 4 * bad, format!("density {} is {}: it must be 0 or more", bad + 1, values[bad])));
     }
-    let grid = DensityGrid::new(counts.map(|n| n as u32), values);
-    grid.map(|grid| (Aabb { min, max }, grid)).ok_or((HEADER, "the densities cannot be used".into()))
+    Ok((Aabb { min, max }, counts.map(|n| n as u32), channels, values))
+}
+
+/// The bytes of a file.
+pub fn write(bounds: &Aabb, grid: &DensityGrid) -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    let [x, y, z] = grid.counts();
+    [1, x, y, z, 1].iter().for_each(|n: &u32| bytes.extend(n.to_le_bytes()));
+    let corners = [bounds.min, bounds.max];
+    let corners = corners.iter().flat_map(|corner| corner.to_array());
+    corners.chain(grid.values().iter().copied()).for_each(|x| bytes.extend(x.to_le_bytes()));
+    bytes
 }
 
 #[cfg(test)]

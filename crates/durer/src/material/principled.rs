@@ -99,6 +99,12 @@ described! {
         /// Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
         transmission_scatter_anisotropy: f32 = 0.0, optional, Rule::Between(-1.0, 1.0),
             ["transmissionScatterAnisotropy" in set::DURER];
+        /// A file of densities (Mitsuba's `.vol`) that multiply what light loses in the body; its box lies in the world.
+        transmission_density: Option<FileName> = None, optional, Rule::Any, ["transmissionDensity" in set::DURER];
+        /// The box that `transmissionDensity` fills in place of the file's, in the world: a corner and the edges from
+        /// there along the grid's x, y and z.
+        transmission_density_box: Vec<[f32; 3]> = Vec::new(), optional, Rule::Rows(4, 4),
+            ["transmissionDensityBox" in set::DURER];
         /// How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0:
         /// not at all. Only `--color spectral` shows it.
         transmission_dispersion_scale: f32 = 0.0, optional, Rule::Share, ["transmissionDispersionScale" in set::DURER];

@@ -1,6 +1,7 @@
 //! Densities on a grid of points, as of smoke or a cloud.
 
 use crate::math::{Aabb, Vec3};
+use crate::source::Digest;
 
 /// How dense a medium is in a box.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,6 +23,24 @@ impl DensityGrid {
         }
         let most = values.iter().copied().fold(0.0, f32::max);
         Some(DensityGrid { counts, values, most })
+    }
+
+    /// Points along x, y and z.
+    pub fn counts(&self) -> [u32; 3] {
+        self.counts
+    }
+
+    /// The values, x running fastest.
+    pub fn values(&self) -> &[f32] {
+        &self.values
+    }
+
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let mut hasher = Digest::hasher();
+        self.counts.iter().for_each(|count| hasher.word(*count));
+        self.values.iter().for_each(|value| hasher.word(value.to_bits()));
+        hasher.finish()
     }
 
     /// The greatest value.

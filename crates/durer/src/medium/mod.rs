@@ -6,7 +6,7 @@ pub mod phase;
 #[cfg(test)]
 mod tests;
 
-use crate::math::{Aabb, Color, Vec3, fp};
+use crate::math::{Aabb, Affine, Color, Ray64, Vec3, fp};
 use crate::spectrum::{Lanes, Spectrum};
 pub use fog::Fog;
 use glam::DVec3;
@@ -31,10 +31,20 @@ pub struct Medium {
 /// Where a medium is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// Nowhere else.
+    /// In this box and nowhere else.
     pub bounds: Aabb,
+    /// How the box lies in the world; `None`: as it is.
+    pub placed: Option<Affine>,
     /// How dense it is there; `None`: the same everywhere.
     pub density: Option<Arc<DensityGrid>>,
+}
+
+impl Place {
+    /// How dense it is at a point of the world.
+    fn density(&self, grid: &DensityGrid, point: Vec3) -> f32 {
+        let own = self.placed.as_ref().map_or(point, |placed| placed.inverse_point(point));
+        grid.at(&self.bounds, own)
+    }
 }
 
 /// What became of light on a straight way.
@@ -77,19 +87,26 @@ impl Medium {
     /// The part of a way that lies in it.
     fn clipped(&self, way: &Way) -> Option<(f32, f32)> {
         let Some(place) = &self.place else { return Some((way.from, way.to)) };
-        let (enter, leave) = place.bounds.clip(way.origin.as_vec3(), way.dir)?;
+        let (origin, dir) = match &place.placed {
+            Some(placed) => {
+                let ray = placed.inverse_ray(Ray64::new(way.origin, way.dir, 0.0, f32::INFINITY));
+                (ray.origin, ray.dir)
+            }
+            None => (way.origin.as_vec3(), way.dir),
+        };
+        let (enter, leave) = place.bounds.clip(origin, dir)?;
         let (from, to) = (way.from.max(enter), way.to.min(leave));
         (from < to).then_some((from, to))
     }
 
-    fn density(&self) -> Option<(&DensityGrid, &Aabb)> {
+    fn grid(&self) -> Option<(&DensityGrid, &Place)> {
         let place = self.place.as_ref()?;
-        Some((place.density.as_deref()?, &place.bounds))
+        Some((place.density.as_deref()?, place))
     }
 
     /// How much light is scattered at a point, per unit of the world.
     pub fn scattering(&self, point: DVec3, lanes: &Lanes) -> Spectrum {
-        let density = self.density().map_or(1.0, |(grid, bounds)| grid.at(bounds, point.as_vec3()));
+        let density = self.grid().map_or(1.0, |(grid, place)| place.density(grid, point.as_vec3()));
         lanes.coefficient(self.extinction) * lanes.reflectance(self.albedo) * density
     }
 
@@ -99,13 +116,13 @@ impl Medium {
     pub fn transmittance(&self, way: &Way, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Spectrum {
         let Some((from, to)) = self.clipped(way) else { return Spectrum::ONE };
         let extinction = lanes.coefficient(self.extinction);
-        let Some((grid, bounds)) = self.density() else { return absorbed(extinction, to - from) };
+        let Some((grid, place)) = self.grid() else { return absorbed(extinction, to - from) };
         let most = extinction.max_element() * grid.most();
         let (mut at, mut left) = (from, Spectrum::ONE);
         for _ in 0..MAX_STEPS {
             let Some(next) = collision(at, to, most, numbers) else { break };
             at = next;
-            left *= Spectrum::ONE - extinction * (grid.at(bounds, way.point(at)) / most);
+            left *= Spectrum::ONE - extinction * (place.density(grid, way.point(at)) / most);
             // What hardly counts ends at random, and the rest makes up for it.
             if left.max_element() < 0.1 {
                 if numbers() < 0.5 {
@@ -122,12 +139,12 @@ impl Medium {
     pub fn flight(&self, way: &Way, weights: Spectrum, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Flight {
         let Some((from, to)) = self.clipped(way) else { return Flight::Passed(Spectrum::ONE) };
         let extinction = lanes.coefficient(self.extinction);
-        if !self.scatters() && self.density().is_none() {
+        if !self.scatters() && self.grid().is_none() {
             return Flight::Passed(absorbed(extinction, to - from));
         }
         let albedo = lanes.reflectance(self.albedo);
-        match self.density() {
-            Some((grid, bounds)) => {
+        match self.grid() {
+            Some((grid, place)) => {
                 // Null collisions fill it up to its greatest density, and lanes are weighed as they
                 // count by then.
                 // Sources: Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition
@@ -137,7 +154,7 @@ impl Medium {
                 for _ in 0..MAX_STEPS {
                     let Some(next) = collision(at, to, most, numbers) else { break };
                     at = next;
-                    let here = extinction * (grid.at(bounds, way.point(at)) / most);
+                    let here = extinction * (place.density(grid, way.point(at)) / most);
                     let real = (shares(weights * left) * here).element_sum();
                     if numbers() < real {
                         return Flight::Scattered(at, left * albedo * here / real);

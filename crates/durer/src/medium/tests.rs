@@ -1,6 +1,7 @@
 use super::*;
 use crate::math::Vec2;
 use crate::math::random::Random;
+use glam::{DAffine3, DMat3};
 use std::f32::consts::TAU;
 
 fn medium(albedo: Color, extinction: Color) -> Medium {
@@ -40,8 +41,19 @@ fn a_grid_lets_through_what_its_integral_says() {
     // Two cells, 1 and 3: linear between their middles, so that the mean along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
-    let place = Place { bounds, density: Some(Arc::new(grid)) };
-    let smoke = Medium { place: Some(place), ..medium(Color::splat(0.5), Color::new(0.2, 0.4, 0.1)) };
+    let place = Place { bounds, placed: None, density: Some(Arc::new(grid)) };
+    // The same box from its other side, which lies as the unit cube's axes -x, z and y say.
+    let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
+    let placed = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
+    let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+    for place in [place.clone(), Place { bounds: unit, placed, ..place }] {
+        lets_through(&Medium { place: Some(place), ..medium(Color::splat(0.5), Color::new(0.2, 0.4, 0.1)) });
+    }
+    assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
+}
+
+/// Looks at what gets through a box with a mean of 2 on a way of length 2.
+fn lets_through(smoke: &Medium) {
     let mut random = Random(9);
     let (mut ratio, mut passed) = (Spectrum::ZERO, Spectrum::ZERO);
     let n = 100_000;
@@ -58,7 +70,6 @@ fn a_grid_lets_through_what_its_integral_says() {
     // Beside the box there is nothing.
     let beside = Way { origin: DVec3::new(0.0, 5.0, 0.0), ..way(10.0) };
     assert_eq!(smoke.transmittance(&beside, &Lanes::Rgb, &mut || 0.5), Spectrum::ONE);
-    assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
 }
 
 #[test]

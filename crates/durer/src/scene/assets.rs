@@ -1,9 +1,11 @@
-//! What a scene brings along instead of naming files: meshes, pictures and measured lamps in
-//! memory.
+//! What a scene brings along instead of naming files: meshes, pictures, measured lamps and densities
+//! in memory.
 
 use crate::describe::{FileName, Rule};
 use crate::dialect::set;
 use crate::light::Profile;
+use crate::math::Aabb;
+use crate::medium::DensityGrid;
 use crate::shape::MeshData;
 use crate::source::Digest;
 use crate::texture::{Channel, Mapping, Wrap};
@@ -13,7 +15,7 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes, pictures and measured lamps by name. A [`FileName`] of the scene means the
+/// Meshes, pictures, measured lamps and densities by name. A [`FileName`] of the scene means the
 /// asset of that name, if there is one, and else a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
@@ -23,6 +25,8 @@ pub struct Assets {
     pub pictures: BTreeMap<String, Picture>,
     /// Measured lamps.
     pub profiles: BTreeMap<String, Arc<Profile>>,
+    /// Densities, and the boxes that they fill.
+    pub densities: BTreeMap<String, (Aabb, Arc<DensityGrid>)>,
 }
 
 /// A picture that a material names.
@@ -143,13 +147,15 @@ impl PictureBytes {
 impl Assets {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.meshes.is_empty() && self.pictures.is_empty() && self.profiles.is_empty()
+        let Assets { meshes, pictures, profiles, densities } = self;
+        meshes.is_empty() && pictures.is_empty() && profiles.is_empty() && densities.is_empty()
     }
 
     /// Whether some are in no files, so that a text cannot name them.
     pub fn has_loose(&self) -> bool {
         let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
-        !self.meshes.is_empty() || !self.profiles.is_empty() || self.pictures.values().any(loose)
+        let Assets { meshes, pictures, profiles, densities } = self;
+        !(meshes.is_empty() && profiles.is_empty() && densities.is_empty()) || pictures.values().any(loose)
     }
 
     /// The pictures that are in files, which a scene's text can name.
@@ -161,7 +167,7 @@ impl Assets {
 /// Assets are told by their hashes: a description with megabytes of numbers would be of no use.
 impl Serialize for Assets {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let count = self.meshes.len() + self.pictures.len() + self.profiles.len();
+        let count = self.meshes.len() + self.pictures.len() + self.profiles.len() + self.densities.len();
         let mut map = serializer.serialize_map(Some(count))?;
         for (name, mesh) in &self.meshes {
             map.serialize_entry(name, &mesh.digest())?;
@@ -175,6 +181,9 @@ impl Serialize for Assets {
         }
         for (name, profile) in &self.profiles {
             map.serialize_entry(name, &profile.digest())?;
+        }
+        for (name, (bounds, densities)) in &self.densities {
+            map.serialize_entry(name, &(bounds.min, bounds.max, densities.digest()))?;
         }
         map.end()
     }

@@ -71,6 +71,8 @@ pub(super) struct Loader<'a> {
     open: Vec<String>,
     files: usize,
     elements: usize,
+    /// Whether the file is older than Mitsuba 2.
+    pub(super) is_old: bool,
 }
 
 /// An error was told, and there is no going on.
@@ -107,6 +109,7 @@ impl<'a> Loader<'a> {
             open: Vec::new(),
             files: 0,
             elements: 0,
+            is_old: false,
         }
     }
 
@@ -129,7 +132,10 @@ impl<'a> Loader<'a> {
         let mut xml = Xml::new(bytes, file).map_err(broken)?;
         while let Piece::Open(tag) = xml.next().map_err(broken)? {
             match tag.name {
-                "scene" => self.children(&mut xml, scene)?,
+                "scene" => {
+                    self.is_old |= tag.get("version").is_some_and(|version| version.value.starts_with("0."));
+                    self.children(&mut xml, scene)?;
+                }
                 _ => self.child(&mut xml, &tag, scene)?,
             }
         }
@@ -482,6 +488,10 @@ impl<'a> Loader<'a> {
     /// Complains of an element.
     pub fn bad(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.said.bad_with(at, message, help);
+    }
+
+    pub fn warn(&self, at: Span, message: &str) {
+        self.said.once(at, message);
     }
 
     /// The next element of a transform, and after it the end of that element.

@@ -308,7 +308,7 @@ impl Reader<'_> {
         inside: Option<(Medium, Key)>,
         at: Span,
     ) -> Option<u32> {
-        let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.map(|inside| inside.1)];
+        let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.as_ref().map(|inside| inside.1)];
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }

@@ -11,6 +11,7 @@ mod light;
 mod load;
 mod made;
 mod material;
+mod medium;
 mod metals;
 mod plugin;
 mod principled;

@@ -131,39 +131,6 @@ impl Reader<'_> {
         self.medium(&medium)
     }
 
-    /// A medium that is the same everywhere.
-    pub fn medium(&mut self, plugin: &Rc<Plugin>) -> Option<(Medium, Key)> {
-        let said = self.said;
-        if plugin.kind != "homogeneous" {
-            let what = format!("the medium `{}` has no counterpart: light goes through it freely", plugin.kind);
-            said.once(plugin.at, what);
-            return None;
-        }
-        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
-        let color = |name, usual| self.color(plugin, name, usual).max(Vec3::ZERO);
-        let (absorption, scattering) = match plugin.get("sigma_s").is_some() || plugin.get("sigma_a").is_some() {
-            // Of Mitsuba 0.6.
-            true => (color("sigma_a", Vec3::ZERO), color("sigma_s", Vec3::ZERO)),
-            false => {
-                let extinction = color("sigma_t", Vec3::ONE);
-                let albedo = color("albedo", Vec3::splat(0.75)).min(Vec3::ONE);
-                (extinction * (Vec3::ONE - albedo), extinction * albedo)
-            }
-        };
-        let mut anisotropy = 0.0;
-        for (_, phase) in self.parts(plugin, Some("phase")) {
-            match phase.kind.as_str() {
-                "isotropic" => {}
-                "hg" => anisotropy = phase.number(said, "g").unwrap_or(0.8).clamp(-0.99, 0.99),
-                other => said
-                    .once(phase.at, format!("the phase function `{other}` has no counterpart: light goes evenly on")),
-            }
-        }
-        plugin.known(&["sample_emitters", "has_spectral_extinction"]);
-        plugin.finish(said);
-        Some((Medium { absorption: scale * absorption, scattering: scale * scattering, anisotropy }, plugin.key()))
-    }
-
     /// Whether a picture lies on a shape.
     fn is_pictured(&self, plugin: &Plugin) -> bool {
         self.has_texture(plugin, &["bitmap", "checkerboard"])

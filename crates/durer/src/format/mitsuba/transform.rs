@@ -3,6 +3,7 @@
 use super::load::{Broken, Loader, numbers};
 use crate::format::said::meant;
 use crate::format::xml::{Tag, Xml};
+use crate::math::fp;
 use crate::scene::MatrixOp;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 
@@ -25,6 +26,18 @@ impl Loader<'_> {
     }
 }
 
+/// What Rodrigues's formula makes of an axis of any length.
+fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
+    let (sin, cos) = fp::sin_cos_degrees(degrees);
+    let across = DMat3::from_cols(
+        DVec3::new(0.0, axis.z, -axis.y),
+        DVec3::new(-axis.z, 0.0, axis.x),
+        DVec3::new(axis.y, -axis.x, 0.0),
+    );
+    let along = DMat3::from_cols(axis * axis.x, axis * axis.y, axis * axis.z);
+    DMat3::from_diagonal(DVec3::splat(cos)) + across * sin + along * (1.0 - cos)
+}
+
 fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
     match tag.name {
         "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
@@ -43,7 +56,12 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
                 loader.bad(tag.at, "a rotation needs an axis, `x=\"1\"` say", None);
                 return None;
             }
-            Some(MatrixOp::Rotate(axis.normalize().as_vec3(), angle as f32).matrix())
+            let turned = MatrixOp::Rotate(axis.normalize().as_vec3(), angle as f32).matrix();
+            if loader.is_old || (axis.length() - 1.0).abs() < 1e-4 {
+                return Some(turned);
+            }
+            loader.warn(tag.at, "the axis of this rotation is not of length 1: things are stretched, as in Mitsuba 3");
+            Some(DAffine3::from_mat3(stretched(axis, angle)))
         }
         "matrix" => {
             let given = loader.attribute(tag, "value")?;
@@ -82,5 +100,31 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             loader.bad(tag.at, format!("a transform has no `<{other}>`"), meant(other, KNOWN));
             None
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn axes_of_any_length_stretch_as_in_mitsuba_3() {
+        // As Mitsuba 3.9 gives `rotate([1, 2, .5], 40)`, by columns.
+        let theirs = [
+            1.0,
+            0.789_304_9,
+            -1.168_597_3,
+            0.146_517_34,
+            1.701_866_6,
+            0.876_743_14,
+            1.402_553,
+            -0.408_832,
+            0.824_533_36,
+        ];
+        let ours = stretched(DVec3::new(1.0, 2.0, 0.5), 40.0).to_cols_array();
+        assert!(ours.iter().zip(theirs).all(|(a, b)| (a - b).abs() < 1e-6), "{ours:?}");
+        let unit = stretched(DVec3::new(0.6, 0.0, 0.8), 70.0);
+        let turned = DMat3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 70.0_f64.to_radians());
+        assert!((unit - turned).to_cols_array().iter().all(|x| x.abs() < 1e-12));
     }
 }

@@ -3,17 +3,21 @@
 //! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition,
 //! chapter 11. Coefficients are per unit of the world.
 
-use super::made::{Made, Medium};
+use super::language::Language;
+use super::made::{Density, Made, Medium};
 use super::params::{Param, Params};
 use super::state::Reader;
+use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::said::{Said, meant};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
-use crate::medium::Fog;
+use crate::math::{Aabb, Color, Vec3, fp};
+use crate::medium::{DensityGrid, Fog};
 use crate::scene::Spanned;
+use glam::{DAffine3, DQuat, DVec3};
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// What is scattered, as if evenly, and absorbed in a millimetre, for red, green and blue.
 ///
@@ -38,13 +42,18 @@ impl Medium {
     /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
     /// which a parameter has.
     pub(super) fn of(params: &Params, preset: &'static str) -> Medium {
+        Medium::with(params, preset, [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]])
+    }
+
+    /// The same where nothing that is written means some absorption and scattering.
+    fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
         let scale = params.float("scale").unwrap_or(1.0).max(0.0);
         if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
             match MEASURED.iter().find(|row| row.0 == name) {
                 Some((_, scattering, absorption)) => {
                     params.known(&["sigma_a", "sigma_s", "g"]);
                     let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
-                    return Medium { absorption, scattering, anisotropy: 0.0 };
+                    return Medium { absorption, scattering, anisotropy: 0.0, density: None };
                 }
                 None => {
                     let message = format!("the medium `{name}` is not known here: its coefficients count");
@@ -58,9 +67,10 @@ impl Medium {
         };
         params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
         Medium {
-            absorption: coefficient("sigma_a", [0.0011, 0.0024, 0.014]),
-            scattering: coefficient("sigma_s", [2.55, 3.21, 3.77]),
+            absorption: coefficient("sigma_a", usual_a),
+            scattering: coefficient("sigma_s", usual_s),
             anisotropy: params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99),
+            density: None,
         }
     }
 
@@ -79,6 +89,12 @@ impl Medium {
         m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
         m.transmission_scatter = depth * self.scattering;
         m.transmission_scatter_anisotropy = self.anisotropy;
+        if let Some(Density { name, placed }) = &self.density {
+            m.transmission_density = Some(name.clone());
+            let DAffine3 { matrix3: edges, translation } = placed.unwrap_or_default();
+            let rows = [translation, edges.x_axis, edges.y_axis, edges.z_axis];
+            m.transmission_density_box = placed.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
+        }
     }
 
     /// The same around a camera; `None` for what is clear.
@@ -86,6 +102,10 @@ impl Medium {
         let extinction = self.extinction();
         let most = extinction.max_element();
         if most <= 0.0 {
+            return None;
+        }
+        if self.density.is_some() {
+            said.once(at, "what is around the camera is the same everywhere here, and this is not: it is left out");
             return None;
         }
         if extinction.min_element() < 0.99 * most {
@@ -106,8 +126,11 @@ impl Reader<'_> {
                 params.finish(&format!("the medium `{name}`"));
                 Some(medium)
             }
-            "uniformgrid" | "rgbgrid" | "cloud" | "nanovdb" | "heterogeneous" => {
-                let what = "media that are not the same everywhere have no counterpart: light goes through them as if they were not there";
+            "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
+            "rgbgrid" | "cloud" | "nanovdb" => {
+                let what = format!(
+                    "media of type `{kind}` have no counterpart: light goes through them as if they were not there"
+                );
                 self.said.once(at, what);
                 None
             }
@@ -119,6 +142,53 @@ impl Reader<'_> {
         if self.media.insert(name.clone(), medium).is_some() {
             self.said.bad(at, format!("there is a medium `{name}` already"));
         }
+    }
+
+    /// A medium that is as dense as a grid says, whose values lie in the middles of cells.
+    fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
+        let usual = match params.language {
+            Language::Third => [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]],
+            Language::Fourth => [[1.0; 3]; 2],
+        };
+        let medium = Medium::with(params, "preset", usual);
+        params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium does not shine");
+        let counts = ["nx", "ny", "nz"].map(|name| params.whole(name).unwrap_or(1));
+        let corner = |name, usual| params.triple(name).unwrap_or(usual).as_dvec3();
+        let (low, high) = (corner("p0", Vec3::ZERO), corner("p1", Vec3::ONE));
+        let densities = params.floats("density").map(<[f64]>::to_vec);
+        params.finish(&format!("the medium `{name}`"));
+        let Some(densities) = densities else {
+            self.said.bad(params.at, "this medium needs a `density`");
+            return None;
+        };
+        let place = params.place("density");
+        let wanted = counts.iter().try_fold(1_i64, |product, &n| product.checked_mul(n.max(0)));
+        if wanted != Some(densities.len() as i64) {
+            let [x, y, z] = counts;
+            let given = densities.len();
+            self.said
+                .bad(place, format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {given}"));
+            return None;
+        }
+        if let Some(bad) = densities.iter().position(|density| *density < 0.0) {
+            self.said.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
+            return None;
+        }
+        // Beyond the outermost values there is nothing: a shell of zeros says so.
+        let [nx, ny, nz] = counts.map(|n| n as usize);
+        let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
+        for (i, row) in densities.chunks_exact(nx).enumerate() {
+            let start = ((i / ny + 1) * (ny + 2) + i % ny + 1) * (nx + 2) + 1;
+            values[start..start + nx].iter_mut().zip(row).for_each(|(value, density)| *value = *density as f32);
+        }
+        let grid = DensityGrid::new(counts.map(|n| n as u32 + 2), values)?;
+        let path = format!("{}#densities-{}.vol", self.input.name, self.scene.assets.densities.len());
+        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+        self.scene.assets.densities.insert(path.clone(), (bounds, Arc::new(grid)));
+        let cell = (high - low) / DVec3::from_array(counts.map(|n| n as f64));
+        let map = DAffine3::from_scale_rotation_translation(high - low + 2.0 * cell, DQuat::IDENTITY, low - cell);
+        let placed = Some(self.state.transforms.maps[0] * map);
+        Some(Medium { density: Some(Density { name: FileName { path, span: place }, placed }), ..medium })
     }
 
     /// What is inside and outside of shapes: it must have been made.
@@ -135,7 +205,7 @@ impl Reader<'_> {
     pub fn filled(&mut self) -> usize {
         let plain = self.state.material;
         let Some(name) = self.state.inside.clone() else { return plain };
-        let Some(Some(medium)) = self.media.get(&name).copied() else { return plain };
+        let Some(Some(medium)) = self.media.get(&name).cloned() else { return plain };
         if let Some(known) = self.filled.get(&(plain, name.clone())) {
             return *known;
         }
@@ -162,7 +232,7 @@ impl Reader<'_> {
 
     /// What the camera is in, as fog.
     pub fn fog(&mut self, at: Span) {
-        let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).copied() else {
+        let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).cloned() else {
             return;
         };
         if let Some(fog) = medium.fog(at, self.said) {

@@ -198,6 +198,65 @@ fn what_is_inside_is_extinction_times_albedo() {
     assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{told:?}");
 }
 
+#[test]
+fn volumes_are_densities_where_their_transform_puts_them() {
+    use crate::format::beside::put_beside;
+    use crate::source::Source;
+    // Two cells along x, 0.5 and 4, of a box from 0 to (2, 1, 1).
+    let mut volume = b"VOL\x03".to_vec();
+    [1_i32, 2, 1, 1, 1].iter().for_each(|n| volume.extend(n.to_le_bytes()));
+    [0.0_f32, 0.0, 0.0, 2.0, 1.0, 1.0, 0.5, 4.0].iter().for_each(|x| volume.extend(x.to_le_bytes()));
+    let medium = |more: &str, albedo: &str| {
+        format!(
+            "<shape type='cube'><bsdf type='null'/><medium type='heterogeneous' name='interior'>\
+             <volume name='sigma_t' type='gridvolume'><string name='filename' value='smoke.vol'/>{more}\
+             <transform name='to_world'><scale value='2'/><translate x='5'/></transform></volume>{albedo}\
+             <float name='scale' value='3'/></medium></shape>"
+        )
+    };
+    let even = "<volume name='albedo' type='constvolume'><rgb name='value' value='.9,.6,.3'/></volume>";
+    let files: &[(&str, &[u8])] = &[("smoke.vol", &volume)];
+    for (more, edge) in [("", [2.0, 0.0, 0.0]), ("<boolean name='use_grid_bbox' value='true'/>", [4.0, 0.0, 0.0])] {
+        let scene = clean_in(files, &medium(more, even));
+        let Material::Principled(m) = material(&scene) else { panic!() };
+        assert_eq!(m.transmission_density.as_ref().unwrap().path, "smoke.vol");
+        assert_eq!(m.transmission_density_box, [[5.0, 0.0, 0.0], edge, [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
+        let scattered = m.transmission_scatter / m.transmission_depth;
+        assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
+        // Beside the scene's text it is the same file.
+        let (made, beside) = put_beside(&scene, "kept", &Source::folder(&std::env::temp_dir()));
+        let Material::Principled(m) = material(&made) else { panic!() };
+        assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
+        assert_eq!(beside, [("kept/smoke.vol".to_string(), volume.clone())]);
+    }
+    // Of an albedo by a volume the mean is taken; what is no volume is refused.
+    let told = |files: &[(&str, &[u8])], albedo: &str| {
+        let folder = folder(files);
+        read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{}</scene>", medium("", albedo)))
+    };
+    let by_volume = "<volume name='albedo' type='gridvolume'><string name='filename' value='albedo.vol'/></volume>";
+    let mut albedo = volume.clone();
+    albedo[52..56].copy_from_slice(&0.25_f32.to_le_bytes());
+    let (scene, said) = told(&[files[0], ("albedo.vol", &albedo)], by_volume);
+    let Material::Principled(m) = material(scene.as_ref().unwrap()).clone() else { panic!() };
+    assert!((m.transmission_scatter / m.transmission_depth - Vec3::splat(3.0 * 0.375)).abs().max_element() < 1e-5);
+    assert!(said.iter().all(|said| said.contains("its mean is taken")), "{said:?}");
+    let (_, said) = told(&[("smoke.vol", &volume[..55])], even);
+    assert!(said.iter().any(|said| said.contains("the file ends after 1 of 2 densities")), "{said:?}");
+    let (_, said) = told(&[], even);
+    assert!(said.iter().any(|said| said.contains("smoke.vol")), "{said:?}");
+}
+
+#[test]
+fn axes_that_are_not_of_length_1_are_told() {
+    let told = |version: &str, axis: &str| {
+        let rotate = format!("<transform name='to_world'><rotate {axis} angle='40'/></transform>");
+        read(&format!("<scene version='{version}'><shape type='sphere'>{rotate}</shape></scene>")).1
+    };
+    assert!(told("3.0.0", "x='1' y='2' z='.5'")[0].contains("not of length 1"));
+    assert!(told("0.6.0", "x='1' y='2' z='.5'").is_empty() && told("3.0.0", "x='.6' y='.8'").is_empty());
+}
+
 /// A scene of a folder's files, of which nothing is to be said.
 fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);

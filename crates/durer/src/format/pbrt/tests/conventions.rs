@@ -435,6 +435,43 @@ fn a_body_of_several_meshes_is_one_piece_of_glass() {
 }
 
 #[test]
+fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
+    // Two cells along y of a box from (0, 0, 0) to (2, 4, 2), whose y is the world's z.
+    let text = |third: bool| {
+        let kind = if third { "heterogeneous" } else { "uniformgrid" };
+        format!(
+            "Camera \"perspective\" WorldBegin AttributeBegin Rotate 90 1 0 0 Scale 2 4 2\n\
+             MakeNamedMedium \"smoke\" \"string type\" \"{kind}\" \"integer ny\" 2 \"float density\" [ 1 3 ] \
+             \"rgb sigma_a\" [ 0 0 0 ] \"rgb sigma_s\" [ 0.5 0.25 1 ] AttributeEnd\n\
+             MediumInterface \"smoke\" \"\" Material \"{}\" Shape \"sphere\" \"float radius\" 9",
+            if third { "none" } else { "interface" }
+        )
+    };
+    for third in [false, true] {
+        let world = world("smoke.pbrt", &text(third));
+        let medium = world.medium(Some(0)).unwrap();
+        let at = |x, y, z| medium.scattering(glam::DVec3::new(x, y, z), &crate::spectrum::Lanes::Rgb).truncate();
+        let sigma = Vec3::new(0.5, 0.25, 1.0);
+        // In the middles of cells, halfway, at the end, and behind it, where bodies end.
+        for (y, density) in [(1.0, 1.0), (3.0, 3.0), (2.0, 2.0), (4.0, 1.5), (0.0, 0.5), (5.0, 0.0), (7.0, 0.0)] {
+            close(at(1.0, -1.0, y), density * sigma);
+        }
+        close(at(2.0, -1.0, 3.0), 1.5 * sigma);
+    }
+    for (grid, expected) in [
+        ("", "error this medium needs a `density`"),
+        ("\"float density\" [ 1 2 ]", "error `density` needs 1 x 1 x 1 numbers, by `nx`, `ny` and `nz`: found 2"),
+        ("\"float density\" [ -1 ]", "error density 1 is -1: it must be 0 or more"),
+        ("\"integer nx\" -1 \"float density\" [ ]", "error `density` needs -1 x 1 x 1 numbers"),
+    ] {
+        let (_, told) = read(&format!(
+            "Camera \"perspective\" WorldBegin MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" {grid} Shape \"sphere\""
+        ));
+        assert!(told.iter().any(|told| told.starts_with(expected)), "{told:?}");
+    }
+}
+
+#[test]
 fn media_fill_shapes_and_surround_the_camera() {
     let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
                  \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";

@@ -73,7 +73,7 @@ fn the_first_word_that_one_language_alone_has_decides() {
         &format!("{camera} Shape \"cone\""),
         &format!("{camera} LightSource \"distant\" \"rgb scale\" [ 1 1 1 ]"),
         &format!("{camera} AreaLightSource \"diffuse\" \"integer nsamples\" 4"),
-        &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\""),
+        &format!("{camera} MakeNamedMedium \"a\" \"string type\" \"heterogeneous\" \"float density\" 1"),
         // What comes first counts.
         &format!("{camera} Material \"matte\" ColorSpace \"srgb\""),
     ] {
