@@ -43,15 +43,21 @@ fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagno
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
     let place = Place { bounds, placed: None, density: Some(grid) };
-    if m.transmission_density_box.is_empty() {
+    let rows = m.transmission_density_box.len();
+    if rows == 0 {
         return Some(place);
+    }
+    let mut refuse = |message: &str| {
+        diagnostics.push(Diagnostic::error(message).code("bad-value").at(name.span));
+        None
+    };
+    if rows != 4 {
+        return refuse("`transmissionDensityBox` needs four rows: a corner and three edges");
     }
     let row = |i: usize| m.transmission_density_box.get(i).map_or(DVec3::ZERO, |row| Vec3::from_array(*row).as_dvec3());
     let map = DAffine3::from_mat3_translation(DMat3::from_cols(row(1), row(2), row(3)), row(0));
     let Some(placed) = Affine::new(map) else {
-        let message = "the edges of `transmissionDensityBox` bound no body";
-        diagnostics.push(Diagnostic::error(message).code("bad-value").at(name.span));
-        return None;
+        return refuse("the edges of `transmissionDensityBox` bound no body");
     };
     Some(Place { bounds: Aabb { min: Vec3::ZERO, max: Vec3::ONE }, placed: Some(placed), ..place })
 }

@@ -10,6 +10,7 @@ pub mod course;
 pub mod curve;
 mod gltf;
 pub mod json;
+mod lamps;
 mod mitsuba;
 mod model;
 mod number;

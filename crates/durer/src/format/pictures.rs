@@ -33,7 +33,8 @@ impl Pictures<'_> {
         self.decoded(name, at, image::decode_srgb)
     }
 
-    fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
+    /// The same with the curve that its bytes have.
+    pub fn decoded(&self, name: &str, at: Span, decode: fn(u8) -> f32) -> Option<Image> {
         let bytes = self.bytes(name, at)?;
         self.read(name, &bytes, decode).map_err(|error| self.complain(name, at, &error)).ok()
     }

@@ -103,7 +103,7 @@ described! {
         transmission_density: Option<FileName> = None, optional, Rule::Any, ["transmissionDensity" in set::DURER];
         /// The box that `transmissionDensity` fills in place of the file's, in the world: a corner and the edges from
         /// there along the grid's x, y and z.
-        transmission_density_box: Vec<[f32; 3]> = Vec::new(), optional, Rule::Rows(4, 4),
+        transmission_density_box: Vec<[f32; 3]> = Vec::new(), optional, Rule::Rows(0, 4),
             ["transmissionDensityBox" in set::DURER];
         /// How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0:
         /// not at all. Only `--color spectral` shows it.

@@ -139,7 +139,7 @@ impl Reader<'_> {
     }
 
     /// Half of what is seen at distance 1, to the side and upwards.
-    fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
+    pub(super) fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
         let said = self.said;
         let aspect = size.x / size.y;
         let tan = |degrees: f64| fp::tan_f64(0.5 * degrees.to_radians());

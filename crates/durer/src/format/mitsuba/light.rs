@@ -8,15 +8,24 @@ use super::state::Reader;
 use super::texture::Texture;
 use crate::describe::FileName;
 use crate::diag::Diagnostic;
+use crate::format::lamps::{Axes, Lamps, steps};
 use crate::format::panorama;
+use crate::format::pbrt::environment::between;
 use crate::format::pictures::unusable;
 use crate::format::said::meant;
+use crate::image::{self, Image};
 use crate::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
 use crate::math::{Color, Vec3, fp};
 use crate::scene::Spanned;
-use glam::DVec3;
+use glam::{DAffine3, DVec2, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
+
+/// Rows of the picture of a clear sky.
+const SKY_ROWS: u32 = 512;
+
+/// Steps of both angles of what throws a picture.
+const STEPS: [u32; 2] = [360, 720];
 
 /// Rows of a picture of all directions that is turned.
 const MAX_ROWS: u32 = 2048;
@@ -45,27 +54,11 @@ impl Reader<'_> {
                 PointLight { position: place("position"), color, attenuation: Some(Vec3::Z), ..PointLight::default() }
                     .into()
             }
-            "spot" => {
-                let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
-                let inner_angle = plugin.number(said, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
-                if inner_angle < angle {
-                    said.once(plugin.at, "a spot fades by the cosine here, and not by the angle, towards its border");
-                }
-                if angle >= 180.0 {
-                    said.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
-                }
-                if plugin.get("texture").is_some() {
-                    said.once(plugin.place("texture"), "a picture in a spot has no counterpart: it shines evenly");
-                }
-                let (color, direction) = (self.strength(plugin, "intensity") / PI, along(DVec3::Z));
-                let position = place("");
-                SpotLight { position, direction, color, angle, inner_angle, fade: Fade::Smooth, ..SpotLight::default() }
-                    .into()
-            }
-            "projector" => {
-                said.once(plugin.at, "a projector has no counterpart: it is left out");
-                return;
-            }
+            "spot" => match self.spot(plugin, to_world) {
+                Some(spot) => spot.into(),
+                None => return,
+            },
+            "projector" => return self.projector(plugin, to_world),
             "directional" => {
                 let direction = plugin.vector(said, "direction");
                 let direction = direction.map_or(along(DVec3::Z), |d| d.normalize_or_zero().as_vec3());
@@ -91,9 +84,10 @@ impl Reader<'_> {
                 plugin.finish(said);
                 return self.far(Infinite::Picture { name, at, scale, to_world });
             }
+            "sky" | "sun" | "sunsky" => return self.daylight(plugin, to_world),
             "area" => return said.bad(plugin.at, "an `area` light stands inside of a shape"),
             other => {
-                let known = ["point", "spot", "directional", "constant", "envmap", "area"];
+                let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
                 let message = format!("the light `{other}` has no counterpart: it is left out");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
                 return said.push(Diagnostic { help: meant(other, known), ..warning });
@@ -104,7 +98,93 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
     }
 
-    fn far(&mut self, light: Infinite) {
+    /// A spot. One that fades, or throws a picture, is a lamp that shines as it does in each
+    /// direction.
+    fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
+        let said = self.said;
+        let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
+        let inner_angle = plugin.number(said, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
+        if angle >= 180.0 {
+            said.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
+            return None;
+        }
+        let intensity = self.strength(plugin, "intensity");
+        let image =
+            plugin.get("texture").and_then(|property| self.part(property)).and_then(|texture| self.thrown(&texture));
+        if image.is_none() && inner_angle == angle {
+            let direction = to_world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z).as_vec3();
+            let position = to_world.translation.as_vec3();
+            let (color, fade) = (intensity / PI, Fade::Smooth);
+            return Some(SpotLight { position, direction, color, angle, inner_angle, fade, ..SpotLight::default() });
+        }
+        plugin.known(&["sampling_weight"]);
+        plugin.finish(said);
+        // It fades evenly by the angle.
+        let fade = |degrees: f32| ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0);
+        let axes = Axes::about_z(&to_world);
+        let lamps = match image {
+            None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| {
+                Vec3::splat(fade(fp::atan2(dir.truncate().length(), dir.z).to_degrees()))
+            }),
+            Some(image) => {
+                // It covers a square as wide as the spot at distance 1.
+                let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
+                Lamps::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+                    let shown = fade(fp::atan2(dir.truncate().length(), dir.z).to_degrees());
+                    if shown > 0.0 && dir.z > 0.0 {
+                        shown * between(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
+                    } else {
+                        Vec3::ZERO
+                    }
+                })
+            }
+        };
+        lamps.add(&mut self.scene, self.input.name, (to_world, axes), intensity, plugin.at);
+        None
+    }
+
+    /// A projector: a lamp that shines in each direction as its picture says on the plane at distance
+    /// 1.
+    fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
+        let said = self.said;
+        let image =
+            plugin.get("irradiance").and_then(|property| self.part(property)).and_then(|texture| self.thrown(&texture));
+        let Some(image) = image else {
+            return said.once(plugin.at, "a projector without a picture is left out");
+        };
+        let size = DVec2::new(f64::from(image.width), f64::from(image.height));
+        let half = self.half_view(plugin, size).as_vec2();
+        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+        plugin.known(&["sampling_weight"]);
+        plugin.finish(said);
+        let axes = Axes::about_z(&to_world);
+        let widest = fp::atan2(half.length(), 1.0).to_degrees();
+        let lamps = Lamps::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+            let place = dir.truncate() / (dir.z * half);
+            if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
+                return Vec3::ZERO;
+            }
+            // As a camera sees it: x goes to the left, y up.
+            between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
+        });
+        lamps.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
+    }
+
+    /// The picture that a light throws.
+    fn thrown(&self, texture: &Plugin) -> Option<Image> {
+        if texture.kind != "bitmap" {
+            self.said.once(texture.at, "only a `bitmap` is thrown here: this light shines evenly");
+            return None;
+        }
+        let name = texture.text(self.said, "filename")?;
+        let raw = texture.truth(self.said, "raw").unwrap_or(false);
+        texture.known(&["filter_type", "wrap_mode"]);
+        texture.finish(self.said);
+        let decode = if raw { image::decode_linear } else { image::decode_srgb };
+        self.pictures().decoded(&self.loader.path(&name), texture.place("filename"), decode)
+    }
+
+    pub(super) fn far(&mut self, light: Infinite) {
         if let Some(first) = &self.infinite {
             let error = Diagnostic::error("a scene has one light that is infinitely far away").code("bad-value");
             return self.said.push(error.at(light.at()).related(first.at(), "the first is here"));
@@ -145,6 +225,19 @@ impl Reader<'_> {
         match self.infinite.take() {
             None => {}
             Some(Infinite::Even(color, _)) => background.color = color,
+            Some(Infinite::Sky { sky, at, scale, to_world }) => {
+                let to_sky = to_world.inverse();
+                let light = |dir: DVec3| {
+                    let dir = to_sky.transform_vector3(dir).normalize_or(DVec3::Y).as_vec3();
+                    // Below the horizon nothing shines.
+                    if dir.y < 0.0 { Vec3::ZERO } else { scale * sky.at(dir) }
+                };
+                let name = format!("{}#sky", self.input.name);
+                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), SKY_ROWS, self.input.memory, light)
+                {
+                    self.said.push(unusable(&name, &error).at(at));
+                }
+            }
             Some(Infinite::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
                 let rows = picture.height.min(MAX_ROWS);

@@ -5,6 +5,7 @@ use crate::diag::Span;
 use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Color, Vec3};
 use crate::scene::Picture;
+use crate::texture::Sky;
 use glam::DAffine3;
 use std::rc::Rc;
 
@@ -57,12 +58,24 @@ pub(super) struct Shine {
 /// What is infinitely far away: Mitsuba has one such light.
 pub(super) enum Infinite {
     Even(Color, Span),
-    Picture { name: String, at: Span, scale: f32, to_world: DAffine3 },
+    Picture {
+        name: String,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
+    /// A clear sky with y upwards, and how it lies in the world.
+    Sky {
+        sky: Sky,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
 }
 
 impl Infinite {
     pub fn at(&self) -> Span {
-        let (Infinite::Even(_, at) | Infinite::Picture { at, .. }) = self;
+        let (Infinite::Even(_, at) | Infinite::Picture { at, .. } | Infinite::Sky { at, .. }) = self;
         *at
     }
 }

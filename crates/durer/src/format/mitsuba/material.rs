@@ -6,6 +6,7 @@
 use super::made::{Made, Shine, matte};
 use super::metals;
 use super::plugin::{Key, Plugin, Value};
+use super::rough::below_rough;
 use super::state::Reader;
 use super::texture::Texture;
 use crate::bsdf::microfacet::Ggx;
@@ -268,12 +269,24 @@ impl Reader<'_> {
                 .map(|(name, usual)| Spectrum::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
             metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
+        // A tint counts at all angles: it is in what is reflected at 82 degrees too, over Schlick's.
+        let over = |tint: Vec3| {
+            const REST: f32 = 6.0 / 7.0;
+            let schlick = f0 * tint + (Vec3::ONE - f0 * tint) * fp::pow(REST, 5.0);
+            f82 * tint / schlick.max(Vec3::splat(1e-6))
+        };
         let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
+        let at = plugin.place("specular_reflectance");
+        if let Some(picture) = picture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path).cloned()) {
+            let made = self.pictures().remade([&picture, &picture], at, |texel, _| over(tint * texel));
+            if let Some((picture, scale)) = made {
+                m.specular_color_texture = Some(asset(&mut self.scene, picture, at));
+                m.specular_color = Vec3::splat(scale);
+            }
+        } else {
+            m.specular_color = over(tint);
+        }
         (m.base_metalness, m.base_color, m.base_color_texture) = (1.0, f0 * tint, picture);
-        // A tint counts at all angles.
-        const REST: f32 = 6.0 / 7.0;
-        let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(REST, 5.0);
-        m.specular_color = f82 * tint / schlick.max(Vec3::splat(1e-6));
         self.roughness(plugin, m);
     }
 
@@ -282,7 +295,14 @@ impl Reader<'_> {
         let index = self.relative_index(plugin, 1.49);
         self.tint(plugin, m);
         self.roughness(plugin, m);
-        if plugin.truth(self.said, "nonlinear").unwrap_or(false) {
+        let nonlinear = plugin.truth(self.said, "nonlinear").unwrap_or(false);
+        if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
+            let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
+            let kept = if nonlinear { m.base_color } else { Vec3::ONE };
+            m.base_color *=
+                kept.map(|kept| below_rough(index, m.specular_roughness, beckmann, nonlinear.then_some(kept)));
+        }
+        if nonlinear {
             // Light that goes to and fro below the skin is a coat's darkening.
             (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
             m.coat_roughness_texture = m.specular_roughness_texture.take();

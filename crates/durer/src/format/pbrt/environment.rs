@@ -114,7 +114,7 @@ impl Source {
 
 /// The value at a place of a picture, in its widths and heights from the upper left corner: linear
 /// between texels, and beyond its border it begins again.
-pub(super) fn between(image: &Image, place: Vec2) -> Color {
+pub(in crate::format) fn between(image: &Image, place: Vec2) -> Color {
     let (width, height) = (image.width as i64, image.height as i64);
     let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
     let (low_x, low_y) = (x.floor(), y.floor());

@@ -7,7 +7,7 @@
 mod camera;
 mod curve;
 mod directives;
-mod environment;
+pub(super) mod environment;
 mod given;
 mod language;
 mod lexer;

@@ -8,16 +8,12 @@ use super::environment::{between, equal_area};
 use super::language::Language;
 use super::params::Params;
 use super::state::Reader;
-use crate::describe::FileName;
+use crate::format::lamps::{Axes, Lamps, steps};
 use crate::format::pictures::{Pictures, unusable};
 use crate::image::{self, Encoded, Image};
-use crate::light::photometric::ProfileKind;
-use crate::light::{PhotometricLight, Profile};
-use crate::math::{Color, LUMINANCE, Vec2, Vec3, fp};
-use crate::scene::Spanned;
-use glam::{DAffine3, DVec3};
+use crate::math::{Color, Vec2, Vec3, fp};
+use glam::DAffine3;
 use std::f32::consts::{PI, TAU};
-use std::sync::Arc;
 
 /// Steps of an angle at most.
 const STEPS: u32 = 720;
@@ -32,85 +28,33 @@ struct Pattern {
     light: Box<dyn Fn(Vec3) -> Color>,
 }
 
-/// How a profile lies in the light's own space: the axis from which its vertical angles are told, the
-/// one where its horizontal angles begin, and the one where they are 90 degrees.
-struct Axes {
-    down: Vec3,
-    front: Vec3,
-    side: Vec3,
-}
-
-impl Axes {
-    /// The direction of two angles in degrees.
-    fn direction(&self, vertical: f32, horizontal: f32) -> Vec3 {
-        let turn = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees));
-        let ((sin, cos), (s, c)) = (turn(vertical), turn(horizontal));
-        let across = self.front * c as f32 + self.side * s as f32;
-        (across * sin as f32 + self.down * cos as f32).normalize_or(self.down)
-    }
-}
-
 impl Reader<'_> {
     /// Adds what shines from the origin; `color` is its intensity where the picture is 1.
     pub fn pictured_light(&mut self, kind: &str, params: &Params, map: DAffine3, (color, power): (Color, Option<f32>)) {
         let third = self.language == Language::Third;
         let fov = if kind == "projection" { Some(self.fov(params, third)) } else { None };
         let Some(image) = self.light_picture(kind, params, third) else { return };
-        // Angles grow from the front towards front x down, which a mirrored light has elsewhere.
-        let mirrored = map.matrix3.determinant() < 0.0;
-        let side = |axis: Vec3| if mirrored { -axis } else { axis };
         let Pattern { axes, angles: [vertical, horizontal], light } = match fov {
             Some(fov) => {
                 let screen = Screen::new(&image, fov);
-                let axes = Axes { down: Vec3::Z, front: Vec3::X, side: side(Vec3::NEG_Y) };
+                let axes = Axes::about_z(&map);
                 let angles = [steps(screen.widest(), PROJECTED[0]), steps(360.0, PROJECTED[1])];
                 Pattern { axes, angles, light: Box::new(move |dir| screen.at(&image, dir)) }
             }
             None => {
-                let axes = Axes { down: Vec3::Y, front: Vec3::X, side: side(Vec3::Z) };
+                let axes = Axes::about_y(&map);
                 let count = |texels: u32| (2 * texels).clamp(90, STEPS);
                 let angles = [steps(180.0, count(image.height)), steps(360.0, count(image.width))];
                 let light = move |dir| if third { of_angles(&image, dir) } else { of_areas(&image, dir) };
                 Pattern { axes, angles, light: Box::new(light) }
             }
         };
-        let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
-        for &across in &horizontal {
-            values.extend(vertical.iter().map(|&down| light(axes.direction(down, across)).max(Color::ZERO)));
-        }
-        let lamp = |part: &dyn Fn(&Color) -> f32| Profile {
-            kind: ProfileKind::C,
-            vertical: vertical.clone(),
-            horizontal: horizontal.clone(),
-            candela: values.iter().map(part).collect(),
-        };
-        let grey = values.iter().all(|value| value.x == value.y && value.y == value.z);
-        let lamps = match grey {
-            true => vec![(Vec3::ONE, lamp(&|value| value.x))],
-            false => vec![
-                (Vec3::X, lamp(&|value| value.x)),
-                (Vec3::Y, lamp(&|value| value.y)),
-                (Vec3::Z, lamp(&|value| value.z)),
-            ],
-        };
+        let lamps = Lamps::new([vertical, horizontal], &axes, light);
         let strength = power.map_or(1.0, |power| {
-            let flux: f64 = lamps.iter().map(|(hue, lamp)| f64::from(hue.dot(LUMINANCE)) * lamp.flux()).sum();
-            if flux > 0.0 { power / flux as f32 } else { 0.0 }
+            let flux = lamps.flux();
+            if flux > 0.0 { power / flux } else { 0.0 }
         });
-        let axis = |local: Vec3| map.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();
-        for (hue, profile) in lamps {
-            let path = format!("{}#lamp-{}.ies", self.input.name, self.scene.assets.profiles.len());
-            self.scene.assets.profiles.insert(path.clone(), Arc::new(profile));
-            let value = PhotometricLight {
-                position: map.translation.as_vec3(),
-                file: FileName { path, span: params.at },
-                direction: axis(axes.down),
-                front: axis(axes.front),
-                color: hue * color * strength,
-                ..PhotometricLight::default()
-            };
-            self.scene.lights.get_or_insert_default().push(Spanned { value: value.into(), span: params.at });
-        }
+        lamps.add(&mut self.scene, self.input.name, (map, axes), color * strength, params.at);
     }
 
     /// The field of view of a projector across the shorter side of its picture, in degrees.
@@ -153,11 +97,6 @@ impl Reader<'_> {
         }
         Some(image)
     }
-}
-
-/// So many equal steps from 0 to the last of some angles, with both.
-fn steps(last: f32, count: u32) -> Vec<f32> {
-    (0..=count).map(|i| last * i as f32 / count as f32).collect()
 }
 
 /// What a projector's picture covers of the plane at distance 1.

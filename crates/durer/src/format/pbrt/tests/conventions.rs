@@ -462,12 +462,12 @@ fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
         ("", "error this medium needs a `density`"),
         ("\"float density\" [ 1 2 ]", "error `density` needs 1 x 1 x 1 numbers, by `nx`, `ny` and `nz`: found 2"),
         ("\"float density\" [ -1 ]", "error density 1 is -1: it must be 0 or more"),
-        ("\"integer nx\" -1 \"float density\" [ ]", "error `density` needs -1 x 1 x 1 numbers"),
+        ("\"integer nx\" -1 \"float density\" [ 1 ]", "error `density` needs -1 x 1 x 1 numbers"),
     ] {
         let (_, told) = read(&format!(
             "Camera \"perspective\" WorldBegin MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" {grid} Shape \"sphere\""
         ));
-        assert!(told.iter().any(|told| told.starts_with(expected)), "{told:?}");
+        assert!(told.iter().any(|told| told.contains(expected)), "{told:?}");
     }
 }
 

@@ -126,7 +126,7 @@ fn what_has_no_counterpart_is_told_once_and_what_is_taken_instead() {
         told,
         [
             "scene.pbrt:1:13 note the integrator `bdpt` has no counterpart: paths from the camera are followed",
-            "scene.pbrt:3:18 warning media that are not the same everywhere have no counterpart: light goes through them as if they were not there",
+            "scene.pbrt:3:18 warning media of type `cloud` have no counterpart: light goes through them as if they were not there",
             "scene.pbrt:4:25 warning `portal` has no counterpart: light is looked for all around",
             "scene.pbrt:4:66 warning the shape `sphere` has no parameter `radiu`: it is left out (did you mean `radius`?)",
             "scene.pbrt:5:11 warning measured materials have no counterpart: matte grey is taken",
