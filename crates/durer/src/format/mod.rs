@@ -8,6 +8,7 @@ pub mod beside;
 mod bodies;
 pub mod course;
 pub mod curve;
+mod disney;
 mod gltf;
 pub mod json;
 mod lamps;

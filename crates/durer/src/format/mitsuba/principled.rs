@@ -2,18 +2,14 @@
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015, as *Mitsuba 3 documentation* has their parameters.
-//!
-//! Disney's matte base is seen as if no boundary took light from it, and gives back more the rougher
-//! it is; its sheen is faint. Ours keep energy, so colour and weight are what has the same mean over
-//! all directions.
 
 use super::plugin::Plugin;
 use super::state::Reader;
-use crate::bsdf::albedo;
 use crate::bsdf::fresnel::ior_of_reflectance;
+use crate::format::disney;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{LUMINANCE, Vec3, fp};
+use crate::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
     /// The layers of `principled` and `principledthin`.
@@ -41,7 +37,7 @@ impl Reader<'_> {
         let metallic = if thin { 0.0 } else { metalness };
         // Of pictures something between.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
-        let given = means(|pair| pair.matte(rough));
+        let given = disney::matte_mean(rough);
         let pictured = base_color_texture.is_some();
         let matte = |color: Vec3| {
             if thin {
@@ -50,14 +46,12 @@ impl Reader<'_> {
             if metalness_texture.is_some() {
                 return color;
             }
-            // Theirs loses what their mirror loses between facets; ours gives it back.
-            let [reflected, all] = albedo::single_means(ior, rough);
-            let lost = if pictured { 0.0 } else { reflected / all - reflected };
-            let same = (given * color - lost).max(Vec3::ZERO) / passing(ior, rough);
+            let lost = if pictured { 0.0 } else { disney::lost(ior, rough) };
+            let same = (given * color - lost).max(Vec3::ZERO) / disney::passing(ior, rough);
             color.lerp(same, 1.0 - metallic)
         };
         let sheen = share("sheen", 0.0);
-        let fuzz_weight = if sheen > 0.0 { sheen * means(Pair::sheen) / fuzz_mean() } else { 0.0 };
+        let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
         // From 0, all on the lit side, to 2, all on the other.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
@@ -85,7 +79,7 @@ impl Reader<'_> {
             coat_darkening: 0.0,
             coat_roughness: (0.1 + share("clearcoat_gloss", 0.0) * (0.001 - 0.1)).sqrt(),
             fuzz_weight,
-            fuzz_roughness: FUZZ_ROUGHNESS,
+            fuzz_roughness: disney::FUZZ_ROUGHNESS,
             fuzz_color: tinted(share("sheen_tint", 0.0)),
             walls: if thin { Walls::Thin } else { Walls::Solid },
             ..PrincipledMaterial::default()
@@ -97,51 +91,6 @@ impl Reader<'_> {
     }
 }
 
-/// How rough fuzz is that is brightest at grazing directions, as Disney's sheen is.
-const FUZZ_ROUGHNESS: f32 = 0.2;
-
-/// Two directions above a surface.
-struct Pair {
-    /// Their cosines to the normal.
-    cosines: [f32; 2],
-    /// The cosine of half the angle between them.
-    half: f32,
-}
-
-fn schlick(cosine: f32) -> f32 {
-    let m = (1.0 - cosine).clamp(0.0, 1.0);
-    m * m * m * m * m
-}
-
-impl Pair {
-    /// Disney's matte base, over Lambert's.
-    fn matte(&self, roughness: f32) -> f32 {
-        let [out, into] = self.cosines.map(schlick);
-        let retro = 2.0 * roughness * self.half * self.half;
-        (1.0 - 0.5 * out) * (1.0 - 0.5 * into) + retro * (out + into + out * into * (retro - 1.0))
-    }
-
-    /// White sheen, over Lambert's white.
-    fn sheen(&self) -> f32 {
-        std::f32::consts::PI * schlick(self.half)
-    }
-}
-
-/// The mean over all pairs of directions by their cosines.
-fn means(value: impl Fn(&Pair) -> f32) -> f32 {
-    const STEPS: usize = 16;
-    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
-    let mut sum = 0.0;
-    // Each cosine counts by itself.
-    for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
-        let cosines @ [a, b] = [step(i), step(j)];
-        let [s, t] = cosines.map(|cosine| (1.0 - cosine * cosine).sqrt());
-        let between = a * b + s * t * fp::sin_cos_turn(0.5 * step(k)).1;
-        sum += 4.0 * a * b * value(&Pair { cosines, half: (0.5 + 0.5 * between).max(0.0).sqrt() });
-    }
-    sum / STEPS.pow(3) as f32
-}
-
 /// The index of a pane that reflects at right angles what one surface of another index does: theirs
 /// has no second one.
 fn one_sided(ior: f32) -> f32 {
@@ -150,29 +99,9 @@ fn one_sided(ior: f32) -> f32 {
     ior_of_reflectance(r0 / (2.0 - r0))
 }
 
-/// What our boundary lets through to a matte base and out again, on the mean.
-pub(super) fn passing(ior: f32, roughness: f32) -> f32 {
-    let [reflected, all] = albedo::single_means(ior, roughness);
-    1.0 - reflected / all
-}
-
-fn fuzz_mean() -> f32 {
-    const STEPS: usize = 64;
-    let at = |i: usize| albedo::fuzz(((i as f32 + 0.5) / STEPS as f32).sqrt(), FUZZ_ROUGHNESS);
-    (0..STEPS).map(at).sum::<f32>() / STEPS as f32
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn the_matte_base_has_its_mean() {
-        // Of (1 - cos)^5 the mean by the cosine is 1/21, and directions are independent.
-        let expected = (1.0_f32 - 0.5 / 21.0) * (1.0 - 0.5 / 21.0);
-        assert!((means(|pair| pair.matte(0.0)) - expected).abs() < 1e-3);
-        assert!(means(|pair| pair.matte(1.0)) > 1.0 && means(Pair::sheen) < 0.05);
-    }
 
     #[test]
     fn a_pane_reflects_what_one_surface_does() {

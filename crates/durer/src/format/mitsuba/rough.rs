@@ -1,9 +1,9 @@
 //! What rough boundaries let through in Mitsuba, which does not give back what goes from facet to
 //! facet.
 
-use super::principled::passing;
 use crate::bsdf::albedo::single_means;
 use crate::bsdf::fresnel;
+use crate::format::disney::passing;
 use crate::math::{Vec3, fp};
 
 /// What a matte base shows through a rough boundary in Mitsuba, over what it does here, on the mean

@@ -8,6 +8,7 @@ use super::super::params::Params;
 use super::super::state::Reader;
 use super::rough::Rough;
 use crate::diag::Span;
+use crate::format::disney;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{Color, LUMINANCE, Vec3, fp};
@@ -59,7 +60,12 @@ impl Reader<'_> {
         }
         let distance = params.spectrum("scatterdistance").map_or(Color::ZERO, |spectrum| spectrum.plain());
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
-        if params.truth("thin") == Some(true) {
+        let thin = params.truth("thin") == Some(true);
+        if !thin && distance == Color::ZERO {
+            let given = disney::matte_mean(roughness) - disney::lost(m.specular_ior, roughness);
+            m.base_color = color * (given / disney::passing(m.specular_ior, roughness));
+        }
+        if thin {
             m.walls = Walls::Thin;
             (m.subsurface_weight, m.subsurface_color) = (1.0, color);
             m.subsurface_color_texture.clone_from(&m.base_color_texture);
