@@ -15,6 +15,7 @@ mod medium;
 mod metals;
 mod plugin;
 mod principled;
+mod serialized;
 mod shape;
 mod solid;
 mod state;

@@ -4,6 +4,7 @@
 
 use super::curve;
 use super::plugin::{Key, Plugin};
+use super::serialized;
 use super::solid;
 use super::state::Reader;
 use crate::diag::{Diagnostic, Span};
@@ -20,7 +21,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 13] = [
     "sphere",
     "disk",
     "rectangle",
@@ -28,6 +29,7 @@ const KNOWN: [&str; 12] = [
     "cylinder",
     "obj",
     "ply",
+    "serialized",
     "shapegroup",
     "instance",
     "merge",
@@ -58,13 +60,8 @@ impl Reader<'_> {
             "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::with_tangents(solid::rectangle()))),
             "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
             "cylinder" => self.cylinder(plugin, map),
-            "obj" | "ply" => self.file(plugin, map),
+            "obj" | "ply" | "serialized" => self.file(plugin, map),
             "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
-            "serialized" => {
-                let help = "open the scene in Mitsuba and write its meshes by `mesh.write_ply(\"a.ply\")`";
-                let error = Diagnostic::error("meshes of `serialized` are not read").code("bad-value").at(at);
-                return said.push(error.help(help));
-            }
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is left out");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
@@ -211,9 +208,23 @@ impl Reader<'_> {
         Some((self.loader.path(&name), plugin.place("filename")))
     }
 
+    /// Which mesh of a file a shape is.
+    fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
+        let number = plugin.number(self.said, "shape_index").unwrap_or(0.0);
+        if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
+            self.said.bad(plugin.place("shape_index"), "`shape_index` must be a whole number from 0 on");
+            return None;
+        }
+        Some(number as u32)
+    }
+
     fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let said = self.said;
         let (path, at) = self.path(plugin)?;
+        let number = match plugin.kind.as_str() {
+            "serialized" => Some(self.shape_index(plugin)?),
+            _ => None,
+        };
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
         // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
@@ -230,9 +241,13 @@ impl Reader<'_> {
             (colored, "#colored"),
             (leaning, "#leaning"),
         ];
-        let key = turns.iter().filter(|turn| turn.0).fold(path.clone(), |key, turn| key + turn.1);
+        let whole = number.map_or(path.clone(), |number| format!("{path}#{number}"));
+        let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
         self.mesh(plugin, &key, map, || {
-            let mut data = written_in_file(input, said, &path, at)?;
+            let mut data = match number {
+                Some(number) => serialized::mesh(input, said, (&path, at), number)?,
+                None => written_in_file(input, said, &path, at)?,
+            };
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }

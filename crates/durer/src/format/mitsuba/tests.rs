@@ -1,6 +1,7 @@
 //! Mitsuba's files: what is read of them, conventions in closed form, and errors with their places.
 
 mod conventions;
+mod shapes;
 
 use crate::format::testing::{folder, read_in};
 use crate::math::random::Random;
@@ -99,7 +100,12 @@ fn what_is_wrong_is_told_at_its_place() {
             "error `a` is given twice",
         ),
         ("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/>", "a'/>", "error the id `a` is given twice"),
-        ("<shape type='serialized'/>", "serialized", "error meshes of `serialized` are not read (open the scene"),
+        ("<shape type='serialized'/>", "serialized", "error the shape `serialized` needs a `filename`"),
+        (
+            "<shape type='serialized'><string name='filename' value='none.serialized'/><integer name='shape_index' value='-1'/></shape>",
+            "-1",
+            "error `shape_index` must be a whole number from 0 on",
+        ),
         (
             "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
             "none.ply",

@@ -10,7 +10,7 @@ use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
 use crate::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
 
-fn layers(bsdf: &str) -> PrincipledMaterial {
+pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
     let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
     (**layers).clone()
@@ -166,7 +166,7 @@ fn pictures_say_numbers_too() {
 }
 
 /// The only mesh of a scene.
-fn mesh(scene: &Scene) -> &crate::shape::MeshData {
+pub(super) fn mesh(scene: &Scene) -> &crate::shape::MeshData {
     scene.assets.meshes.values().next().unwrap()
 }
 
@@ -258,7 +258,7 @@ fn axes_that_are_not_of_length_1_are_told() {
 }
 
 /// A scene of a folder's files, of which nothing is to be said.
-fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
+pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
     let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(told, [""; 0], "{inner}");
