@@ -48,7 +48,8 @@ const AIR: f32 = 1.000277;
 impl Reader<'_> {
     /// The material of a plugin.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
-        if let Some(known) = self.materials.get(&plugin.key()) {
+        let key = (plugin.key(), self.inside_out);
+        if let Some(known) = self.materials.get(&key) {
             return known.clone();
         }
         if self.too_deep(depth, plugin.at) {
@@ -56,7 +57,7 @@ impl Reader<'_> {
         }
         let made = self.made(plugin, depth);
         plugin.finish(self.said);
-        self.materials.insert(plugin.key(), made.clone());
+        self.materials.insert(key, made.clone());
         made
     }
 
@@ -197,7 +198,10 @@ impl Reader<'_> {
     /// The index of a body over that of air. What has the index of another body outside is inside
     /// of that, and rays know what they are in.
     fn index_of_body(&self, plugin: &Plugin, usual: f32) -> f32 {
-        let (inside, outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        let (mut inside, mut outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        if self.inside_out && plugin.kind != "thindielectric" {
+            std::mem::swap(&mut inside, &mut outside);
+        }
         let nested = (outside - AIR).abs() > 1e-3 && self.clear.iter().any(|index| (index - outside).abs() < 1e-3);
         inside / if nested { AIR } else { outside }
     }
@@ -309,6 +313,7 @@ impl Reader<'_> {
         at: Span,
     ) -> Option<u32> {
         let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.as_ref().map(|inside| inside.1)];
+        let key = (key, self.inside_out);
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }

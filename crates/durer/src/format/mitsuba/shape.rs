@@ -11,7 +11,7 @@ use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
-use crate::format::said::meant;
+use crate::format::said::{Said, meant};
 use crate::format::smooth::smoothed;
 use crate::image::Transfer;
 use crate::math::Vec3;
@@ -72,7 +72,8 @@ impl Reader<'_> {
             let inside = self.inside(plugin);
             let shine = self.parts(plugin, Some("emitter")).into_iter().next();
             let mut shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
-            if let Some(shine) = shine.as_mut().filter(|_| plugin.kind == "sphere" && self.is_flipped(plugin)) {
+            self.inside_out = is_inside_out(plugin, said);
+            if let Some(shine) = shine.as_mut().filter(|_| self.inside_out) {
                 (shine.both, shine.key) = (true, plugin.key());
             }
             let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
@@ -158,7 +159,7 @@ impl Reader<'_> {
     fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
-        if self.is_flipped(plugin) && !self.parts(plugin, Some("emitter")).is_empty() {
+        if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
             let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
             self.said.once(plugin.place("flip_normals"), what);
         }
@@ -309,6 +310,12 @@ impl Reader<'_> {
         };
         Some((self.scene.add_mesh(&name, data?, plugin.at), map))
     }
+}
+
+/// Whether a shape is a sphere whose normals point inwards: those of one that is mirrored do too.
+pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
+    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
 }
 
 /// The axes that Mitsuba gives a direction, which is the third.

@@ -1,7 +1,9 @@
 //! Conventions of shapes and of the materials on them, as Mitsuba 3.9.1 has them.
 
 use super::conventions::{clean_in, mesh};
+use super::{clean, objects};
 use crate::format::mitsuba::serialized::tests::{file, stream};
+use crate::scene::{Material, Scene};
 
 #[test]
 fn serialized_meshes_are_what_they_are_as_ply() {
@@ -36,4 +38,40 @@ fn serialized_meshes_are_what_they_are_as_ply() {
     let bytes = file(4, &[stream(4, 0x1000), stream(4, 0x1003)]);
     let first = of("serialized", "a.serialized", &bytes, "");
     assert!(first.uvs.is_empty() && first.triangle_normals.len() == 2);
+}
+
+/// The index of refraction of each object.
+fn indices(scene: &Scene) -> Vec<f32> {
+    let index = |object: &&crate::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
+        Material::Principled(layers) => layers.specular_ior,
+        _ => panic!(),
+    };
+    objects(scene).iter().map(index).collect()
+}
+
+#[test]
+fn spheres_inside_out_have_their_indices_exchanged() {
+    const GLASS: f32 = 1.5046 / 1.000277;
+    let glass = |kind: &str| format!("<bsdf type='{kind}' id='glass'/>");
+    let sphere = |more: &str| format!("<shape type='sphere'>{more}<ref id='glass'/></shape>");
+    let flip = "<boolean name='flip_normals' value='true'/>";
+    let mirror = "<transform name='to_world'><scale value='-.5'/></transform>";
+    let check = |text: String, wanted: &[f32]| {
+        let found = indices(&clean(&text));
+        assert!(found.len() == wanted.len(), "{text}");
+        assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{text}: {found:?} and not {wanted:?}");
+    };
+    // A bubble in water that is everywhere, and the same twice turned over.
+    for kind in ["dielectric", "roughdielectric"] {
+        let ggx = if kind == "dielectric" { "" } else { "<string name='distribution' value='ggx'/>" };
+        let glass = format!("<bsdf type='{kind}' id='glass'>{ggx}</bsdf>");
+        check(glass.clone() + &sphere(flip), &[1.0 / GLASS]);
+        check(glass.clone() + &sphere(mirror), &[1.0 / GLASS]);
+        check(glass + &sphere(&(flip.to_string() + mirror)), &[GLASS]);
+    }
+    // Both faces of a thin one are alike.
+    check(glass("thindielectric") + &sphere(flip), &[GLASS]);
+    // A hollow ball of one material: inside of its glass is air.
+    let radius = "<float name='radius' value='.9'/>";
+    check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0]);
 }
