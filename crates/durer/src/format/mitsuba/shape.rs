@@ -7,6 +7,7 @@ use super::plugin::{Key, Plugin};
 use super::serialized;
 use super::solid;
 use super::state::Reader;
+use super::transform::frame;
 use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
@@ -316,18 +317,4 @@ impl Reader<'_> {
 pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
     let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
     plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
-}
-
-/// The axes that Mitsuba gives a direction, which is the third.
-///
-/// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
-fn frame(n: DVec3) -> DMat3 {
-    let sign = 1f64.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    DMat3::from_cols(
-        DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-        DVec3::new(b, sign + n.y * n.y * a, -n.y),
-        n,
-    )
 }

@@ -60,6 +60,24 @@ fn views_are_told_across_any_side() {
 }
 
 #[test]
+fn what_is_up_where_nothing_is_said() {
+    // As Mitsuba 3.9.1 has it: an axis across the direction.
+    for (origin, target, up) in [
+        ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
+        ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
+        ("0,-1,0", "1,2,4", [0.978446, -0.064661, -0.196116]),
+        ("0,5,0", "0,0,0", [1.0, 0.0, 0.0]),
+    ] {
+        for more in ["", "up='0,0,0'"] {
+            let look =
+                format!("<transform name='to_world'><lookat origin='{origin}' target='{target}' {more}/></transform>");
+            let Camera::Perspective(camera) = camera(&format!("type='perspective'>{look}")) else { panic!() };
+            assert!((camera.up - Vec3::from_array(up)).length() < 1e-5, "{origin}: {}", camera.up);
+        }
+    }
+}
+
+#[test]
 fn what_the_picture_is_to_be() {
     let scene = clean(
         "<integrator type='path'><integer name='max_depth' value='7'/></integrator><sensor type='perspective'>\
