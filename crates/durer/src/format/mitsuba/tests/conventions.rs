@@ -176,6 +176,10 @@ fn pictures_say_numbers_too() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
+    // Of colours it is the luminance.
+    let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
+        <rgb name='color1' value='1,0,0'/></texture>";
+    check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
     let parts = fields("roughness", 0.3, 0.6) + &fields("metallic", 0.0, 0.7);
     let disney = format!("<bsdf type='principled'>{parts}</bsdf>");
     check(&disney, &|m| m.base_metalness_texture.as_ref(), [0.0, 0.7]);
