@@ -177,9 +177,10 @@ impl Reader<'_> {
         Some((Node::Primitive(Sphere { center, radius }.into()), map))
     }
 
-    fn disk(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        if self.is_pictured(plugin) {
-            self.said.once(plugin.at, "a picture on a `disk` is turned: its coordinates begin elsewhere");
+    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        // Our discs have other coordinates.
+        if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
+            return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
         let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
         let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };

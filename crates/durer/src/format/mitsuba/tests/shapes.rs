@@ -3,6 +3,7 @@
 use super::conventions::{clean_in, mesh};
 use super::{clean, objects};
 use crate::format::mitsuba::serialized::tests::{file, stream};
+use crate::math::{Vec2, Vec3};
 use crate::scene::{Material, Scene};
 
 #[test]
@@ -74,4 +75,31 @@ fn spheres_inside_out_have_their_indices_exchanged() {
     // A hollow ball of one material: inside of its glass is air.
     let radius = "<float name='radius' value='.9'/>";
     check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0]);
+}
+
+#[test]
+fn coordinates_of_disks_go_outwards_and_around() {
+    let picture = "<bsdf type='diffuse'><texture name='reflectance' type='checkerboard'/></bsdf>";
+    let data = mesh(&clean(&format!("<shape type='disk'>{picture}</shape>"))).clone();
+    // Places and their coordinates in Mitsuba 3.9.1, whose v is turned over here.
+    for (x, y, wanted) in [(0.5, 0.0, [0.5, 0.0]), (0.0, 0.5, [0.5, 0.25]), (0.3, -0.4, [0.5, 0.852416])] {
+        let place = Vec2::new(x, y);
+        let found = data.triangles.iter().zip(&data.triangle_uvs).find_map(|(corners, uvs)| {
+            let [p, q, r] = corners.map(|i| data.positions[i as usize].truncate());
+            let (along, across, to) = (q - p, r - p, place - p);
+            let area = along.perp_dot(across);
+            let (b, c) = (to.perp_dot(across) / area, along.perp_dot(to) / area);
+            let uvs = uvs.map(|i| data.uvs[i as usize]);
+            let inside = b >= -1e-6 && c >= -1e-6 && b + c <= 1.0;
+            inside.then(|| uvs[0] + b * (uvs[1] - uvs[0]) + c * (uvs[2] - uvs[0]))
+        });
+        let found = found.unwrap();
+        let near = (found.x - wanted[0]).abs() < 1e-3 && (1.0 - found.y - wanted[1]).abs() < 3e-3;
+        assert!(near, "{place}: {found} and not {wanted:?}");
+    }
+    // Along the tangent u grows: outwards.
+    let outwards = |(p, t): (&Vec3, &[f32; 4])| p.length() == 0.0 || p.dot(Vec3::new(t[0], t[1], t[2])) > 0.9;
+    assert!(data.positions.iter().zip(&data.tangents).all(outwards));
+    // Of one colour it is a disc.
+    assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
 }
