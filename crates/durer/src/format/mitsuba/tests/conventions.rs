@@ -85,6 +85,18 @@ fn what_the_picture_is_to_be() {
     );
     assert_eq!(scene.wishes.size, Some((768, 576)));
     assert_eq!((scene.wishes.samples, scene.wishes.bounces), (Some(36), Some(5)));
+    let film = |more: &str| {
+        let inner = format!("<film type='hdrfilm'><integer name='width' value='96'/>{more}</film>");
+        read(&format!("<scene><sensor type='perspective'>{inner}</sensor><shape type='cube'/></scene>"))
+    };
+    let number = |name: &str, value: i32| format!("<integer name='crop_{name}' value='{value}'/>");
+    let part = number("offset_x", 10) + &number("offset_y", 20) + &number("height", 32);
+    let (scene, told) = film(&(part.clone() + &number("width", 86)));
+    assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
+    for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
+        let (scene, told) = film(&(part.clone() + &wrong));
+        assert!(scene.is_none() && told[0].contains("the crop does not lie in the picture of 96 x 576"), "{told:?}");
+    }
 }
 
 #[test]
