@@ -98,6 +98,10 @@ impl Reader<'_> {
                 said.bad(place, format!("the crop does not lie in the picture of {width} x {height} pixels"));
             }
         }
+        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.starts_with("rgb")) {
+            let what = format!("the pixels `{format}` have no counterpart: red, green and blue are written");
+            said.once(film.place("pixel_format"), what);
+        }
         // What is in the file that Mitsuba writes, and how pixels are weighed, is ours.
         film.properties.iter().for_each(|property| property.used.set(true));
         (width, height)

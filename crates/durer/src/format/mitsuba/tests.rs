@@ -122,6 +122,11 @@ fn what_is_wrong_is_told_at_its_place() {
             "200",
             "error a field of view must be more than 0",
         ),
+        (
+            "<sensor type='perspective'><film type='hdrfilm'><string name='pixel_format' value='luminance'/></film></sensor>",
+            "luminance",
+            "warning the pixels `luminance` have no counterpart: red, green and blue are written",
+        ),
         ("<sensor type='fisheye'/>", "fisheye", "warning the sensor `fisheye` has no counterpart"),
         (
             "<emitter type='constant'/><emitter type='constant'/>",
