@@ -98,7 +98,8 @@ impl Reader<'_> {
                 said.bad(place, format!("the crop does not lie in the picture of {width} x {height} pixels"));
             }
         }
-        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.starts_with("rgb")) {
+        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
+        {
             let what = format!("the pixels `{format}` have no counterpart: red, green and blue are written");
             said.once(film.place("pixel_format"), what);
         }

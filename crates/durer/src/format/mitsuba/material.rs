@@ -220,15 +220,19 @@ impl Reader<'_> {
             let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
             (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
         }
-        let distribution = plugin.text(self.said, "distribution").unwrap_or("beckmann".into());
-        match distribution.as_str() {
-            "ggx" => {}
-            "beckmann" | "phong" | "as" => {
+        match plugin.text(self.said, "distribution").as_deref() {
+            Some("ggx") => {}
+            Some(distribution @ ("beckmann" | "phong" | "as")) => {
                 let what =
                     format!("the distribution `{distribution}` has no counterpart: GGX of the same alpha is taken");
                 self.said.once(plugin.place("distribution"), what);
             }
-            other => {
+            None => {
+                let what = "without `distribution` Mitsuba means `beckmann`, which has no counterpart: GGX of the same \
+                            alpha is taken";
+                self.said.once(plugin.at, what);
+            }
+            Some(other) => {
                 let help = meant(other, ["beckmann", "ggx"]);
                 self.said.bad_with(plugin.place("distribution"), format!("there is no distribution `{other}`"), help);
             }

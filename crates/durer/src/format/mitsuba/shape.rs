@@ -86,6 +86,11 @@ impl Reader<'_> {
                 None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
                 None => {}
             }
+        } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
+            // Why there is no shape was said, and what lies on it is not to blame.
+            for class in ["bsdf", "emitter", "medium"] {
+                self.parts(plugin, Some(class));
+            }
         }
         plugin.known(&["flip_normals"]);
         plugin.finish(said);

@@ -153,12 +153,36 @@ fn what_is_wrong_is_told_at_its_place() {
             "beckmann",
             "warning the distribution `beckmann` has no counterpart",
         ),
+        (
+            "<shape type='sphere'><bsdf type='roughplastic'/></shape>",
+            "roughplastic",
+            "warning without `distribution` Mitsuba means `beckmann`",
+        ),
     ] {
         let text = format!("<scene>{inner}</scene>");
         let (_, told) = read(&text);
         let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
         assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}");
     }
+}
+
+#[test]
+fn what_is_wrong_is_told_once() {
+    let told = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
+    for inner in [
+        "<shape type='sphere'><float name='radius' value='$a'/></shape>",
+        "<shape type='sphere'><point name='center' value='$a'/></shape>",
+        "<shape type='sphere'><transform name='to_world'><scale value='$a'/></transform></shape>",
+        "<bsdf type='diffuse' id='$a'/>",
+    ] {
+        let told = told(inner);
+        assert!(told.len() == 1 && told[0].contains("`$a` stands for nothing"), "{told:?}");
+    }
+    let told = told(
+        "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
+        <emitter type='area'/></shape>",
+    );
+    assert!(told.len() == 1 && told[0].contains("the mesh cannot be had"), "{told:?}");
 }
 
 #[test]

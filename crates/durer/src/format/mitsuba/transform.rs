@@ -57,7 +57,10 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
         "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
         "scale" => {
             // One number is for all three.
-            let one = tag.get("value").and_then(|value| numbers(&loader.substituted(value)));
+            let one = match tag.get("value") {
+                Some(value) => numbers(&loader.substituted(value)?),
+                None => None,
+            };
             match one.as_deref() {
                 Some(&[one]) => Some(DAffine3::from_scale(DVec3::splat(one))),
                 _ => loader.triple(tag, 1.0).map(DAffine3::from_scale),
