@@ -519,7 +519,8 @@ fn hair_on_curves_of_a_file() {
              <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
         )
     };
-    for (kind, from, to) in [("bsplinecurve", 1.0, 2.0), ("linearcurve", 0.0, 3.0)] {
+    // Splines end flat, and lines in halves of balls.
+    for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
         let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
         assert_eq!(told, [""; 0]);
         let scene = scene.unwrap();
@@ -529,11 +530,12 @@ fn hair_on_curves_of_a_file() {
         assert_eq!(*hair, wanted);
         let data = scene.assets.meshes.values().next().unwrap();
         let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
-        assert!((ends.0 - from).abs() < 1e-5 && (ends.1 - to).abs() < 1e-5, "{kind}: {ends:?}");
+        assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
         // Two tubes, each as wide as its radius says; u grows along them.
         let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
         assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
-        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (p.x - from - uv.x * (to - from)).abs() < 1e-4));
+        let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);
+        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
     }
     for (file, kind, wanted) in [
         ("short.txt", "bsplinecurve", "short.txt:3:1 error this ends a curve of 2, which needs 4"),

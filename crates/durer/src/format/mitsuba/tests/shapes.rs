@@ -103,3 +103,39 @@ fn coordinates_of_disks_go_outwards_and_around() {
     // Of one colour it is a disc.
     assert!(clean("<shape type='disk'/>").assets.meshes.is_empty());
 }
+
+#[test]
+fn joints_and_ends_of_linear_curves_are_round() {
+    let bent = b"0 0 0 .5\n2 0 0 .5\n2 2 0 .25\n";
+    let shape = "<shape type='linearcurve'><string name='filename' value='bent.txt'/></shape>";
+    let data = mesh(&clean_in(&[("bent.txt", bent)], shape)).clone();
+    // How far a vertex lies from the line of balls that grow evenly from one end to the other.
+    let ends = [(Vec3::ZERO, 0.5), (2.0 * Vec3::X, 0.5), (Vec3::new(2.0, 2.0, 0.0), 0.25)];
+    let outside = |p: &Vec3| {
+        let from = |pair: &[(Vec3, f32)]| {
+            let (along, to) = (pair[1].0 - pair[0].0, *p - pair[0].0);
+            let share = (to.dot(along) / along.length_squared()).clamp(0.0, 1.0);
+            (to - share * along).length() - (pair[0].1 + share * (pair[1].1 - pair[0].1))
+        };
+        ends.windows(2).map(from).fold(f32::MAX, f32::min)
+    };
+    let most = data.positions.iter().map(outside).fold(f32::MIN, f32::max);
+    assert!(most < 0.02, "{most}");
+    // The outer corner of the joint, the end at the left and the one at the top.
+    for there in [
+        Vec3::new(2.0 + 0.125f32.sqrt(), -(0.125f32.sqrt()), 0.0),
+        Vec3::new(-0.5, 0.0, 0.0),
+        Vec3::new(2.0, 2.25, 0.0),
+    ] {
+        let nearest = data.positions.iter().map(|p| p.distance(there)).fold(f32::MAX, f32::min);
+        assert!(nearest < 0.12, "{there} {nearest}");
+    }
+    // u grows from end to end, and normals point outwards.
+    let middle = data.positions.iter().zip(&data.uvs).filter(|(_, uv)| uv.x == 0.5);
+    assert!(middle.clone().count() > 12 && middle.into_iter().all(|(p, _)| p.distance(2.0 * Vec3::X) < 0.53));
+    for (corners, normals) in data.triangles.iter().zip(&data.triangle_normals) {
+        let [a, b, c] = corners.map(|i| data.positions[i as usize]);
+        let face = (b - a).cross(c - a);
+        assert!(normals.iter().all(|n| face.dot(data.normals[*n as usize]) > -1e-6));
+    }
+}
