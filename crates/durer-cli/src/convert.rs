@@ -110,8 +110,9 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
 /// The options of rendering that a file asks for, if any.
 fn asked_for(wishes: &Wishes) -> Option<String> {
     let size = wishes.size.map(|(width, height)| format!("--size {width}x{height}"));
+    let crop = wishes.crop.map(|(left, top, width, height)| format!("--crop {left},{top},{width}x{height}"));
     let samples = wishes.samples.map(|samples| format!("--samples {samples}"));
     let bounces = wishes.bounces.map(|bounces| format!("--bounces {bounces}"));
-    let all: Vec<String> = [size, samples, bounces].into_iter().flatten().collect();
+    let all: Vec<String> = [size, crop, samples, bounces].into_iter().flatten().collect();
     (!all.is_empty()).then(|| all.join(" "))
 }

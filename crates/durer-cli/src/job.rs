@@ -77,10 +77,17 @@ pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool
         }
         _ => None,
     };
+    // Of a picture of another size it would be another part.
+    let wished = wishes.crop.filter(|_| wishes.size == Some((width, height)));
     Ok(Job {
         width,
         height,
-        crop: view.and_then(|view| view.crop).map(|(left, top, width, height)| Crop { left, top, width, height }),
+        crop: view.and_then(|view| view.crop.or(wished)).map(|(left, top, width, height)| Crop {
+            left,
+            top,
+            width,
+            height,
+        }),
         seed: args.seed,
         sampling: sampling(args, asked, timed, plenty)?,
         noise: args.noise,

@@ -115,6 +115,13 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
     place.put("dark.txt", &dark);
     assert!(place.gives(1, "check dark.txt").out.contains("no-emitter"));
+    // In the words of the file's own format.
+    let scene =
+        "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
+    place.put("dark.xml", scene);
+    let told = place.gives(1, "check dark.xml").out;
+    let foreign = ["emissionLuminance", "Background"].iter().any(|word| told.contains(word));
+    assert!(told.contains("no-emitter") && told.contains("<emitter type=\"area\"/>") && !foreign, "{told}");
     let turned =
         "MaterialIndex 2 Rectangle { corner -1 3 -1 edge0 0 0 2 edge1 2 0 0 } MaterialIndex 1 Sphere { center 0";
     place.put(

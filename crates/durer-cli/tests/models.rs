@@ -51,6 +51,29 @@ fn a_model_is_converted_also_to_words() {
 }
 
 #[test]
+fn a_part_of_the_picture_that_a_file_asks_for_is_made() {
+    let place = Place::new();
+    let film = |more: &str| {
+        format!(
+            "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more} Camera \"perspective\" WorldBegin\n\
+             LightSource \"infinite\" Translate 0 0 4 Shape \"sphere\""
+        )
+    };
+    place.put("whole.pbrt", film(""));
+    place.put("part.pbrt", film("\"integer pixelbounds\" [5 20 3 15]"));
+    let picture = |options: &str| {
+        place.gives(0, &format!("render {options} -o a.pfm --samples 4 -q --restart"));
+        place.image("a.pfm")
+    };
+    let part = picture("part.pbrt");
+    assert_eq!((part.width, part.height), (15, 12));
+    assert!(part == picture("whole.pbrt --crop 5,3,15x12"));
+    // Options say otherwise.
+    assert!(picture("part.pbrt --crop 0,0,30x20") == picture("whole.pbrt"));
+    assert_eq!(picture("part.pbrt --size 60x40").width, 60);
+}
+
+#[test]
 fn what_is_wrong_with_a_model_is_said_at_line_and_column() {
     let place = Place::new();
     place.put("a.stl", STL.replace("1 1 0.5", "1 1 x"));

@@ -93,20 +93,20 @@ impl Pictures<'_> {
         }
     }
 
-    /// A picture of numbers, made of another by what its texels' means become; `decode` is the
-    /// other's curve. Numbers have none.
+    /// A picture of numbers, made of another by what its texels become; `decode` is the other's
+    /// curve. Numbers have none.
     pub fn changed(
         &self,
         picture: &Picture,
         at: Span,
         decode: fn(u8) -> f32,
-        change: impl Fn(f32) -> f32,
+        change: impl Fn(Color) -> f32,
     ) -> Option<Picture> {
         let (path, image) = match &picture.bytes {
             PictureBytes::File(path) => (path, self.decoded(path, at, decode)?),
             PictureBytes::Here(path, bytes) => (path, self.read(path, bytes, decode).ok()?),
         };
-        let texel = |p: &Color| Color::splat(change((p.x + p.y + p.z) / 3.0).clamp(0.0, 1.0));
+        let texel = |p: &Color| Color::splat(change(*p).clamp(0.0, 1.0));
         let image = Image::from_pixels(image.width, image.height, image.pixels.iter().map(texel).collect()).ok()?;
         let bytes = as_png(image, Transfer::Linear)?;
         let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);

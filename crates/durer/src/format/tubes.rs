@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Sides of a tube, whose mean width is that of a round one, and of one of very many.
 const SIDES: [u32; 2] = [12, 6];
 
+/// Steps of a half of a ball from its rim to its middle.
+const CAP: u32 = 4;
+
 /// Steps of a piece at least and at most, and of all pieces together.
 const STEPS: [f64; 2] = [2.0, 64.0];
 const MAX_STEPS: usize = 1 << 15;
@@ -20,6 +23,8 @@ pub(super) struct Place {
     pub point: DVec3,
     pub along: DVec3,
     pub width: f64,
+    /// The sine of the angle by which normals lean along it.
+    pub lean: f64,
     /// From 0 at its beginning to 1 at its end.
     pub share: f64,
     pub piece: usize,
@@ -61,10 +66,25 @@ pub(super) fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
             let (point, chord) = (abc.lerp(bcd, part), (p[3] - p[0]).normalize_or(DVec3::X));
             let along = (bcd - abc).truncate().normalize_or(chord);
             let share = (i as f64 + part) / pieces.len() as f64;
-            all.push(Place { point: point.truncate(), along, width: point.w, share, piece: i, part });
+            all.push(Place { point: point.truncate(), along, width: point.w, lean: 0.0, share, piece: i, part });
         }
     }
     all
+}
+
+/// The same with a half of a ball on either end.
+pub(super) fn rounded(mut places: Vec<Place>) -> Vec<Place> {
+    let cap = |end: &Place, side: f64, step: u32| {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
+        let lean = side * sin;
+        Place { point: end.point + 0.5 * lean * end.width * end.along, width: cos * end.width, lean, ..*end }
+    };
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return places };
+    let before: Vec<Place> = (1..=CAP).rev().map(|step| cap(first, -1.0, step)).collect();
+    let after: Vec<Place> = (1..=CAP).map(|step| cap(last, 1.0, step)).collect();
+    places.splice(0..0, before);
+    places.extend(after);
+    places
 }
 
 /// Adds a tube through places, which may be one of very many: u grows along it, v around it.
@@ -87,9 +107,10 @@ pub(super) fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
             .unwrap_or(place.along.any_orthonormal_vector());
         let other = place.along.cross(across);
         for &(share, (sin, cos)) in &circle {
-            let normal = across * cos + other * sin;
-            data.positions.push((place.point + 0.5 * corner * place.width * normal).as_vec3());
-            data.normals.push(normal.as_vec3());
+            let around = across * cos + other * sin;
+            let upright = (1.0 - place.lean * place.lean).max(0.0).sqrt();
+            data.positions.push((place.point + 0.5 * corner * place.width * around).as_vec3());
+            data.normals.push((upright * around + place.lean * place.along).as_vec3());
             data.uvs.push(Vec2::new(place.share as f32, share as f32));
         }
     }

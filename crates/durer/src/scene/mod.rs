@@ -165,6 +165,9 @@ impl Background {
 pub struct Wishes {
     /// Its columns and rows.
     pub size: Option<(u32, u32)>,
+    /// The part of that which is made: its first column and row, its columns and rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crop: Option<(u32, u32, u32, u32)>,
     /// Samples a pixel.
     pub samples: Option<u32>,
     /// How often paths are scattered after the first time.

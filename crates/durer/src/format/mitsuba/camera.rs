@@ -68,7 +68,7 @@ impl Reader<'_> {
         found
     }
 
-    fn film(&self, sensor: &Plugin) -> (u32, u32) {
+    fn film(&mut self, sensor: &Plugin) -> (u32, u32) {
         let said = self.said;
         let films = self.parts(sensor, Some("film"));
         let Some((_, film)) = films.first() else { return (SIZE[0], SIZE[1]) };
@@ -84,8 +84,25 @@ impl Reader<'_> {
         if u64::from(width) * u64::from(height) > MAX_PIXELS {
             said.bad(film.at, format!("{width} x {height} pixels are too many"));
         }
-        let crop = ["crop_width", "crop_height", "crop_offset_x", "crop_offset_y"];
-        film.left_out(said, &crop, "the whole picture is rendered; `--crop` renders a part");
+        let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+        if crop.iter().any(|name| film.get(name).is_some()) {
+            let number = |name, usual: u32| film.number(said, name).unwrap_or(usual as f32);
+            let part = [number(crop[0], 0), number(crop[1], 0), number(crop[2], width), number(crop[3], height)];
+            let [left, top, columns, rows] = part.map(|value| value as u32);
+            let whole = part.iter().all(|value| *value >= 0.0 && value.fract() == 0.0);
+            let fits = |from: u32, count: u32, of: u32| count > 0 && from.saturating_add(count) <= of;
+            if whole && fits(left, columns, width) && fits(top, rows, height) {
+                self.scene.wishes.crop = Some((left, top, columns, rows));
+            } else {
+                let place = crop.iter().find_map(|name| film.get(name)).map_or(film.at, |property| property.at);
+                said.bad(place, format!("the crop does not lie in the picture of {width} x {height} pixels"));
+            }
+        }
+        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
+        {
+            let what = format!("the pixels `{format}` have no counterpart: red, green and blue are written");
+            said.once(film.place("pixel_format"), what);
+        }
         // What is in the file that Mitsuba writes, and how pixels are weighed, is ours.
         film.properties.iter().for_each(|property| property.used.set(true));
         (width, height)

@@ -5,7 +5,7 @@ use crate::format::model::Input;
 use crate::format::number::parse_f32;
 use crate::format::pbrt::mesh::named_bytes;
 use crate::format::said::Said;
-use crate::format::tubes::{Piece, add_tube, of_spline, places, straight};
+use crate::format::tubes::{Piece, add_tube, of_spline, places, rounded, straight};
 use crate::shape::MeshData;
 use glam::DVec4;
 use std::ops::Range;
@@ -28,9 +28,30 @@ pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spl
         return None;
     }
     let mut data = MeshData::default();
-    curves.iter().for_each(|pieces| add_tube(&mut data, &places(pieces, count), count > MANY));
+    let is_round = !is_spline && count <= MANY;
+    for pieces in &curves {
+        for run in runs(pieces, is_round) {
+            let mut tube = places(&pieces[run.clone()], count);
+            for place in &mut tube {
+                place.share = (run.start as f64 + place.share * run.len() as f64) / pieces.len() as f64;
+            }
+            add_tube(&mut data, &if is_round { rounded(tube) } else { tube }, count > MANY);
+        }
+    }
     Some(data)
 }
+
+/// The pieces of a curve that are one tube: all, or where joints are round those that go on in nearly
+/// the same direction.
+fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
+    let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
+    let ends = (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < STRAIGHT).chain([pieces.len()]);
+    let mut start = 0;
+    ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
+}
+
+/// The cosine of the angle of a joint that is seen.
+const STRAIGHT: f64 = 0.99;
 
 /// What is wrong, and where.
 type Wrong = (Range<usize>, String);

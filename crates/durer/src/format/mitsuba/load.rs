@@ -238,7 +238,7 @@ impl<'a> Loader<'a> {
         };
         let Some((kind, at)) = self.attribute(tag, "type") else { return self.skip(xml) };
         let name = tag.get("name").map(|name| today(&name.value)).unwrap_or_default();
-        let id = tag.get("id").map(|id| (self.substituted(id), id.at));
+        let id = tag.get("id").and_then(|id| Some((self.substituted(id)?, id.at)));
         let mut plugin = Plugin::new(class, kind, at);
         self.children(xml, &mut plugin)?;
         let plugin = Rc::new(plugin);
@@ -334,7 +334,7 @@ impl<'a> Loader<'a> {
     /// An attribute that must be there, with variables replaced.
     pub fn attribute(&self, tag: &Tag, name: &str) -> Option<(String, Span)> {
         match tag.get(name) {
-            Some(attribute) => Some((self.substituted(attribute), attribute.at)),
+            Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
             None => {
                 self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
                 None
@@ -347,7 +347,8 @@ impl<'a> Loader<'a> {
     }
 
     /// A value with what its variables stand for: of names that begin alike the longest counts.
-    pub fn substituted(&self, attribute: &Attribute) -> String {
+    /// `None`, and an error, where one stands for nothing.
+    pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
         let mut made = String::new();
         let mut rest: &str = &attribute.value;
         while let Some(at) = rest.find('$') {
@@ -365,11 +366,11 @@ impl<'a> Loader<'a> {
                     let help = meant(word, self.variables.keys().map(String::as_str));
                     let help = help.or_else(|| Some(format!("write `<default name=\"{word}\" value=\"...\"/>`")));
                     self.said.bad_with(attribute.at, format!("`${word}` stands for nothing"), help);
-                    return made;
+                    return None;
                 }
             }
         }
-        made + rest
+        Some(made + rest)
     }
 
     /// So many numbers of an attribute.
@@ -385,12 +386,12 @@ impl<'a> Loader<'a> {
     /// Coordinates by `x`, `y` and `z`, or by one attribute for all three.
     pub fn triple(&self, tag: &Tag, usual: f64) -> Option<DVec3> {
         if let Some(value) = tag.get("value") {
-            return self.numbers(&(self.substituted(value), value.at)).map(DVec3::from_array);
+            return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
         }
         let mut triple = [usual; 3];
         for (axis, name) in triple.iter_mut().zip(["x", "y", "z"]) {
             if let Some(given) = tag.get(name) {
-                [*axis] = self.numbers(&(self.substituted(given), given.at))?;
+                [*axis] = self.numbers(&(self.substituted(given)?, given.at))?;
             }
         }
         Some(DVec3::from_array(triple))

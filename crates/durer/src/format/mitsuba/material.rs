@@ -49,7 +49,8 @@ const AIR: f32 = 1.000277;
 impl Reader<'_> {
     /// The material of a plugin.
     pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
-        if let Some(known) = self.materials.get(&plugin.key()) {
+        let key = (plugin.key(), self.inside_out);
+        if let Some(known) = self.materials.get(&key) {
             return known.clone();
         }
         if self.too_deep(depth, plugin.at) {
@@ -57,7 +58,7 @@ impl Reader<'_> {
         }
         let made = self.made(plugin, depth);
         plugin.finish(self.said);
-        self.materials.insert(plugin.key(), made.clone());
+        self.materials.insert(key, made.clone());
         made
     }
 
@@ -198,7 +199,10 @@ impl Reader<'_> {
     /// The index of a body over that of air. What has the index of another body outside is inside
     /// of that, and rays know what they are in.
     fn index_of_body(&self, plugin: &Plugin, usual: f32) -> f32 {
-        let (inside, outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        let (mut inside, mut outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        if self.inside_out && plugin.kind != "thindielectric" {
+            std::mem::swap(&mut inside, &mut outside);
+        }
         let nested = (outside - AIR).abs() > 1e-3 && self.clear.iter().any(|index| (index - outside).abs() < 1e-3);
         inside / if nested { AIR } else { outside }
     }
@@ -217,15 +221,19 @@ impl Reader<'_> {
             let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
             (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
         }
-        let distribution = plugin.text(self.said, "distribution").unwrap_or("beckmann".into());
-        match distribution.as_str() {
-            "ggx" => {}
-            "beckmann" | "phong" | "as" => {
+        match plugin.text(self.said, "distribution").as_deref() {
+            Some("ggx") => {}
+            Some(distribution @ ("beckmann" | "phong" | "as")) => {
                 let what =
                     format!("the distribution `{distribution}` has no counterpart: GGX of the same alpha is taken");
                 self.said.once(plugin.place("distribution"), what);
             }
-            other => {
+            None => {
+                let what = "without `distribution` Mitsuba means `beckmann`, which has no counterpart: GGX of the same \
+                            alpha is taken";
+                self.said.once(plugin.at, what);
+            }
+            Some(other) => {
                 let help = meant(other, ["beckmann", "ggx"]);
                 self.said.bad_with(plugin.place("distribution"), format!("there is no distribution `{other}`"), help);
             }
@@ -329,6 +337,7 @@ impl Reader<'_> {
         at: Span,
     ) -> Option<u32> {
         let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.as_ref().map(|inside| inside.1)];
+        let key = (key, self.inside_out);
         if let Some(known) = self.numbers.get(&key) {
             return *known;
         }

@@ -16,6 +16,7 @@ mod metals;
 mod plugin;
 mod principled;
 mod rough;
+mod serialized;
 mod shape;
 mod sky;
 mod solid;

@@ -4,13 +4,15 @@
 
 use super::curve;
 use super::plugin::{Key, Plugin};
+use super::serialized;
 use super::solid;
 use super::state::Reader;
+use super::transform::frame;
 use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::made::Medium;
 use crate::format::pbrt::mesh::{oriented, written_in_file};
 use crate::format::pbrt::shape::placed;
-use crate::format::said::meant;
+use crate::format::said::{Said, meant};
 use crate::format::smooth::smoothed;
 use crate::image::Transfer;
 use crate::math::Vec3;
@@ -20,7 +22,7 @@ use glam::{DAffine3, DMat3, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
 
-const KNOWN: [&str; 12] = [
+const KNOWN: [&str; 13] = [
     "sphere",
     "disk",
     "rectangle",
@@ -28,6 +30,7 @@ const KNOWN: [&str; 12] = [
     "cylinder",
     "obj",
     "ply",
+    "serialized",
     "shapegroup",
     "instance",
     "merge",
@@ -58,13 +61,8 @@ impl Reader<'_> {
             "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::with_tangents(solid::rectangle()))),
             "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
             "cylinder" => self.cylinder(plugin, map),
-            "obj" | "ply" => self.file(plugin, map),
+            "obj" | "ply" | "serialized" => self.file(plugin, map),
             "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
-            "serialized" => {
-                let help = "open the scene in Mitsuba and write its meshes by `mesh.write_ply(\"a.ply\")`";
-                let error = Diagnostic::error("meshes of `serialized` are not read").code("bad-value").at(at);
-                return said.push(error.help(help));
-            }
             other => {
                 let message = format!("the shape `{other}` has no counterpart: it is left out");
                 let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
@@ -75,7 +73,8 @@ impl Reader<'_> {
             let inside = self.inside(plugin);
             let shine = self.parts(plugin, Some("emitter")).into_iter().next();
             let mut shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
-            if let Some(shine) = shine.as_mut().filter(|_| plugin.kind == "sphere" && self.is_flipped(plugin)) {
+            self.inside_out = is_inside_out(plugin, said);
+            if let Some(shine) = shine.as_mut().filter(|_| self.inside_out) {
                 (shine.both, shine.key) = (true, plugin.key());
             }
             let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
@@ -86,6 +85,11 @@ impl Reader<'_> {
                 }
                 None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
                 None => {}
+            }
+        } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
+            // Why there is no shape was said, and what lies on it is not to blame.
+            for class in ["bsdf", "emitter", "medium"] {
+                self.parts(plugin, Some(class));
             }
         }
         plugin.known(&["flip_normals"]);
@@ -161,7 +165,7 @@ impl Reader<'_> {
     fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
         let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
-        if self.is_flipped(plugin) && !self.parts(plugin, Some("emitter")).is_empty() {
+        if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
             let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
             self.said.once(plugin.place("flip_normals"), what);
         }
@@ -178,9 +182,10 @@ impl Reader<'_> {
         Some((Node::Primitive(Sphere { center, radius }.into()), map))
     }
 
-    fn disk(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
-        if self.is_pictured(plugin) {
-            self.said.once(plugin.at, "a picture on a `disk` is turned: its coordinates begin elsewhere");
+    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        // Our discs have other coordinates.
+        if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
+            return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
         }
         let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
         let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };
@@ -211,9 +216,23 @@ impl Reader<'_> {
         Some((self.loader.path(&name), plugin.place("filename")))
     }
 
+    /// Which mesh of a file a shape is.
+    fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
+        let number = plugin.number(self.said, "shape_index").unwrap_or(0.0);
+        if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
+            self.said.bad(plugin.place("shape_index"), "`shape_index` must be a whole number from 0 on");
+            return None;
+        }
+        Some(number as u32)
+    }
+
     fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
         let said = self.said;
         let (path, at) = self.path(plugin)?;
+        let number = match plugin.kind.as_str() {
+            "serialized" => Some(self.shape_index(plugin)?),
+            _ => None,
+        };
         let flat = plugin.truth(said, "face_normals").unwrap_or(false);
         let is_obj = plugin.kind == "obj";
         // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
@@ -230,9 +249,13 @@ impl Reader<'_> {
             (colored, "#colored"),
             (leaning, "#leaning"),
         ];
-        let key = turns.iter().filter(|turn| turn.0).fold(path.clone(), |key, turn| key + turn.1);
+        let whole = number.map_or(path.clone(), |number| format!("{path}#{number}"));
+        let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
         self.mesh(plugin, &key, map, || {
-            let mut data = written_in_file(input, said, &path, at)?;
+            let mut data = match number {
+                Some(number) => serialized::mesh(input, said, (&path, at), number)?,
+                None => written_in_file(input, said, &path, at)?,
+            };
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }
@@ -296,16 +319,8 @@ impl Reader<'_> {
     }
 }
 
-/// The axes that Mitsuba gives a direction, which is the third.
-///
-/// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
-fn frame(n: DVec3) -> DMat3 {
-    let sign = 1f64.copysign(n.z);
-    let a = -1.0 / (sign + n.z);
-    let b = n.x * n.y * a;
-    DMat3::from_cols(
-        DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
-        DVec3::new(b, sign + n.y * n.y * a, -n.y),
-        n,
-    )
+/// Whether a shape is a sphere whose normals point inwards: those of one that is mirrored do too.
+pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
+    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
 }

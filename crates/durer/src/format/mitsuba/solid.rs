@@ -1,7 +1,7 @@
 //! Shapes that are meshes here.
 
 use crate::format::pbrt::mesh::tube;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, fp};
 use crate::shape::MeshData;
 use crate::shape::mesh::NO_INDEX;
 
@@ -15,6 +15,8 @@ const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
     ([[-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]], [-1.0, 0.0, 0.0]),
     ([[1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]], [0.0, 0.0, -1.0]),
 ];
+/// Sides of a disc that is a mesh.
+const SIDES: u32 = 128;
 const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
 
 /// A cube from -1 to 1, with v downwards.
@@ -45,6 +47,30 @@ pub(super) fn rectangle() -> MeshData {
         flat: true,
         ..MeshData::default()
     }
+}
+
+/// A disc of radius 1 that faces z, as many triangles: u grows from its middle outwards, v around it,
+/// beginning at x.
+pub(super) fn disk() -> MeshData {
+    let rim = |i: f32| {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * i / SIDES as f32));
+        Vec3::new(cos as f32, sin as f32, 0.0)
+    };
+    let mut data = MeshData { flat: true, ..MeshData::default() };
+    for i in 0..=SIDES {
+        let around = |i: f32| i / SIDES as f32;
+        data.positions.push(rim(i as f32));
+        data.uvs.push(Vec2::new(1.0, around(i as f32)));
+        if i < SIDES {
+            // Each triangle has its own middle, whose v is half way between its corners'.
+            data.positions.push(Vec3::ZERO);
+            data.uvs.push(Vec2::new(0.0, around(i as f32 + 0.5)));
+            data.triangles.push([2 * i + 1, 2 * i, 2 * i + 2]);
+        }
+    }
+    data.normals = vec![Vec3::Z; data.positions.len()];
+    (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
+    data
 }
 
 /// A tube about z of length 1, with v downwards.

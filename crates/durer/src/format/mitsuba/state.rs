@@ -4,6 +4,7 @@ use super::load::Loader;
 use super::made::{Infinite, Made};
 use super::metals;
 use super::plugin::{Key, Plugin, Property, Value};
+use super::shape;
 use crate::diag::{Diagnostic, Span};
 use crate::format::bodies::join_bodies;
 use crate::format::model::Input;
@@ -25,15 +26,17 @@ pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub said: &'a Said,
     pub loader: Loader<'a>,
-    /// Materials by their plugins.
-    pub materials: BTreeMap<Key, Rc<Made>>,
-    /// Numbers in the scene of materials with a light, with something inside.
-    pub numbers: BTreeMap<[Option<Key>; 3], Option<u32>>,
+    /// Materials by their plugins, and whether they are turned inside out.
+    pub materials: BTreeMap<(Key, bool), Rc<Made>>,
+    /// Numbers in the scene of materials with a light, with something inside, turned inside out.
+    pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
     /// Meshes of files, by name and how they are turned.
     pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
     /// What shape groups hold, and how many objects that is.
     pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
     pub count: usize,
+    /// Whether the shape at hand is turned inside out: the index inside of its glass is outside.
+    pub inside_out: bool,
     pub infinite: Option<Infinite>,
     /// Indices of refraction inside of what is clear.
     pub clear: Vec<f32>,
@@ -51,6 +54,7 @@ impl<'a> Reader<'a> {
             meshes: BTreeMap::new(),
             groups: BTreeMap::new(),
             count: 0,
+            inside_out: false,
             infinite: None,
             clear: Vec::new(),
             scene: Scene::default(),
@@ -92,12 +96,23 @@ impl<'a> Reader<'a> {
 
     /// The indices of refraction inside of all that is clear.
     fn clear_inside(&self, all: &Plugin) -> Vec<f32> {
-        let clear = |part: Rc<Plugin>| match part.get("int_ior") {
+        let clear = |part: &Plugin, inside_out: bool| match part.get(if inside_out { "ext_ior" } else { "int_ior" }) {
             Some(property) => metals::written(&property.value),
+            None if inside_out => None,
             None => metals::clear("bk7"),
         };
-        let inner = self.reachable(all, &["shape", "bsdf"]).into_iter();
-        inner.filter(|part| part.kind.ends_with("dielectric")).filter_map(clear).collect()
+        // What is wrong with a shape is said where it is read.
+        let unsaid = Said::default();
+        let mut indices = Vec::new();
+        for shape in self.reachable(all, &["shape"]) {
+            let inside_out = shape::is_inside_out(&shape, &unsaid);
+            let inner = self.reachable(&shape, &["bsdf"]);
+            let glass = inner.iter().filter(|part| part.kind.ends_with("dielectric"));
+            indices.extend(glass.filter_map(|part| clear(part, inside_out)));
+        }
+        indices.sort_by(f32::total_cmp);
+        indices.dedup();
+        indices
     }
 
     /// All plugins inside of one, of some tags and through such, each once. Nothing is told, and

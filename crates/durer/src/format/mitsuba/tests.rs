@@ -1,6 +1,7 @@
 //! Mitsuba's files: what is read of them, conventions in closed form, and errors with their places.
 
 mod conventions;
+mod shapes;
 
 use crate::format::testing::{folder, read_in};
 use crate::math::random::Random;
@@ -99,7 +100,12 @@ fn what_is_wrong_is_told_at_its_place() {
             "error `a` is given twice",
         ),
         ("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/>", "a'/>", "error the id `a` is given twice"),
-        ("<shape type='serialized'/>", "serialized", "error meshes of `serialized` are not read (open the scene"),
+        ("<shape type='serialized'/>", "serialized", "error the shape `serialized` needs a `filename`"),
+        (
+            "<shape type='serialized'><string name='filename' value='none.serialized'/><integer name='shape_index' value='-1'/></shape>",
+            "-1",
+            "error `shape_index` must be a whole number from 0 on",
+        ),
         (
             "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
             "none.ply",
@@ -115,6 +121,11 @@ fn what_is_wrong_is_told_at_its_place() {
             "<sensor type='perspective'><float name='fov' value='200'/></sensor>",
             "200",
             "error a field of view must be more than 0",
+        ),
+        (
+            "<sensor type='perspective'><film type='hdrfilm'><string name='pixel_format' value='luminance'/></film></sensor>",
+            "luminance",
+            "warning the pixels `luminance` have no counterpart: red, green and blue are written",
         ),
         ("<sensor type='fisheye'/>", "fisheye", "warning the sensor `fisheye` has no counterpart"),
         (
@@ -142,12 +153,36 @@ fn what_is_wrong_is_told_at_its_place() {
             "beckmann",
             "warning the distribution `beckmann` has no counterpart",
         ),
+        (
+            "<shape type='sphere'><bsdf type='roughplastic'/></shape>",
+            "roughplastic",
+            "warning without `distribution` Mitsuba means `beckmann`",
+        ),
     ] {
         let text = format!("<scene>{inner}</scene>");
         let (_, told) = read(&text);
         let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
         assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}");
     }
+}
+
+#[test]
+fn what_is_wrong_is_told_once() {
+    let told = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
+    for inner in [
+        "<shape type='sphere'><float name='radius' value='$a'/></shape>",
+        "<shape type='sphere'><point name='center' value='$a'/></shape>",
+        "<shape type='sphere'><transform name='to_world'><scale value='$a'/></transform></shape>",
+        "<bsdf type='diffuse' id='$a'/>",
+    ] {
+        let told = told(inner);
+        assert!(told.len() == 1 && told[0].contains("`$a` stands for nothing"), "{told:?}");
+    }
+    let told = told(
+        "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
+        <emitter type='area'/></shape>",
+    );
+    assert!(told.len() == 1 && told[0].contains("the mesh cannot be had"), "{told:?}");
 }
 
 #[test]

@@ -121,7 +121,9 @@ impl Reader<'_> {
         };
         let Texture::Picture(picture, scale, raw) = texture else { return None };
         let decode = if raw { decode_linear } else { decode_srgb };
-        let picture = self.pictures().changed(&picture, property.at, decode, |x| change(scale.x * x))?;
+        // The number of a colour is its luminance.
+        let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
+        let picture = self.pictures().changed(&picture, property.at, decode, number)?;
         Some(asset(&mut self.scene, picture, property.at))
     }
 

@@ -38,12 +38,29 @@ fn stretched(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::from_diagonal(DVec3::splat(cos)) + across * sin + along * (1.0 - cos)
 }
 
+/// The axes that Mitsuba gives a direction, which is the third.
+///
+/// Source: Duff and others, *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017.
+pub(super) fn frame(n: DVec3) -> DMat3 {
+    let sign = 1f64.copysign(n.z);
+    let a = -1.0 / (sign + n.z);
+    let b = n.x * n.y * a;
+    DMat3::from_cols(
+        DVec3::new(1.0 + sign * n.x * n.x * a, sign * b, -sign * n.x),
+        DVec3::new(b, sign + n.y * n.y * a, -n.y),
+        n,
+    )
+}
+
 fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
     match tag.name {
         "translate" => loader.triple(tag, 0.0).map(DAffine3::from_translation),
         "scale" => {
             // One number is for all three.
-            let one = tag.get("value").and_then(|value| numbers(&loader.substituted(value)));
+            let one = match tag.get("value") {
+                Some(value) => numbers(&loader.substituted(value)?),
+                None => None,
+            };
             match one.as_deref() {
                 Some(&[one]) => Some(DAffine3::from_scale(DVec3::splat(one))),
                 _ => loader.triple(tag, 1.0).map(DAffine3::from_scale),
@@ -84,10 +101,9 @@ fn step(loader: &Loader, tag: &Tag) -> Option<DAffine3> {
             let point = |name| loader.numbers::<3>(&loader.attribute(tag, name)?).map(DVec3::from_array);
             let (origin, target) = (point("origin")?, point("target")?);
             let forward = (target - origin).try_normalize();
-            let up = match tag.get("up") {
-                Some(_) => point("up")?,
-                None => forward.unwrap_or(DVec3::Z).any_orthogonal_vector(),
-            };
+            let up = if tag.get("up").is_some() { point("up")? } else { DVec3::ZERO };
+            // Where nothing is up, it is the first axis of Mitsuba's around the direction.
+            let up = if up == DVec3::ZERO { frame(forward.unwrap_or(DVec3::Z)).x_axis } else { up };
             let left = forward.and_then(|forward| up.cross(forward).try_normalize());
             let (Some(forward), Some(left)) = (forward, left) else {
                 loader.bad(tag.at, "`origin`, `target` and `up` must not lie on a line", None);

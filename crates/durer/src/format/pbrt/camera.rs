@@ -32,6 +32,35 @@ impl Placed {
     }
 }
 
+/// First column and row, columns and rows.
+type Part = (u32, u32, u32, u32);
+
+/// The part of a film that is made.
+///
+/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: pixels from, to, from, to, or
+/// shares of the sides that are rounded up; it ends before the second and the fourth.
+fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
+    let sides = [width, width, height, height].map(f64::from);
+    let mut part = [0.0, sides[0], 0.0, sides[2]];
+    let mut given = None;
+    for (name, is_share) in [("pixelbounds", false), ("cropwindow", true)] {
+        let Some(all) = params.get(name).map(|param| param.numbers()) else { continue };
+        let Ok(all) = <[f64; 4]>::try_from(all) else {
+            params.said.bad(params.place(name), format!("`{name}` needs four numbers: from, to, from, to"));
+            return None;
+        };
+        let pixel = |i: usize| if is_share { (all[i] * sides[i]).ceil() } else { all[i] };
+        part = std::array::from_fn(|i| pixel(i).clamp(0.0, sides[i]));
+        given = Some(name);
+    }
+    let [left, right, top, bottom] = part.map(|pixel| pixel as u32);
+    if left >= right || top >= bottom {
+        params.said.bad(params.place(given?), "this part of the film has no pixels");
+        return None;
+    }
+    given.map(|_| (left, top, right - left, bottom - top))
+}
+
 /// The part of a plane before the camera that is seen, y upwards.
 struct Window {
     middle: DVec2,
@@ -41,9 +70,10 @@ struct Window {
 impl Reader<'_> {
     /// Makes a camera of what was said of it, for the film.
     pub fn frame(&mut self) {
-        let (width, height) = self.film_size();
+        let ((width, height), crop) = self.film_size();
         let Some(asked) = self.camera.take() else { return };
         self.scene.wishes.size = Some((width, height));
+        self.scene.wishes.crop = crop;
         let params = self.params_of(&asked);
         if asked.transforms.moves() {
             self.said.once(asked.at, "motion has no counterpart: all stands as when the shutter opens");
@@ -79,10 +109,11 @@ impl Reader<'_> {
         self.scene.camera_span = asked.at;
     }
 
-    fn film_size(&self) -> (u32, u32) {
+    /// Its columns and rows, and the part of it that is made.
+    fn film_size(&self) -> ((u32, u32), Option<Part>) {
         let third = self.language == Language::Third;
         let usual = if third { OLD_SIZE } else { SIZE };
-        let Some(film) = &self.film else { return usual };
+        let Some(film) = &self.film else { return (usual, None) };
         let params = self.params_of(film);
         let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
         if !kinds.contains(&film.kind.as_str()) {
@@ -106,7 +137,7 @@ impl Reader<'_> {
             params.said.other(params.place("sensor"), what);
         }
         params.left_out(&["whitebalance"], "light keeps its colour");
-        params.left_out(&["cropwindow", "pixelbounds"], "the whole picture is rendered; `--crop` renders a part");
+        let crop = crop(&params, (width, height));
         let unseen = ["filename", "diagonal", "iso", "maxcomponentvalue", "savefp16", "coordinatesystem"];
         params.known(&unseen);
         params.known(&["nbuckets", "lambdamin", "lambdamax"]);
@@ -114,7 +145,7 @@ impl Reader<'_> {
             params.known(&["scale", "maxsampleluminance"]);
         }
         params.finish("this film");
-        (width, height)
+        ((width, height), crop)
     }
 
     /// What the film makes of radiance 1: how long the shutter is open, times ISO over 100.

@@ -192,7 +192,8 @@ impl Reader<'_> {
     ) -> Option<FileName> {
         let Texture::Picture(picture, scale) = self.pattern(params, name, is_color, Vec3::ZERO) else { return None };
         let at = params.place(name);
-        let picture = self.pictures().changed(&picture, at, decode_srgb, |x| change(scale.x * x))?;
+        let mean = |p: Color| (p.x + p.y + p.z) / 3.0;
+        let picture = self.pictures().changed(&picture, at, decode_srgb, |p| change(scale.x * mean(p)))?;
         Some(self.asset(picture, at))
     }
 

@@ -10,7 +10,7 @@ use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Vec2, Vec3, fp};
 use crate::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
 
-fn layers(bsdf: &str) -> PrincipledMaterial {
+pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
     let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
     (**layers).clone()
@@ -60,6 +60,24 @@ fn views_are_told_across_any_side() {
 }
 
 #[test]
+fn what_is_up_where_nothing_is_said() {
+    // As Mitsuba 3.9.1 has it: an axis across the direction.
+    for (origin, target, up) in [
+        ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
+        ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
+        ("0,-1,0", "1,2,4", [0.978446, -0.064661, -0.196116]),
+        ("0,5,0", "0,0,0", [1.0, 0.0, 0.0]),
+    ] {
+        for more in ["", "up='0,0,0'"] {
+            let look =
+                format!("<transform name='to_world'><lookat origin='{origin}' target='{target}' {more}/></transform>");
+            let Camera::Perspective(camera) = camera(&format!("type='perspective'>{look}")) else { panic!() };
+            assert!((camera.up - Vec3::from_array(up)).length() < 1e-5, "{origin}: {}", camera.up);
+        }
+    }
+}
+
+#[test]
 fn what_the_picture_is_to_be() {
     let scene = clean(
         "<integrator type='path'><integer name='max_depth' value='7'/></integrator><sensor type='perspective'>\
@@ -67,6 +85,18 @@ fn what_the_picture_is_to_be() {
     );
     assert_eq!(scene.wishes.size, Some((768, 576)));
     assert_eq!((scene.wishes.samples, scene.wishes.bounces), (Some(36), Some(5)));
+    let film = |more: &str| {
+        let inner = format!("<film type='hdrfilm'><integer name='width' value='96'/>{more}</film>");
+        read(&format!("<scene><sensor type='perspective'>{inner}</sensor><shape type='cube'/></scene>"))
+    };
+    let number = |name: &str, value: i32| format!("<integer name='crop_{name}' value='{value}'/>");
+    let part = number("offset_x", 10) + &number("offset_y", 20) + &number("height", 32);
+    let (scene, told) = film(&(part.clone() + &number("width", 86)));
+    assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
+    for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
+        let (scene, told) = film(&(part.clone() + &wrong));
+        assert!(scene.is_none() && told[0].contains("the crop does not lie in the picture of 96 x 576"), "{told:?}");
+    }
 }
 
 #[test]
@@ -290,6 +320,10 @@ fn pictures_say_numbers_too() {
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
+    // Of colours it is the luminance.
+    let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
+        <rgb name='color1' value='1,0,0'/></texture>";
+    check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
     let parts = fields("roughness", 0.3, 0.6) + &fields("metallic", 0.0, 0.7);
     let disney = format!("<bsdf type='principled'>{parts}</bsdf>");
     check(&disney, &|m| m.base_metalness_texture.as_ref(), [0.0, 0.7]);
@@ -298,7 +332,7 @@ fn pictures_say_numbers_too() {
 }
 
 /// The only mesh of a scene.
-fn mesh(scene: &Scene) -> &crate::shape::MeshData {
+pub(super) fn mesh(scene: &Scene) -> &crate::shape::MeshData {
     scene.assets.meshes.values().next().unwrap()
 }
 
@@ -390,7 +424,7 @@ fn axes_that_are_not_of_length_1_are_told() {
 }
 
 /// A scene of a folder's files, of which nothing is to be said.
-fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
+pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
     let folder = folder(files);
     let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
     assert_eq!(told, [""; 0], "{inner}");
@@ -617,7 +651,8 @@ fn hair_on_curves_of_a_file() {
              <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
         )
     };
-    for (kind, from, to) in [("bsplinecurve", 1.0, 2.0), ("linearcurve", 0.0, 3.0)] {
+    // Splines end flat, and lines in halves of balls.
+    for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
         let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
         assert_eq!(told, [""; 0]);
         let scene = scene.unwrap();
@@ -627,11 +662,12 @@ fn hair_on_curves_of_a_file() {
         assert_eq!(*hair, wanted);
         let data = scene.assets.meshes.values().next().unwrap();
         let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
-        assert!((ends.0 - from).abs() < 1e-5 && (ends.1 - to).abs() < 1e-5, "{kind}: {ends:?}");
+        assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
         // Two tubes, each as wide as its radius says; u grows along them.
         let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
         assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
-        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (p.x - from - uv.x * (to - from)).abs() < 1e-4));
+        let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);
+        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
     }
     for (file, kind, wanted) in [
         ("short.txt", "bsplinecurve", "short.txt:3:1 error this ends a curve of 2, which needs 4"),

@@ -254,6 +254,19 @@ fn wishes_are_those_of_film_sampler_and_integrator() {
     );
     let wishes = scene.wishes;
     assert_eq!((wishes.size, wishes.samples, wishes.bounces), (Some((30, 20)), Some(12), Some(6)));
+    // Pixels from, to, from, to; shares are rounded up.
+    let film = |more: &str| {
+        format!(
+            "Film \"rgb\" \"integer xresolution\" 30 \"integer yresolution\" 20 {more}\n\
+             Camera \"perspective\" WorldBegin Shape \"sphere\""
+        )
+    };
+    let crop = |more: &str| clean(&film(more)).wishes.crop;
+    assert_eq!(crop(""), None);
+    assert_eq!(crop("\"float cropwindow\" [.25 .75 .5 1]"), Some((8, 10, 15, 10)));
+    assert_eq!(crop("\"integer pixelbounds\" [3 40 0 7]"), Some((3, 0, 27, 7)));
+    let (scene, told) = read(&film("\"float cropwindow\" [.5 .5 0 1]"));
+    assert!(scene.is_none() && told[0].contains("has no pixels"), "{told:?}");
 }
 
 #[test]
