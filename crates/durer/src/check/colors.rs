@@ -492,7 +492,7 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
     }
     // A mixed material uses earlier ones.
     for i in (0..world.materials().len()).rev() {
-        if let (Material::Solid(solid, _), true) = (&world.materials()[i], used[i]) {
+        if let (Material::Solid(solid, ..), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);
         }
     }

@@ -27,7 +27,7 @@ enum Look<'w> {
 impl Look<'_> {
     fn of(world: &World, material: u32) -> Option<Look<'_>> {
         match world.materials().get(material as usize)? {
-            Material::Solid(solid, to_pattern) => Some(Look::Solid(solid, to_pattern, world.rules().compat)),
+            Material::Solid(solid, to_pattern, _) => Some(Look::Solid(solid, to_pattern, world.rules().compat)),
             Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
         }
     }
@@ -109,7 +109,8 @@ fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<
     if let Solid::Mix(mix) = solid {
         let message = format!("the `share` of this mix is {}", number(mix.share));
         let help = "the other has no part in it: a `share` between 0 and 1 shows both";
-        return (mix.share <= 0.0 || mix.share >= 1.0).then_some((message, help));
+        let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
+        return shows_one.then_some((message, help));
     }
     if !matches!(solid, Solid::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
         return None;

@@ -150,7 +150,7 @@ impl<'a> ProbeGrid<'a> {
                     continue;
                 }
                 all[part] += count;
-                if let Material::Solid(solid, _) = &materials[part] {
+                if let Material::Solid(solid, ..) = &materials[part] {
                     parts.extend(solid.materials().map(|inner| inner as usize));
                 }
             }

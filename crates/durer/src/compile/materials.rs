@@ -30,7 +30,11 @@ pub(super) fn compile(
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
             let to_pattern = MatrixOp::product(ops, rules.compat);
-            Material::Solid(meant(solid, scene, rules), to_pattern)
+            let picture = match solid {
+                Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
+                _ => None,
+            };
+            Material::Solid(meant(solid, scene, rules), to_pattern, picture)
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);

@@ -36,6 +36,11 @@ impl Loader<'_> {
         number
     }
 
+    /// The same of a picture of numbers.
+    pub(super) fn number_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
+        self.map(name, Encoding::Linear, diagnostics)
+    }
+
     /// Where the bytes of a picture are, and how it lies.
     fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
         if let Some(asset) = self.assets.pictures.get(&name.path) {

@@ -160,6 +160,34 @@ fn height_fields_are_closed_landscapes() {
 }
 
 #[test]
+fn a_picture_multiplies_the_share_of_a_mix() {
+    use crate::math::{Ray, Vec3};
+    let folder = tempfile::tempdir().unwrap();
+    let mut picture = b"PF\n2 1\n-1\n".to_vec();
+    [1.0_f32, 1.0, 1.0, 0.25, 0.25, 0.25].iter().for_each(|value| picture.extend(value.to_le_bytes()));
+    std::fs::write(folder.path().join("share.pfm"), picture).unwrap();
+    let text = |picture: &str| {
+        format!(
+            "{CAMERA}Materials {{ PhongMaterial {{ diffuseColor 1 0 0 }} PhongMaterial {{ diffuseColor 0 0 1 }}\n\
+             Mix {{ materialIndex 0 materialIndex 1 share 0.8 shareTexture {picture} }} }}\n\
+             Group {{ MaterialIndex 2 Rectangle {{ corner 0 0 0 edge0 4 0 0 edge1 0 1 0 }}\n\
+             Sphere {{ center 9 0 0 radius 1 }} }}"
+        )
+    };
+    let (world, found) = try_read(&text("share.pfm"), Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+    let world = world.unwrap_or_else(|| panic!("{found:?}"));
+    for (x, share) in [(1.0, 0.8), (3.0, 0.2)] {
+        let at = world.intersect(&Ray::new(Vec3::new(x, 0.5, 5.0), Vec3::NEG_Z), &mut ()).unwrap();
+        let parts = world.parts(&at);
+        let shares: Vec<f32> = parts.iter().map(|part| part.share).collect();
+        assert!((shares[0] - share).abs() < 1e-6 && (shares[1] - 1.0 + share).abs() < 1e-6, "{shares:?}");
+        assert_eq!(parts[0].phong.diffuse, Vec3::X);
+    }
+    let (world, found) = try_read(&text("none.png"), Dialect::Durer.rules(), AccelKind::Bvh, folder.path());
+    assert!(world.is_none() && found.has_errors());
+}
+
+#[test]
 fn a_grid_of_cells_needs_a_volume() {
     let grid = |max: &str| {
         errors(

@@ -28,8 +28,10 @@ pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<B
         put.group(root);
     }
     for material in &mut made.materials {
-        if let Material::Principled(layers) = &mut material.value {
-            put.fields(&mut **layers);
+        match &mut material.value {
+            Material::Principled(layers) => put.fields(&mut **layers),
+            Material::Solid(solid, _) => put.fields(solid),
+            _ => {}
         }
     }
     put.fields(&mut made.background);

@@ -1,12 +1,13 @@
-//! Two materials in the same proportion everywhere.
+//! Two materials in one proportion, or as a picture says.
 
 use super::Pattern;
-use crate::describe::{Rule, described};
+use crate::describe::{FileName, Rule, described};
 use crate::dialect::set;
 use crate::math::Vec3;
 
 described! {
-    /// Two materials in the same proportion everywhere: each scatters its share of the light.
+    /// Two materials in the same proportion everywhere, or as a picture says: each scatters its
+    /// share of the light.
     Mix ["Mix" in set::DURER] {
         /// The first material.
         material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
@@ -14,6 +15,8 @@ described! {
         material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
         /// The share of the first, from 0 to 1.
         share: f32 = 0.5, optional, Rule::Share, ["share" in set::DURER];
+        /// A picture that multiplies `share`.
+        share_texture: Option<FileName> = None, optional, Rule::Any, ["shareTexture" in set::DURER];
     }
 }
 

@@ -40,6 +40,14 @@ impl World {
         Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.within_bounds() })
     }
 
+    /// The number from 0 to 1 that a picture has at a hit; 1 where it has no coordinates.
+    pub(super) fn number_at(&self, map: u32, at: &Interaction) -> f32 {
+        let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
+        let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
+        let [low, high] = mapping.range;
+        (low + mapping.channel.unwrap_or(Channel::Red).of(texel) * (high - low)).clamp(0.0, 1.0)
+    }
+
     /// What a picture makes of a surface's own light.
     pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
         self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))

@@ -17,8 +17,9 @@ use std::sync::Arc;
 pub enum Material {
     /// Numbers only.
     Phong(Phong),
-    /// Two materials mixed; the matrix leads from world to pattern space.
-    Solid(Solid, glam::DAffine3),
+    /// Two materials mixed; the matrix leads from world to pattern space, and a picture by its
+    /// number multiplies the share of the first.
+    Solid(Solid, glam::DAffine3, Option<u32>),
 }
 
 /// How a material's highlight is computed.

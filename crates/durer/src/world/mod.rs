@@ -397,21 +397,22 @@ impl World {
         match &self.materials()[at.material as usize] {
             // Nearly always.
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
-            Material::Solid(..) => self.mix(at.material, at.surface.position, 1.0, &mut parts),
+            Material::Solid(..) => self.mix(at.material, at, 1.0, &mut parts),
         }
         parts
     }
 
-    fn mix<'w>(&'w self, material: u32, point: Vec3, share: f32, parts: &mut MaterialMix<'w>) {
+    fn mix<'w>(&'w self, material: u32, at: &Interaction, share: f32, parts: &mut MaterialMix<'w>) {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
-            Material::Solid(solid, to_pattern) => {
-                let q = to_pattern.transform_point3(point.as_dvec3()).as_vec3();
-                let weight = solid.share(q, self.rules().compat);
+            Material::Solid(solid, to_pattern, picture) => {
+                let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
+                let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
+                let weight = solid.share(q, self.rules().compat) * pictured;
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {
-                        self.mix(index, point, share * weight, parts);
+                        self.mix(index, at, share * weight, parts);
                     }
                 }
             }

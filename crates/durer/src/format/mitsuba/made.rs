@@ -1,6 +1,7 @@
 //! What plugins become: materials, what shines, what is infinitely far away.
 
 use super::plugin::Key;
+use crate::describe::FileName;
 use crate::diag::Span;
 use crate::material::{HairMaterial, PrincipledMaterial};
 use crate::math::{Color, Vec3};
@@ -13,8 +14,8 @@ use std::rc::Rc;
 pub(super) enum Made {
     Layers(Box<PrincipledMaterial>),
     Hair(HairMaterial),
-    /// Two others, and the share of the first.
-    Mix(Rc<Made>, Rc<Made>, f32),
+    /// Two others, the share of the first, and a picture that multiplies it.
+    Mix(Rc<Made>, Rc<Made>, f32, Option<FileName>),
     /// What is not there at all.
     Nothing,
 }
@@ -33,7 +34,9 @@ impl Made {
                 change(&mut layers);
                 Made::Layers(layers)
             }
-            Made::Mix(a, b, share) => Made::Mix(a.changed(change).into(), b.changed(change).into(), *share),
+            Made::Mix(a, b, share, picture) => {
+                Made::Mix(a.changed(change).into(), b.changed(change).into(), *share, picture.clone())
+            }
             Made::Hair(hair) => Made::Hair(hair.clone()),
             Made::Nothing => Made::Nothing,
         }

@@ -95,14 +95,14 @@ impl Reader<'_> {
             "bumpmap" => return self.bump_map(plugin, depth),
             "normalmap" => return self.normal_map(plugin, depth),
             "blendbsdf" => {
-                let share = 1.0 - self.value(plugin, "weight", 0.5).clamp(0.0, 1.0);
+                let (share, picture) = self.pictured(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
                 let parts = self.parts(plugin, Some("bsdf"));
                 let [(_, a), (_, b)] = parts.as_slice() else {
                     self.said.bad(plugin.at, format!("a `blendbsdf` is of two materials, not of {}", parts.len()));
                     return Rc::new(Made::matte(0.5));
                 };
                 let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
-                return Rc::new(Made::Mix(a, b, share));
+                return Rc::new(Made::Mix(a, b, share, picture));
             }
             other => {
                 let message = format!("the material `{other}` has no counterpart: matte grey is taken");
@@ -373,9 +373,10 @@ impl Reader<'_> {
                 }
                 Material::Hair(hair.clone())
             }
-            Made::Mix(a, b, share) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
+            Made::Mix(a, b, share, picture) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
                 (Some(material1), Some(material2)) => {
-                    Material::Solid(Solid::from(Mix { material1, material2, share: *share }), Vec::new())
+                    let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
+                    Material::Solid(Solid::from(mix), Vec::new())
                 }
                 (Some(only), None) | (None, Some(only)) => {
                     self.said.once(at, "a blend with what is not there has no counterpart: the other counts alone");

@@ -15,6 +15,8 @@ pub(super) enum Made {
     Mix {
         parts: [usize; 2],
         share: f32,
+        /// A picture that multiplies the share.
+        picture: Option<FileName>,
         depth: u32,
         pictured: bool,
         at: Span,

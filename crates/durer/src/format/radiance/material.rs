@@ -255,7 +255,7 @@ impl Reader<'_> {
     fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> Made {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);
-        let mix = Material::Solid(Mix { material1, material2, share }.into(), Vec::new());
+        let mix = Material::Solid(Mix { material1, material2, share, share_texture: None }.into(), Vec::new());
         self.scene.materials.push(Spanned { value: mix, span: at });
         Made { number: Some((self.scene.materials.len() - 1) as u32), ..Made::nothing() }
     }

@@ -44,7 +44,7 @@ impl Reader<'_> {
                 numbers[0]
             }
             [Some(material1), Some(material2)] => {
-                let solid = Solid::from(Mix { material1, material2, share });
+                let solid = Solid::from(Mix { material1, material2, share, share_texture: None });
                 self.scene.materials.push(Spanned { value: Material::Solid(solid, Vec::new()), span: at });
                 Some((self.scene.materials.len() - 1) as u32)
             }

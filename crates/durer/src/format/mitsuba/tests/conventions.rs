@@ -317,6 +317,20 @@ fn pictures_say_numbers_too() {
     let inner = "<bsdf type='diffuse'/>";
     let mask = format!("<bsdf type='mask'>{}{inner}</bsdf>", fields("opacity", 0.0, 1.0));
     check(&mask, &|m| m.opacity_texture.as_ref(), [0.0, 1.0]);
+    // The weight is that of the second.
+    let weight = fields("weight", 0.2, 0.7);
+    let blend = format!("<bsdf type='blendbsdf'>{weight}{inner}<bsdf type='conductor'/></bsdf>");
+    let scene = clean(&format!("<shape type='sphere'>{blend}</shape>"));
+    let Material::Solid(crate::material::Solid::Mix(mix), _) = material(&scene) else { panic!() };
+    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&mix.share_texture.as_ref().unwrap().path].bytes
+    else {
+        panic!()
+    };
+    let image = crate::image::Encoded::open(bytes, path).unwrap();
+    let image = image.read(1 << 20, crate::image::decode_linear).unwrap();
+    let first: Vec<f32> = image.pixels.iter().map(|pixel| pixel.x).collect();
+    assert!(mix.share == 1.0 && first.iter().any(|x| (x - 0.8).abs() < 3e-3), "{first:?}");
+    assert!(first.iter().any(|x| (x - 0.3).abs() < 3e-3), "{first:?}");
     let bump =
         format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
     assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);

@@ -239,8 +239,11 @@ impl Reader<'_> {
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
     }
 
-    fn mixed(&self, params: &Params, at: Span) -> Made {
-        let share = 1.0 - self.value(params, "amount", 0.5).clamp(0.0, 1.0);
+    fn mixed(&mut self, params: &Params, at: Span) -> Made {
+        let share = match self.changed(params, "amount", false, |amount| 1.0 - amount.clamp(0.0, 1.0)) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (1.0 - self.value(params, "amount", 0.5).clamp(0.0, 1.0), None),
+        };
         let Some(param) = params.get("materials") else {
             self.said.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
             return Made::Nothing;
@@ -255,6 +258,6 @@ impl Reader<'_> {
         else {
             return Made::Nothing;
         };
-        self.mix([a, b], share, at)
+        self.mix_by([a, b], share, at)
     }
 }

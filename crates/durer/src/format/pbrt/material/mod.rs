@@ -112,14 +112,19 @@ impl Reader<'_> {
 
     /// Two materials, by number, in a proportion; nothing where they are mixed too deep.
     fn mix(&self, parts: [usize; 2], share: f32, at: Span) -> Made {
+        self.mix_by(parts, (share, None), at)
+    }
+
+    /// The same in a proportion that a picture multiplies.
+    fn mix_by(&self, parts: [usize; 2], (share, picture): (f32, Option<FileName>), at: Span) -> Made {
         let [first, second] = parts.map(|number| &self.materials[number]);
         let depth = 1 + first.depth().max(second.depth());
-        let pictured = first.is_pictured() || second.is_pictured();
+        let pictured = first.is_pictured() || second.is_pictured() || picture.is_some();
         if depth > DEEPEST {
             self.said.bad(at, format!("materials are mixed more than {DEEPEST} deep"));
             return Made::Nothing;
         }
-        Made::Mix { parts, share, depth, pictured, at }
+        Made::Mix { parts, share, picture, depth, pictured, at }
     }
 
     /// The number of a material that a mix names.
@@ -194,11 +199,11 @@ impl Reader<'_> {
                 }
                 Some(self.scene_material(Material::Hair(hair), at))
             }
-            Made::Mix { parts: [a, b], share, at, .. } => {
-                let (a, b, share, at) = (*a, *b, *share, *at);
+            Made::Mix { parts: [a, b], share, picture, at, .. } => {
+                let (a, b, share, share_texture, at) = (*a, *b, *share, picture.clone(), *at);
                 match (self.number(a, light, opacity), self.number(b, light, opacity)) {
                     (Some(material1), Some(material2)) => {
-                        let solid = Solid::from(Mix { material1, material2, share });
+                        let solid = Solid::from(Mix { material1, material2, share, share_texture });
                         Some(self.scene_material(Material::Solid(solid, Vec::new()), at))
                     }
                     (Some(only), None) | (None, Some(only)) => {

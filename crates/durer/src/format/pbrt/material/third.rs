@@ -233,9 +233,12 @@ impl Reader<'_> {
 
     /// `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
-        let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
-            Texture::Even(color) => self.grey(params, "amount", color),
-            Texture::Picture(picture, scale) => self.mean_of(params, "amount", &picture).unwrap_or(0.5) * scale.x,
+        let amount = match self.changed(params, "amount", true, |amount| amount.clamp(0.0, 1.0)) {
+            Some(picture) => (1.0, Some(picture)),
+            None => {
+                let even = self.pattern(params, "amount", true, Vec3::splat(0.5)).even().unwrap_or(Vec3::splat(0.5));
+                (self.grey(params, "amount", even).clamp(0.0, 1.0), None)
+            }
         };
         let names = ["namedmaterial1", "namedmaterial2"].map(|name| (name, params.text(name).map(str::to_string)));
         let mut numbers = [0; 2];
@@ -250,6 +253,6 @@ impl Reader<'_> {
                 None => return Made::Nothing,
             }
         }
-        self.mix(numbers, amount.clamp(0.0, 1.0), at)
+        self.mix_by(numbers, amount, at)
     }
 }
