@@ -1031,6 +1031,10 @@ class PrincipledMaterial(Material):
 
     transmission_scatter_anisotropy: number, more than -1, less than 1; 0 where it is not given. Where that light goes: from -1 (back) over 0 (evenly) to 1 (onwards).
 
+    transmission_density: path. A file of densities (Mitsuba's `.vol`) that multiply what light loses in the body; its box lies in the world.
+
+    transmission_density_box: `{ }` of rows of 3 numbers, 0 to 4 of them. The box that `transmissionDensity` fills in place of the file's, in the world: a corner and the edges from there along the grid's x, y and z.
+
     transmission_dispersion_scale: number, from 0 to 1; 0 where it is not given. How much glass spreads colours, over what `transmissionDispersionAbbeNumber` says; 0: not at all. Only `--color spectral` shows it.
 
     transmission_dispersion_abbe_number: number, more than 0; 20 where it is not given. Abbe number of the glass: the lower, the more it spreads colours; 64 is crown glass, 30 flint.
@@ -1143,6 +1147,8 @@ class PrincipledMaterial(Material):
         transmission_depth: Optional[float] = None,
         transmission_scatter: Optional[npt.ArrayLike] = None,
         transmission_scatter_anisotropy: Optional[float] = None,
+        transmission_density: Optional[str] = None,
+        transmission_density_box: Optional[npt.ArrayLike] = None,
         transmission_dispersion_scale: Optional[float] = None,
         transmission_dispersion_abbe_number: Optional[float] = None,
         subsurface_weight: Optional[float] = None,
@@ -1213,6 +1219,8 @@ class PrincipledMaterial(Material):
             ("transmissionDepth", transmission_depth),
             ("transmissionScatter", transmission_scatter),
             ("transmissionScatterAnisotropy", transmission_scatter_anisotropy),
+            ("transmissionDensity", transmission_density),
+            ("transmissionDensityBox", transmission_density_box),
             ("transmissionDispersionScale", transmission_dispersion_scale),
             ("transmissionDispersionAbbeNumber", transmission_dispersion_abbe_number),
             ("subsurfaceWeight", subsurface_weight),
@@ -1409,13 +1417,15 @@ class Wood(Material):
 
 
 class Mix(Material):
-    """Two materials in the same proportion everywhere: each scatters its share of the light.
+    """Two materials in the same proportion everywhere, or as a picture says: each scatters its share of the light.
 
     material1: whole number; must be given. The first material.
 
     material2: whole number; must be given. The other.
 
     share: number, from 0 to 1; 0.5 where it is not given. The share of the first, from 0 to 1.
+
+    share_texture: path. A picture that multiplies `share`.
     """
 
     def __init__(
@@ -1424,11 +1434,13 @@ class Mix(Material):
         material1: Union[int, Material],
         material2: Union[int, Material],
         share: Optional[float] = None,
+        share_texture: Optional[str] = None,
     ) -> None:
         super().__init__("Mix", [
             ("materialIndex", material1),
             ("materialIndex", material2),
             ("share", share),
+            ("shareTexture", share_texture),
         ])
 
 

@@ -6,7 +6,7 @@
 use super::made::{Made, Shine, matte};
 use super::metals;
 use super::plugin::{Key, Plugin, Value};
-use super::rough::below_rough;
+use super::rough::Boundary;
 use super::state::Reader;
 use super::texture::Texture;
 use crate::bsdf::microfacet::Ggx;
@@ -306,9 +306,12 @@ impl Reader<'_> {
         let nonlinear = plugin.truth(self.said, "nonlinear").unwrap_or(false);
         if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
             let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
-            let kept = if nonlinear { m.base_color } else { Vec3::ONE };
-            m.base_color *=
-                kept.map(|kept| below_rough(index, m.specular_roughness, beckmann, nonlinear.then_some(kept)));
+            let boundary = Boundary { index, roughness: m.specular_roughness, beckmann };
+            m.base_color = match m.base_color_texture.is_some() {
+                // Of a picture, as of a middle grey.
+                true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
+                false => m.base_color.map(|color| boundary.base(color, nonlinear)),
+            };
         }
         if nonlinear {
             // Light that goes to and fro below the skin is a coat's darkening.

@@ -26,7 +26,7 @@ impl Reader<'_> {
         let luminance = base_color.dot(LUMINANCE).max(1e-6);
         let tinted = |tint: f32| Vec3::ONE.lerp(base_color / luminance, tint).clamp(Vec3::ZERO, Vec3::ONE);
         let ior = match plugin.get("eta") {
-            Some(_) => self.value(plugin, "eta", 1.5),
+            Some(_) => self.value(plugin, "eta", 1.5).max(1e-3),
             // The reflectance at right angles is 0.08 times `specular`.
             None => {
                 let root = (0.08 * share("specular", 0.5)).sqrt();
@@ -65,7 +65,7 @@ impl Reader<'_> {
             base_metalness_texture: metalness_texture.filter(|_| !thin),
             // A thin sheet mirrors only where it is clear.
             specular_weight: if thin { 0.0 } else { 1.0 },
-            specular_ior: if thin { one_sided(ior) } else { ior.max(1e-3) },
+            specular_ior: if thin { one_sided(ior) } else { ior },
             specular_color: tinted(share("spec_tint", 0.0)),
             specular_roughness: (0.5 * (u * u + v * v)).sqrt().min(1.0).sqrt(),
             specular_roughness_texture: roughness_texture,

@@ -1,5 +1,6 @@
 //! Mitsuba's files: what is read of them, conventions in closed form, and errors with their places.
 
+mod bright;
 mod conventions;
 mod shapes;
 
