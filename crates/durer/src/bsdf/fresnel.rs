@@ -1,6 +1,6 @@
 //! How much light a smooth boundary reflects.
 
-use crate::math::fp;
+use crate::math::{Color, fp};
 use crate::spectrum::Spectrum;
 
 /// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of
@@ -92,6 +92,12 @@ pub fn diffuse(eta: f32) -> f32 {
 pub fn ior_of_reflectance(r0: f32) -> f32 {
     let root = r0.clamp(0.0, 0.98).sqrt();
     (1.0 + root) / (1.0 - root)
+}
+
+/// What Schlick's curve from a colour at right angles has at 82 degrees, whose cosine is 1/7: there
+/// [`F82`] has its tint.
+pub fn schlick_82(f0: Color) -> Color {
+    f0 + (Color::ONE - f0) * fp::pow(6.0 / 7.0, 5.0)
 }
 
 /// What a metal reflects: its colour at right angles, and a tint at 82 degrees.

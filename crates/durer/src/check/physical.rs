@@ -75,7 +75,8 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
         true => "",
         false => "; `ambientLight` means nothing to paths",
     };
-    let (surface, help) = match foreign(scout) {
+    let format = scout.subject.files.name(0).and_then(scene_format_for);
+    let (surface, help) = match format.and_then(|format| format.shines) {
         Some(words) => ("surface that shines", format!("{words}; lights that are said to be left out do not shine")),
         None => (
             "material with `emissionLuminance`",
@@ -87,20 +88,6 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let message = format!("nothing shines in this scene: no light, no {surface}, and the background is black");
     let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(help);
     vec![Finding::from(diagnostic).whole(true)]
-}
-
-/// What would shine in a scene of a format that is not ours, in its own words.
-fn foreign(scout: &SceneProbe) -> Option<&'static str> {
-    match scene_format_for(scout.subject.files.name(0)?)?.name {
-        "Mitsuba" => Some(
-            "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: what is all around is light too",
-        ),
-        "pbrt" => Some(
-            "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: what is all around is light too",
-        ),
-        "Radiance" => Some("give a surface the material `light`, or a `source` with `glow`"),
-        _ => None,
-    }
 }
 
 /// Lamps without extent inside of glass: no path finds their light outside.

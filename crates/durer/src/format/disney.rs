@@ -8,7 +8,7 @@
 //! BRDF to a BSDF*, 2015.
 
 use crate::bsdf::albedo::{self, single_means};
-use crate::math::fp;
+use crate::math::{Color, fp};
 use std::f32::consts::PI;
 
 /// How rough fuzz is that is brightest at grazing directions, as Disney's sheen is.
@@ -73,21 +73,34 @@ pub(super) fn sheen_of_fuzz() -> f32 {
 }
 
 /// What our boundary lets through to a matte base and out again; more than 0.
-pub(super) fn passing(ior: f32, roughness: f32) -> f32 {
-    (1.0 - kept(ior, roughness)[1]).max(1e-3)
+pub(super) fn passing([reflected, all]: [f32; 2]) -> f32 {
+    (1.0 - kept([reflected, all])).max(1e-3)
 }
 
-/// What a mirror of dielectrics loses between its facets and ours gives back.
-pub(super) fn lost(ior: f32, roughness: f32) -> f32 {
-    let [theirs, ours] = kept(ior, roughness);
-    ours - theirs
-}
-
-/// What theirs and ours reflect.
-fn kept(ior: f32, roughness: f32) -> [f32; 2] {
-    let [reflected, all] = single_means(ior, roughness);
+/// What our boundary reflects, of [`single_means`]: all that one reflection does not lose.
+pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
     // Of indices that no glass has nothing may be left.
-    [reflected, reflected / all.max(1e-6)]
+    reflected / all.max(1e-6)
+}
+
+/// What a matte base below a boundary gives back in Disney's material and in ours.
+pub(super) struct Matte {
+    given: f32,
+    /// What their mirror loses between its facets and ours gives back.
+    pub lost: f32,
+    passing: f32,
+}
+
+impl Matte {
+    pub fn new(ior: f32, roughness: f32) -> Matte {
+        let means = single_means(ior, roughness);
+        Matte { given: matte_mean(roughness), lost: kept(means) - means[0], passing: passing(means) }
+    }
+
+    /// Our base for theirs, where so much is to be taken from what is given back.
+    pub fn base(&self, color: Color, lost: Color) -> Color {
+        (self.given * color - lost).max(Color::ZERO) / self.passing
+    }
 }
 
 #[cfg(test)]

@@ -25,6 +25,8 @@ pub struct SceneFormat {
     pub up: Axis,
     /// Whether what has a camera is a whole scene, to which no light is added.
     pub whole: bool,
+    /// What would shine in a scene that is dark, in words of the format; `None`: of ours.
+    pub shines: Option<&'static str>,
 }
 
 /// Writes a scene.

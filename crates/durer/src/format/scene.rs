@@ -37,7 +37,7 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
 /// A mesh that is a whole model.
 const fn alone(format: &MeshFormat) -> SceneFormat {
     let MeshFormat { name, extensions, recognise, up, .. } = *format;
-    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false }
+    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, shines: None }
 }
 
 /// Rows of a picture of all directions that is turned.

@@ -86,6 +86,12 @@ impl Mapping {
         Vec2::new(x, y)
     }
 
+    /// What a number of a texel stands for.
+    pub fn ranged(&self, x: f32) -> f32 {
+        let [low, high] = self.range;
+        if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
+    }
+
     /// Colour and opacity with the opacity made 0 or 1 where there is a cutoff.
     pub(super) fn cut(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
         let alpha = match self.cutoff {

@@ -67,6 +67,13 @@ impl Sky {
 
     /// The same over a matte ground that gives back a share of the light of sun and sky.
     pub fn over(self, reflectance: f32) -> Self {
+        let ground = reflectance * (self.on_level_ground() + self.sun() * self.sun.y / PI);
+        Sky { ground, ..self }
+    }
+
+    /// The mean of the light from above by the cosine: illuminance of level ground over pi, without
+    /// the sun.
+    pub fn on_level_ground(&self) -> Color {
         const ROWS: u32 = 64;
         let mut sky = Color::ZERO;
         for row in 0..ROWS {
@@ -78,8 +85,7 @@ impl Sky {
                 sky += self.at(Vec3::new(sine * s as f32, up, sine * c as f32)) / (ROWS * ROWS) as f32;
             }
         }
-        let ground = reflectance * (sky + self.sun() * self.sun.y / PI);
-        Sky { ground, ..self }
+        sky
     }
 
     /// The light from a unit direction; below the horizon that of the ground.

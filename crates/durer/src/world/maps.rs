@@ -27,13 +27,11 @@ impl World {
             last = Some((map.texture, texel));
             let mapping = self.textures()[map.texture as usize].mapping().copied().unwrap_or_default();
             let channel = map.channel.or(mapping.channel).unwrap_or(Channel::Red);
-            let [low, high] = mapping.range;
-            let ranged = |x: f32| if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) };
             match TEXTURED[map.row].change {
-                Change::Number(change) => change(&mut here, ranged(channel.of(texel))),
+                Change::Number(change) => change(&mut here, mapping.ranged(channel.of(texel))),
                 Change::Color(change) => {
                     let [r, g, b, _] = texel;
-                    change(&mut here, Vec3::new(r, g, b).map(ranged));
+                    change(&mut here, Vec3::new(r, g, b).map(|x| mapping.ranged(x)));
                 }
             }
         }
@@ -44,8 +42,7 @@ impl World {
     pub(super) fn number_at(&self, map: u32, at: &Interaction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
-        let [low, high] = mapping.range;
-        (low + mapping.channel.unwrap_or(Channel::Red).of(texel) * (high - low)).clamp(0.0, 1.0)
+        mapping.ranged(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
     /// What a picture makes of a surface's own light.

@@ -110,6 +110,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: Some(write),
     up: Axis::Y,
     whole: false,
+    shines: None,
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).

@@ -109,8 +109,7 @@ impl Reader<'_> {
             return None;
         }
         let intensity = self.strength(plugin, "intensity");
-        let image =
-            plugin.get("texture").and_then(|property| self.part(property)).and_then(|texture| self.thrown(&texture));
+        let image = self.named_part(plugin, "texture").and_then(|texture| self.thrown(&texture));
         if image.is_none() && inner_angle == angle {
             let direction = to_world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z).as_vec3();
             let position = to_world.translation.as_vec3();
@@ -120,17 +119,18 @@ impl Reader<'_> {
         plugin.known(&["sampling_weight"]);
         plugin.finish(said);
         // It fades evenly by the angle.
-        let fade = |degrees: f32| ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0);
+        let shown = |dir: Vec3| {
+            let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
+            ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
+        };
         let axes = Axes::about_z(&to_world);
         let lamps = match image {
-            None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| {
-                Vec3::splat(fade(fp::atan2(dir.truncate().length(), dir.z).to_degrees()))
-            }),
+            None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir))),
             Some(image) => {
                 // It covers a square as wide as the spot at distance 1.
                 let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
                 Lamps::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
-                    let shown = fade(fp::atan2(dir.truncate().length(), dir.z).to_degrees());
+                    let shown = shown(dir);
                     if shown > 0.0 && dir.z > 0.0 {
                         shown * between(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
                     } else {
@@ -147,8 +147,7 @@ impl Reader<'_> {
     /// 1.
     fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
         let said = self.said;
-        let image =
-            plugin.get("irradiance").and_then(|property| self.part(property)).and_then(|texture| self.thrown(&texture));
+        let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
         let Some(image) = image else {
             return said.once(plugin.at, "a projector without a picture is left out");
         };

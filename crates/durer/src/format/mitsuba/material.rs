@@ -9,6 +9,7 @@ use super::plugin::{Key, Plugin, Value};
 use super::rough::Boundary;
 use super::state::Reader;
 use super::texture::Texture;
+use crate::bsdf::fresnel::schlick_82;
 use crate::bsdf::microfacet::Ggx;
 use crate::diag::{Diagnostic, Span};
 use crate::format::pbrt::made::Medium;
@@ -18,7 +19,7 @@ use crate::format::said::meant;
 use crate::material::mix::Mix;
 use crate::material::principled::Walls;
 use crate::material::{HairMaterial, PrincipledMaterial, Solid};
-use crate::math::{Vec3, fp};
+use crate::math::Vec3;
 use crate::scene::{Material, Spanned};
 use std::rc::Rc;
 
@@ -278,11 +279,7 @@ impl Reader<'_> {
             metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
         // A tint counts at all angles: it is in what is reflected at 82 degrees too, over Schlick's.
-        let over = |tint: Vec3| {
-            const REST: f32 = 6.0 / 7.0;
-            let schlick = f0 * tint + (Vec3::ONE - f0 * tint) * fp::pow(REST, 5.0);
-            f82 * tint / schlick.max(Vec3::splat(1e-6))
-        };
+        let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
         let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
         let at = plugin.place("specular_reflectance");
         if let Some(picture) = picture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path).cloned()) {
@@ -306,7 +303,7 @@ impl Reader<'_> {
         let nonlinear = plugin.truth(self.said, "nonlinear").unwrap_or(false);
         if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
             let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
-            let boundary = Boundary { index, roughness: m.specular_roughness, beckmann };
+            let boundary = Boundary::new(index, m.specular_roughness, beckmann);
             m.base_color = match m.base_color_texture.is_some() {
                 // Of a picture, as of a middle grey.
                 true => m.base_color * boundary.below(nonlinear.then_some(0.5)),

@@ -51,8 +51,8 @@ impl Reader<'_> {
 
     /// A colour, which may be a volume: of a grid the mean is taken.
     fn volume_color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
-        let volume = plugin.get(name).and_then(|property| self.part(property));
-        let Some(volume) = volume.filter(|volume| volume.kind.ends_with("volume")) else {
+        let volume = self.named_part(plugin, name).filter(|volume| volume.kind.ends_with("volume"));
+        let Some(volume) = volume else {
             return self.color(plugin, name, usual);
         };
         let color = match volume.kind.as_str() {
@@ -79,14 +79,13 @@ impl Reader<'_> {
     fn told<T>(&self, read: impl FnOnce(&mut Diagnostics) -> T) -> T {
         let mut found = Diagnostics::default();
         let made = read(&mut found);
-        found.iter().for_each(|finding| self.said.push(finding.clone()));
+        self.said.extend(found);
         made
     }
 
     /// The densities of a medium whose extinction is a `gridvolume`.
     fn density(&mut self, plugin: &Plugin) -> Option<Density> {
-        let volume = plugin.get("sigma_t").and_then(|property| self.part(property));
-        let volume = volume.filter(|volume| volume.kind == "gridvolume")?;
+        let volume = self.named_part(plugin, "sigma_t").filter(|volume| volume.kind == "gridvolume")?;
         let said = self.said;
         let Some(name) = volume.text(said, "filename") else {
             said.bad(volume.at, "a `gridvolume` needs a `filename`");

@@ -36,8 +36,18 @@ use load::Loader;
 use state::Reader;
 
 /// The format of scenes.
-pub(super) const FORMAT: SceneFormat =
-    SceneFormat { name: "Mitsuba", extensions: &["xml"], recognise, read, write: None, up: Axis::Y, whole: true };
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "Mitsuba",
+    extensions: &["xml"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Y,
+    whole: true,
+    shines: Some(
+        "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: what is all around is light too",
+    ),
+};
 
 /// Whether a file begins as Mitsuba's do.
 fn recognise(bytes: &[u8]) -> bool {

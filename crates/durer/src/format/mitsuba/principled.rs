@@ -6,7 +6,7 @@
 use super::plugin::Plugin;
 use super::state::Reader;
 use crate::bsdf::fresnel::ior_of_reflectance;
-use crate::format::disney;
+use crate::format::disney::{self, Matte};
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
 use crate::math::{LUMINANCE, Vec3};
@@ -37,28 +37,24 @@ impl Reader<'_> {
         let metallic = if thin { 0.0 } else { metalness };
         // Of pictures something between.
         let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
-        let given = disney::matte_mean(rough);
-        let pictured = base_color_texture.is_some();
-        let matte = |color: Vec3| {
-            if thin {
-                return given * color;
+        let matte = match (thin, &metalness_texture) {
+            (true, _) => disney::matte_mean(rough) * base_color,
+            (false, Some(_)) => base_color,
+            (false, None) => {
+                let matte = Matte::new(ior, rough);
+                let lost = if base_color_texture.is_some() { 0.0 } else { matte.lost };
+                base_color.lerp(matte.base(base_color, Vec3::splat(lost)), 1.0 - metallic)
             }
-            if metalness_texture.is_some() {
-                return color;
-            }
-            let lost = if pictured { 0.0 } else { disney::lost(ior, rough) };
-            let same = (given * color - lost).max(Vec3::ZERO) / disney::passing(ior, rough);
-            color.lerp(same, 1.0 - metallic)
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
         // From 0, all on the lit side, to 2, all on the other.
         let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
         let m = PrincipledMaterial {
-            base_color: matte(base_color),
+            base_color: matte,
             base_color_texture: base_color_texture.clone(),
             subsurface_weight: through.min(1.0),
-            subsurface_color: matte(base_color),
+            subsurface_color: matte,
             subsurface_color_texture: base_color_texture.filter(|_| through > 0.0),
             subsurface_scatter_anisotropy: (through - 1.0).max(0.0),
             base_metalness: metallic,

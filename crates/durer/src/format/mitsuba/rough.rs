@@ -3,56 +3,57 @@
 
 use crate::bsdf::albedo::single_means;
 use crate::bsdf::fresnel;
-use crate::format::disney::passing;
+use crate::format::disney::{kept, passing};
 use crate::math::{Vec3, fp};
 
 /// A rough boundary.
-#[derive(Clone, Copy)]
 pub(super) struct Boundary {
-    pub index: f32,
-    /// The root of alpha, which is not 0.
-    pub roughness: f32,
-    pub beckmann: bool,
+    index: f32,
+    /// What goes through from outside and is kept inside, and the same of a smooth one.
+    rough: [f32; 2],
+    smooth: [f32; 2],
+    /// What ours lets through to the base and out again.
+    passing: f32,
+    /// What theirs loses between facets and ours mirrors.
+    lost: f32,
 }
 
 impl Boundary {
-    /// What reflects once, and with that what goes through: on the mean over all directions.
-    fn means(&self, index: f32, roughness: f32) -> [f32; 2] {
-        if roughness > 0.0 { means(index, roughness * roughness, self.beckmann) } else { single_means(index, 0.0) }
+    /// `roughness` is the root of alpha, and not 0.
+    pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
+        let theirs = |index: f32| means(index, roughness * roughness, beckmann);
+        let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
+        // Mitsuba sums it over 64 cosines from 0 to 1, both ends as much as the others.
+        let straight = (index - 1.0) / (index + 1.0);
+        let inside = (63.0 * inside + straight * straight) / 64.0;
+        let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
+        let ours = single_means(index, roughness);
+        Boundary {
+            index,
+            rough: [all - reflected, inside],
+            smooth: [sum - mirrored, within],
+            passing: passing(ours),
+            lost: kept(ours) - reflected,
+        }
     }
 
     /// The colour of a matte base that shows below it what one does in Mitsuba. `fades`: light that
     /// goes to and fro below takes on more of the colour each time.
     pub fn base(&self, color: f32, fades: bool) -> f32 {
         let below = color * self.below(fades.then_some(color));
-        if fades {
-            return below;
-        }
-        // What theirs loses between facets, ours mirrors.
-        let [reflected, all] = single_means(self.index, self.roughness);
-        let more = reflected / all.max(1e-6) - self.means(self.index, self.roughness)[0];
-        (below - more / passing(self.index, self.roughness)).max(0.0)
+        if fades { below } else { (below - self.lost / self.passing).max(0.0) }
     }
 
     /// What a matte base shows through it in Mitsuba, over what it does here, on the mean over all
-    /// directions: theirs loses on the way in and on the way out. `kept`, where light that goes to and
+    /// directions: theirs loses on the way in and on the way out. `left`, where light that goes to and
     /// fro below changes its colour, is the share that is left each time.
-    pub fn below(&self, kept: Option<f32>) -> f32 {
-        let Boundary { index, roughness, .. } = *self;
-        let theirs = |roughness: f32| {
-            let [reflected, all] = self.means(index, roughness);
-            let [inside, _] = self.means(1.0 / index, roughness);
-            // Mitsuba sums it over 64 cosines from 0 to 1, both ends as much as the others.
-            let straight = (index - 1.0) / (index + 1.0);
-            let inside = if roughness > 0.0 { (63.0 * inside + straight * straight) / 64.0 } else { inside };
-            let through = (all - reflected) / index;
-            through * through / (1.0 - inside * kept.unwrap_or(1.0))
+    pub fn below(&self, left: Option<f32>) -> f32 {
+        let shown = |[through, inside]: [f32; 2]| {
+            let through = through / self.index;
+            through * through / (1.0 - inside * left.unwrap_or(1.0))
         };
-        match kept {
-            // A coat's darkening is as theirs where it is smooth.
-            Some(_) => theirs(roughness) / theirs(0.0),
-            None => theirs(roughness) / passing(index, roughness),
-        }
+        // A coat's darkening is as theirs where it is smooth.
+        shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
     }
 }
 
@@ -112,15 +113,15 @@ mod tests {
         let [reflected, all] = means(1.5, 0.02, true);
         let [smooth, _] = single_means(1.5, 0.0);
         assert!((reflected - smooth).abs() < 0.01 && (all - 1.0).abs() < 0.01, "{reflected} {smooth} {all}");
-        let below = |roughness: f32, beckmann: bool, kept| Boundary { index: 1.49, roughness, beckmann }.below(kept);
+        let below = |roughness: f32, beckmann: bool, left| Boundary::new(1.49, roughness, beckmann).below(left);
         assert!((below(0.1, false, None) - 1.0).abs() < 0.02);
-        for kept in [None, Some(0.5)] {
+        for left in [None, Some(0.5)] {
             for beckmann in [false, true] {
-                let of = |roughness: f32| below(roughness, beckmann, kept);
-                assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {kept:?}");
+                let of = |roughness: f32| below(roughness, beckmann, left);
+                assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
             }
             // Beckmann's facets lean less far.
-            assert!(below(0.6, true, kept) > below(0.6, false, kept));
+            assert!(below(0.6, true, left) > below(0.6, false, left));
         }
     }
 }

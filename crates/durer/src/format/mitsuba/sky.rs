@@ -7,7 +7,7 @@ use super::made::Infinite;
 use super::plugin::Plugin;
 use super::state::Reader;
 use crate::light::DirectionalLight;
-use crate::math::{LUMINANCE, Vec3};
+use crate::math::{LUMINANCE, Vec3, fp};
 use crate::scene::Spanned;
 use crate::texture::Sky;
 use crate::texture::almanac::{self, Moment};
@@ -69,12 +69,11 @@ impl Reader<'_> {
         let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
             return said.once(plugin.at, "the sun is below the horizon: nothing shines");
         };
-        let (sky, sine) = (Sky::new(way.as_vec3(), turbidity), way.y as f32);
+        let sky = Sky::new(way.as_vec3(), turbidity);
         let to_world = to_world * DAffine3::from_mat3(up.transpose());
         if plugin.kind != "sun" && sky_scale > 0.0 {
-            // The light of a ground that gives back all.
-            let found = PI * (sky.over(1.0).at(Vec3::NEG_Y) - sky.sun() * sine / PI).dot(LUMINANCE);
-            let height = crate::math::fp::asin_f64(way.y).to_degrees() as f32;
+            let found = PI * sky.on_level_ground().dot(LUMINANCE);
+            let height = fp::asin_f64(way.y).to_degrees() as f32;
             let scale = sky_scale * level(turbidity, height) / found.max(1.0) / LUMENS;
             self.far(Infinite::Sky { sky, at: plugin.at, scale, to_world });
         }

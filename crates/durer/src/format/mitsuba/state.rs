@@ -150,6 +150,11 @@ impl<'a> Reader<'a> {
         found.inspect(|(property, _)| property.used.set(true)).collect()
     }
 
+    /// The plugin of the property of a name.
+    pub fn named_part(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
+        plugin.get(name).and_then(|property| self.part(property))
+    }
+
     /// The plugin of a property.
     pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
         match &property.value {

@@ -28,7 +28,7 @@ impl Reader<'_> {
 
     /// The same with pictures brighter than 1, which are divided by their greatest number.
     pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
-        let bitmap = plugin.get(name).and_then(|property| self.part(property)).filter(|part| part.kind == "bitmap");
+        let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
         let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
         let raw = bitmap.truth(self.said, "raw").unwrap_or(false);
         let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));

@@ -28,6 +28,7 @@ pub(in crate::format) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: super::FORMAT.up,
     whole: false,
+    shines: None,
 };
 
 /// Reads a file; see [`read_model`](crate::format::scene::read_model).

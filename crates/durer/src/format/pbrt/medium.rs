@@ -38,11 +38,14 @@ const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
     ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
 ];
 
+/// What is absorbed and scattered where nothing is written.
+const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
+
 impl Medium {
     /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
     /// which a parameter has.
     pub(super) fn of(params: &Params, preset: &'static str) -> Medium {
-        Medium::with(params, preset, [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]])
+        Medium::with(params, preset, USUAL)
     }
 
     /// The same where nothing that is written means some absorption and scattering.
@@ -147,7 +150,7 @@ impl Reader<'_> {
     /// A medium that is as dense as a grid says, whose values lie in the middles of cells.
     fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
         let usual = match params.language {
-            Language::Third => [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]],
+            Language::Third => USUAL,
             Language::Fourth => [[1.0; 3]; 2],
         };
         let medium = Medium::with(params, "preset", usual);

@@ -41,8 +41,18 @@ use lexer::{Lexer, Token};
 use state::Reader;
 
 /// The format of scenes.
-pub(super) const FORMAT: SceneFormat =
-    SceneFormat { name: "pbrt", extensions: &["pbrt"], recognise, read, write: None, up: Axis::Y, whole: true };
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "pbrt",
+    extensions: &["pbrt"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Y,
+    whole: true,
+    shines: Some(
+        "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: what is all around is light too",
+    ),
+};
 
 /// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
 /// texts of the course's too.

@@ -138,10 +138,8 @@ impl Reader<'_> {
     }
 
     fn opacity(&mut self, params: &Params) -> Opacity {
-        match self.changed(params, "alpha", false, |share| share) {
-            Some(picture) => Opacity { share: 1.0, picture: Some(picture) },
-            None => Opacity { share: self.value(params, "alpha", 1.0), picture: None },
-        }
+        let (share, picture) = self.pictured(params, "alpha", 1.0, |share| share);
+        Opacity { share, picture }
     }
 
     fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {

@@ -197,6 +197,20 @@ impl Reader<'_> {
         Some(self.asset(picture, at))
     }
 
+    /// A number that may be a picture: what a change makes of it, or 1 and the picture so changed.
+    pub fn pictured(
+        &mut self,
+        params: &Params,
+        name: &'static str,
+        usual: f32,
+        change: impl Fn(f32) -> f32,
+    ) -> (f32, Option<FileName>) {
+        match self.changed(params, name, false, &change) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (change(self.value(params, name, usual)), None),
+        }
+    }
+
     /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
     /// name.
     pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {

@@ -8,6 +8,7 @@ use super::args::Thing;
 use super::made::{Below, Kind, Made};
 use super::spread::Spread;
 use super::state::Reader;
+use crate::bsdf::fresnel::schlick_82;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
 use crate::material::mix::Mix;
@@ -47,8 +48,7 @@ fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMateri
 fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let color = color.min(Vec3::ONE);
     // The share at 82 degrees that Schlick's rule would have.
-    let schlick = color + (Vec3::ONE - color) * fp::pow(6.0 / 7.0, 5.0);
-    let specular_color = color / schlick.max(Vec3::splat(1e-6));
+    let specular_color = color / schlick_82(color).max(Vec3::splat(1e-6));
     let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
     if specular > 0.0 {
         m.specular_weight = 1.0;

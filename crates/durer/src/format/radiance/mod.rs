@@ -52,6 +52,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     write: None,
     up: Axis::Z,
     whole: true,
+    shines: Some("give a surface the material `light`, or a `source` with `glow`"),
 };
 
 /// Reads a file; see [`read_model`](super::scene::read_model).

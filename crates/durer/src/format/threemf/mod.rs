@@ -21,8 +21,16 @@ use crate::diag::Diagnostics;
 use crate::scene::{Axis, Scene};
 
 /// The format of scenes.
-pub(super) const FORMAT: SceneFormat =
-    SceneFormat { name: "3MF", extensions: &["3mf"], recognise, read, write: None, up: Axis::Z, whole: false };
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "3MF",
+    extensions: &["3mf"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Z,
+    whole: false,
+    shines: None,
+};
 
 /// Whether bytes are an archive: no other format that is read is one.
 fn recognise(bytes: &[u8]) -> bool {

@@ -7,11 +7,12 @@ use super::super::made::Made;
 use super::super::params::Params;
 use super::super::state::Reader;
 use super::rough::Rough;
+use crate::bsdf::fresnel::schlick_82;
 use crate::diag::Span;
-use crate::format::disney;
+use crate::format::disney::Matte;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Color, LUMINANCE, Vec3, fp};
+use crate::math::{Color, LUMINANCE, Vec3};
 
 /// The share of light that sheen of strength 1 gives back, over what our fuzz does, both on the mean
 /// over all directions.
@@ -62,8 +63,8 @@ impl Reader<'_> {
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
         let thin = params.truth("thin") == Some(true);
         if !thin && distance == Color::ZERO {
-            let given = disney::matte_mean(roughness) - disney::lost(m.specular_ior, roughness);
-            m.base_color = color * (given / disney::passing(m.specular_ior, roughness));
+            let matte = Matte::new(m.specular_ior, roughness);
+            m.base_color = matte.base(color, matte.lost * color);
         }
         if thin {
             m.walls = Walls::Thin;
@@ -81,12 +82,10 @@ impl Reader<'_> {
         }
         // The other part is metal: the colour times Schlick's of that colour.
         let mut metal = m.clone();
-        let rest = fp::pow(6.0 / 7.0, 5.0);
-        let schlick = |f0: Color| f0 + (Vec3::ONE - f0) * rest;
         let tinted = if metal.base_color_texture.is_some() { Vec3::ONE } else { color };
         metal.base_metalness = 1.0;
         metal.base_color = color * tinted;
-        metal.specular_color = tinted * schlick(color) / schlick(metal.base_color).max(Vec3::splat(1e-6));
+        metal.specular_color = tinted * schlick_82(color) / schlick_82(metal.base_color).max(Vec3::splat(1e-6));
         (metal.specular_color_texture, metal.fuzz_weight) = (None, 0.0);
         (metal.transmission_weight, metal.subsurface_weight) = (0.0, 0.0);
         if metallic == 1.0 {

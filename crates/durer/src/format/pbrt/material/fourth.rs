@@ -10,13 +10,14 @@ use super::super::params::{Kind, Params, Values};
 use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
 use super::{below_skin, matte};
+use crate::bsdf::fresnel::schlick_82;
 use crate::bsdf::microfacet::Ggx;
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::format::said::meant;
 use crate::material::PrincipledMaterial;
 use crate::material::principled::Walls;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, Vec3};
 
 const KNOWN: [&str; 12] = [
     "diffuse",
@@ -233,17 +234,13 @@ impl Reader<'_> {
                 metal(&given(eta, "eta").unwrap_or(grey.clone()), &given(k, "k").unwrap_or(grey), outside)
             }
         };
-        const REST: f32 = 6.0 / 7.0;
-        let schlick = f0 + (Vec3::ONE - f0) * fp::pow(REST, 5.0);
-        (m.base_metalness, m.base_color, m.specular_color) = (1.0, f0, f82 / schlick.max(Vec3::splat(1e-6)));
+        (m.base_metalness, m.base_color) = (1.0, f0);
+        m.specular_color = f82 / schlick_82(f0).max(Vec3::splat(1e-6));
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
     }
 
     fn mixed(&mut self, params: &Params, at: Span) -> Made {
-        let share = match self.changed(params, "amount", false, |amount| 1.0 - amount.clamp(0.0, 1.0)) {
-            Some(picture) => (1.0, Some(picture)),
-            None => (1.0 - self.value(params, "amount", 0.5).clamp(0.0, 1.0), None),
-        };
+        let share = self.pictured(params, "amount", 0.5, |amount| 1.0 - amount.clamp(0.0, 1.0));
         let Some(param) = params.get("materials") else {
             self.said.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
             return Made::Nothing;

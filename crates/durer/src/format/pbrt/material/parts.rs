@@ -6,10 +6,11 @@ use super::super::made::Made;
 use super::super::state::Reader;
 use super::matte;
 use super::rough::Rough;
+use crate::bsdf::fresnel::schlick_82;
 use crate::describe::FileName;
 use crate::diag::Span;
 use crate::material::PrincipledMaterial;
-use crate::math::{Color, Vec3, fp};
+use crate::math::{Color, Vec3};
 
 /// One of those that are added.
 pub(super) struct Part {
@@ -65,7 +66,7 @@ pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMateri
         false => f0 / weight,
     });
     let ours = ours.min(Vec3::ONE);
-    let schlick = ours + (Vec3::ONE - ours) * fp::pow(6.0 / 7.0, 5.0);
+    let schlick = schlick_82(ours);
     let wanted = f82 / (weight * (Vec3::ONE + ours * lost));
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,

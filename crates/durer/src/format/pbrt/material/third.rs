@@ -233,12 +233,10 @@ impl Reader<'_> {
 
     /// `amount` is the share of the first.
     fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
-        let amount = match self.changed(params, "amount", true, |amount| amount.clamp(0.0, 1.0)) {
-            Some(picture) => (1.0, Some(picture)),
-            None => {
-                let even = self.pattern(params, "amount", true, Vec3::splat(0.5)).even().unwrap_or(Vec3::splat(0.5));
-                (self.grey(params, "amount", even).clamp(0.0, 1.0), None)
-            }
+        let share = |amount: f32| amount.clamp(0.0, 1.0);
+        let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
+            Texture::Even(color) => (share(self.grey(params, "amount", color)), None),
+            Texture::Picture(..) => (1.0, self.changed(params, "amount", true, share)),
         };
         let names = ["namedmaterial1", "namedmaterial2"].map(|name| (name, params.text(name).map(str::to_string)));
         let mut numbers = [0; 2];
