@@ -5,6 +5,7 @@ use durer::bvh::{TraversalCounter, TraversalStats};
 use durer::compile::{AccelKind, Resources, compile};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
+use durer::format::Decoder;
 use durer::format::course::{ReadOptions, read};
 use durer::math::{Ray, Vec3};
 use durer::sampler::hash;
@@ -88,7 +89,7 @@ fn compiled(body: &str) -> Result<World> {
     let file = files.add("balls.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("the balls cannot be read")?;
-    let resources = Resources::new(&source, &mut files);
+    let resources = Resources::new(&source, &Decoder, &mut files);
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")
 }
 

@@ -5,20 +5,20 @@
 //! which are the bytes that once broke something.
 
 use crate::LoadOptions;
-use crate::compile::AccelKind;
-use crate::diag::{Diagnostics, Files, Span};
-use crate::dialect::Dialect;
-use crate::format::course::{ReadOptions, guess, random::Random, read, write};
-use crate::format::json::{self, Document};
-use crate::format::scene::{Input, find_scene_format, read_model};
-use crate::format::{curve, photometry, read_mesh};
-use crate::image::{Encoded, ImageError, decode_linear};
-use crate::integrator::{Method, Settings};
-use crate::math::Vec3;
-use crate::render::{Control, Job, PartError, PartialRender, RenderOutcome, Shard};
-use crate::scene::Staging;
-use crate::source::{Digest, Source};
-use crate::spectrum::Curve;
+use durer_diag::{Diagnostics, Files, Span};
+use durer_formats::course::{ReadOptions, guess, random::Random, read, write};
+use durer_formats::json::{self, Document};
+use durer_formats::scene::{Input, find_scene_format, read_model};
+use durer_formats::{curve, photometry, read_mesh};
+use durer_image::{Encoded, ImageError, decode_linear};
+use durer_render::compile::AccelKind;
+use durer_render::integrator::{Method, Settings};
+use durer_render::render::{Control, Job, PartError, PartialRender, RenderOutcome, Shard};
+use durer_scene::dialect::Dialect;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Staging;
+use durer_scene::source::{Digest, Source};
+use durer_scene::spectrum::Curve;
 use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
@@ -157,7 +157,7 @@ pub fn part(data: &[u8]) {
                 part.hash();
                 let rendered = part.pictures().expect("a part has pictures");
                 let finite =
-                    |layer: &crate::image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
+                    |layer: &durer_image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
                 assert!(rendered.layers.iter().all(finite));
             }
         }

@@ -1,38 +1,23 @@
 //! Dürer: a ray tracer that is exact, explainable and deterministic.
 //!
 //! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`]
-//! (immutable, numbers only), and rendered by a [`render::Job`] into pictures.
+//! (immutable tables), and rendered by a [`render::Job`] into pictures.
+//!
+//! This crate is the face of the others: it passes on their modules, and loads files.
 
-pub mod bsdf;
-pub mod bvh;
-pub mod camera;
-pub mod check;
-pub mod compile;
-pub mod describe;
-pub mod diag;
-pub mod dialect;
-pub mod film;
-pub mod format;
-#[cfg(any(test, fuzzing))]
+#[cfg(any(test, fuzzing, feature = "testing"))]
+#[doc(hidden)]
 pub mod fuzz;
-pub mod image;
-pub mod integrator;
-pub mod lesson;
-pub mod light;
 pub mod load;
-pub mod material;
-pub mod math;
-pub mod medium;
-pub mod mistakes;
-pub mod panics;
-pub mod render;
-pub mod sampler;
-pub mod scene;
-pub mod shape;
-pub mod source;
-pub mod spectrum;
-pub mod texture;
-pub mod threads;
-pub mod world;
 
+pub use durer_bvh as bvh;
+pub use durer_diag as diag;
+pub use durer_formats as format;
+pub use durer_image as image;
+pub use durer_image::panics;
+pub use durer_render::{compile, film, integrator, render, threads, world};
+pub use durer_scene::{
+    bsdf, camera, describe, dialect, light, material, math, medium, sampler, scene, shape, source, spectrum, texture,
+};
+pub use durer_teach::{check, lesson, mistakes};
 pub use load::{LoadOptions, Loaded, load, load_text};

@@ -1,16 +1,17 @@
 //! From a file's path to a world: format, dialect, rules, files.
 
-use crate::compile::{AccelKind, Kept, Resources, compile};
-use crate::diag::{Diagnostic, Diagnostics, Files, Severity};
-use crate::dialect::{Compat, Dialect, PathBase, Rules};
-use crate::format::beside::{Beside, put_beside};
-use crate::format::course::{self, Guess, Hint, ReadOptions};
-use crate::format::json;
-use crate::format::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
-use crate::scene::{Scene, Staging};
-use crate::source::{Source, SourceError, is_packed, unpacked};
-use crate::threads;
-use crate::world::World;
+use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
+use durer_formats::Decoder;
+use durer_formats::beside::{Beside, put_beside};
+use durer_formats::course::{self, Guess, Hint, ReadOptions};
+use durer_formats::json;
+use durer_formats::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
+use durer_render::compile::{AccelKind, Kept, Resources, compile};
+use durer_render::threads;
+use durer_render::world::World;
+use durer_scene::dialect::{Compat, Dialect, PathBase, Rules};
+use durer_scene::scene::{Scene, Staging};
+use durer_scene::source::{Source, SourceError, is_packed, unpacked};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -252,6 +253,7 @@ impl Loaded {
         let memory = options.memory.unwrap_or(u64::MAX);
         let resources = Resources {
             source: &self.source,
+            decoder: &Decoder,
             files,
             sky_optional: options.course,
             memory,

@@ -1,8 +1,8 @@
 //! What did not change from one picture to the next is neither read nor built again.
 
 use super::*;
-use crate::compile::Reuse;
-use crate::source::Digest;
+use durer_render::compile::Reuse;
+use durer_scene::source::Digest;
 use std::collections::BTreeSet;
 use std::fs;
 use std::time::SystemTime;

@@ -1,13 +1,13 @@
 //! Models as scenes: what is read of them, what is refused, and where.
 
 use super::*;
-use crate::describe::FileName;
-use crate::diag::Diagnostic;
-use crate::material::PrincipledMaterial;
-use crate::math::{Vec3, fp};
-use crate::scene::{Material, Node, Studio, View};
-use crate::source::Digest;
-use crate::texture::Channel;
+use durer_diag::Diagnostic;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::{Material, Node, Studio, View};
+use durer_scene::source::Digest;
+use durer_scene::texture::Channel;
 use std::fs;
 
 /// Loads a file of a folder; findings as `code: message`.
@@ -26,9 +26,9 @@ fn hash(folder: &Path, name: &str, options: &LoadOptions) -> Digest {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap().unwrap();
     let world = loaded.compile(options, &mut files, &mut diagnostics).unwrap();
-    let job = crate::render::Job { width: 24, height: 16, ..crate::render::Job::default() };
-    let part = crate::render::PartialRender::new(&world, &job, crate::render::Shard::WHOLE).unwrap();
-    part.render(&world, &crate::render::Control::default(), &mut |_, _| {}).unwrap();
+    let job = durer_render::render::Job { width: 24, height: 16, ..durer_render::render::Job::default() };
+    let part = durer_render::render::PartialRender::new(&world, &job, durer_render::render::Shard::WHOLE).unwrap();
+    part.render(&world, &durer_render::render::Control::default(), &mut |_, _| {}).unwrap();
     part.hash()
 }
 
@@ -108,8 +108,10 @@ fn changed(from: &str, to: &str) -> tempfile::TempDir {
 fn one_model_is_one_picture_in_every_format() {
     let folder = tetrahedra();
     let options = LoadOptions::default();
-    let up =
-        LoadOptions { staging: Staging { up: Some(crate::scene::Axis::Y), ..Staging::default() }, ..options.clone() };
+    let up = LoadOptions {
+        staging: Staging { up: Some(durer_scene::scene::Axis::Y), ..Staging::default() },
+        ..options.clone()
+    };
     let obj = hash(folder.path(), "a.obj", &options);
     for name in ["a.ply", "a.stl"] {
         assert_eq!(hash(folder.path(), name, &up), obj, "{name}");
@@ -164,11 +166,11 @@ fn meshes_are_written_and_read_as_the_same() {
     let (mesh, left_out) = loaded.compile(&options, &mut files, &mut diagnostics).unwrap().merged_mesh();
     // The ground is no mesh.
     assert_eq!((mesh.triangles.len(), left_out), (4, 1));
-    for format in crate::format::MESH_FORMATS {
+    for format in durer_formats::MESH_FORMATS {
         let bytes = (format.write)(&mesh);
         let name = format!("x.{}", format.extensions[0]);
-        let again = crate::format::read_mesh(&bytes, 0, &name, &mut diagnostics).unwrap();
-        let corners = |data: &crate::shape::MeshData| -> Vec<Vec3> {
+        let again = durer_formats::read_mesh(&bytes, 0, &name, &mut diagnostics).unwrap();
+        let corners = |data: &durer_scene::shape::MeshData| -> Vec<Vec3> {
             data.triangles.iter().flatten().map(|&i| data.positions[i as usize]).collect()
         };
         assert_eq!(corners(&again), corners(&mesh), "{name}");
@@ -280,7 +282,9 @@ fn a_camera_of_gltf_is_chosen_by_name() {
         let staging = Staging { camera: Some(camera.into()), aspect: Some(2.0), ..Staging::default() };
         read(folder.path(), "a.gltf", &LoadOptions { staging, ..LoadOptions::default() })
     };
-    let Some(crate::camera::Camera::Perspective(left)) = seen("left").0.unwrap().camera else { panic!("no camera") };
+    let Some(durer_scene::camera::Camera::Perspective(left)) = seen("left").0.unwrap().camera else {
+        panic!("no camera")
+    };
     assert_eq!((left.center, left.direction), (Vec3::new(1.0, 2.0, 3.0), Vec3::NEG_Z));
     // Twice as wide as high: tan(angle / 2) = 2 tan(1/2).
     assert!((left.angle - 2.0 * fp::atan_f64(2.0 * fp::tan_f64(0.5)).to_degrees() as f32).abs() < 1e-4);
@@ -316,7 +320,7 @@ fn obj_is_parted_by_material_and_reads_mtl() {
     let red = principled(&scene, 0);
     assert_eq!((red.base_color, red.base_metalness, red.specular_roughness), (Vec3::X, 1.0, 0.25));
     let picture = &scene.assets.pictures[&red.base_color_texture.as_ref().unwrap().path];
-    assert_eq!(picture.mapping.wrap, [crate::texture::Wrap::Clamp; 2]);
+    assert_eq!(picture.mapping.wrap, [durer_scene::texture::Wrap::Clamp; 2]);
     // v upwards: 3 v + 0.25; downwards: 3 w + 1 - 3 - 0.25.
     assert_eq!(picture.mapping.transform, [[2.0, 0.0, 0.5], [0.0, 3.0, -2.25]]);
     let glass = principled(&scene, 1);

@@ -1,12 +1,12 @@
 //! Pictures of materials keep what their files hold: sixteen bits, floating point, opacity.
 
 use super::*;
-use crate::image::linear_from_srgb;
-use crate::integrator::Method;
-use crate::math::{Color, Vec2};
-use crate::render::{Control, Job, Sampling, render};
-use crate::texture::{Mapping, Texture};
 use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
+use durer_image::linear_from_srgb;
+use durer_render::integrator::Method;
+use durer_render::render::{Control, Job, Sampling, render};
+use durer_scene::math::{Color, Vec2};
+use durer_scene::texture::{Mapping, Texture};
 
 /// The texture that a scene makes of a picture named by a field, or what is said.
 fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result<Texture, String> {
@@ -93,7 +93,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
     let loaded = load_text(Path::new("scene.txt"), text.as_bytes().into(), &options, &mut files, &mut found);
     let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found));
     let world = world.unwrap_or_else(|| panic!("{found:?}"));
-    let sampling = Sampling::Filtered { samples: 16, filter: crate::film::Filter::Box { radius: 0.5 } };
+    let sampling = Sampling::Filtered { samples: 16, filter: durer_render::film::Filter::Box { radius: 0.5 } };
     let job = Job { method: Method::PATH, width: 48, height: 48, sampling, ..Job::default() };
     let rendered = render(&world, &job, &Control::default()).unwrap();
     let pixels: Vec<f64> = rendered.layers[0].image.pixels.iter().map(|pixel| f64::from(pixel.x)).collect();

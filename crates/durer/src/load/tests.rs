@@ -1,5 +1,5 @@
 use super::*;
-use crate::diag::{Diagnostic, Severity};
+use durer_diag::{Diagnostic, Severity};
 use std::fs;
 
 const CAMERA: &str = "PerspectiveCamera { center 0 0 10 direction 0 0 -1 up 0 1 0 angle 30 }\n";

@@ -1,0 +1,421 @@
+//! Reading the fields of any described thing.
+
+use super::lexer::TokenKind;
+use super::reader::{Reader, names};
+use super::words::begins_block;
+use crate::report::shown;
+use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
+use durer_scene::dialect::{Dialect, DialectSet};
+use durer_scene::math::Vec3;
+
+/// Whether the old parsers wanted the fields in the order in which they are listed.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Order {
+    Listed,
+    Any,
+}
+
+impl Reader<'_, '_> {
+    /// Reads `{ field value ... }` into a thing. `extra` may take words that are no fields; it says
+    /// whether it did.
+    pub(super) fn fields<T: DescribedList>(
+        &mut self,
+        thing: &mut T,
+        keyword: Span,
+        order: Order,
+        mut extra: impl FnMut(&mut Self, &str, Span) -> bool,
+    ) {
+        let errors = self.errors();
+        let name = self.text(keyword);
+        if !self.open(keyword) {
+            return;
+        }
+        // Of a thing that only our dialect has, the keyword is complained of, and not its fields as
+        // well.
+        let ours = thing.is_ours();
+        let fields = thing.fields();
+        let mut given = vec![None; fields.len()];
+        let mut last = 0;
+        while let Some((word, span)) = self.word_before_close() {
+            let Some(index) = self.field_of(fields, &given, &word) else {
+                if extra(self, &word, span) {
+                    if order == Order::Listed && given.iter().any(Option::is_some) && self.options.strict {
+                        self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
+                    }
+                    continue;
+                }
+                let block = begins_block(&word) && (self.at_open() || word == "MaterialIndex");
+                if block && !self.goes_on_after(fields) {
+                    self.step_back();
+                    self.unclosed();
+                    return;
+                }
+                let after_path = fields.get(last).is_some_and(|f| f.kind == Kind::Path) && given[last].is_some();
+                self.unknown_field(fields, &name, &word, span, after_path);
+                continue;
+            };
+            let field = &fields[index];
+            if !ours && field.spelling(self.options.dialect) != Some(word.as_str()) {
+                let set = field.spellings.iter().find(|(w, _)| *w == word).map_or(0, |s| s.1);
+                self.foreign(&word, span, set);
+            }
+            if order == Order::Listed && index < last && self.options.strict {
+                self.error(Diagnostic::error(format!("`{word}` must be written earlier in `{name}`")).at(span));
+            }
+            last = index;
+            if let Some(first) = given[index] {
+                let message = format!("`{word}` is given twice; the last counts");
+                let warning = Diagnostic::warning(message).code("repeated").at(span);
+                self.diagnostics.push(warning.related(first, "first given here"));
+            }
+            given[index] = Some(span);
+            if let Some(value) = self.value(field, &word, span) {
+                thing.set(index, value);
+            } else {
+                self.skip_values();
+            }
+        }
+        // A wrong word may have been meant for a field that seems to be missing.
+        if self.errors() > errors || ours && self.options.strict {
+            return;
+        }
+        let dialect = if ours { Dialect::Durer } else { self.options.dialect };
+        for (field, _) in fields.iter().zip(&given).filter(|(f, g)| f.required && g.is_none()) {
+            // A field without a word here has a fixed value: the centre of a sphere in a node, say.
+            let Some(word) = field.spelling(dialect) else { continue };
+            let error = Diagnostic::error(format!("`{name}` has no `{word}`")).code("missing-field").at(keyword);
+            self.error(match example(word) {
+                Some(value) => error.help(format!("write it into the block, as in `{word} {value}`")),
+                None => error,
+            });
+        }
+    }
+
+    /// The field that a word names; where two fields share it, the first that is not given yet.
+    fn field_of(&self, fields: &[Field], given: &[Option<Span>], word: &str) -> Option<usize> {
+        let named = |f: &Field| f.spellings.iter().any(|(w, _)| *w == word);
+        let native = |f: &Field| f.spelling(self.options.dialect) == Some(word);
+        let free = |i: &usize| given[*i].is_none();
+        let all =
+            |test: &dyn Fn(&Field) -> bool| -> Vec<usize> { (0..fields.len()).filter(|&i| test(&fields[i])).collect() };
+        let mut candidates = all(&native);
+        // 2020's `attenuation` is one number, 2004's is three: their count tells which is meant.
+        let numbers = (0..3).take_while(|&i| self.number_ahead(i)).count();
+        let fits = |f: &Field| match f.kind {
+            Kind::Float => numbers == 1,
+            Kind::Vec3 => numbers == 3,
+            _ => true,
+        };
+        if !candidates.iter().any(|&i| fits(&fields[i])) {
+            let other = all(&|f| named(f) && fits(f));
+            candidates = if other.is_empty() { candidates } else { other };
+        }
+        if candidates.is_empty() {
+            candidates = all(&named);
+        }
+        // Only fields that are spelled alike everywhere share a word: the two `materialIndex`, say.
+        let first = *candidates.first()?;
+        candidates.retain(|&i| fields[i].spellings == fields[first].spellings);
+        candidates.iter().copied().find(free).or(candidates.last().copied())
+    }
+
+    /// Whether the token so many further on is a number.
+    fn number_ahead(&self, count: usize) -> bool {
+        let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
+        token.is_some_and(|t| self.text(t.span).parse::<f32>().is_ok())
+    }
+
+    /// Whether the same thing goes on after the block or the number that comes next.
+    fn goes_on_after(&self, fields: &[Field]) -> bool {
+        let mut depth = 0usize;
+        for i in 0.. {
+            match self.ahead(i).map(|t| t.kind) {
+                Some(TokenKind::Open) => depth += 1,
+                Some(TokenKind::Close) => depth = depth.saturating_sub(1),
+                None => return false,
+                _ => {}
+            }
+            if depth == 0 {
+                let Some(next) = self.ahead(i + 1) else { return false };
+                let word = self.text(next.span);
+                let field = fields.iter().any(|f| f.spellings.iter().any(|(w, _)| *w == word));
+                return field || !self.at_open() && next.kind == TokenKind::Close;
+            }
+        }
+        false
+    }
+
+    fn unknown_field(&mut self, fields: &[Field], name: &str, word: &str, span: Span, after_path: bool) {
+        let known = || fields.iter().flat_map(|f| f.spellings.iter().map(|s| s.0));
+        let help = self.advice(word, known()).unwrap_or_else(|| {
+            let mut words: Vec<&str> = fields.iter().filter_map(|f| f.spelling(self.options.dialect)).collect();
+            words.dedup();
+            // A list of seventy words is no help.
+            let many = words.len() > 24;
+            words.retain(|word| !many || !word.ends_with("Texture"));
+            match after_path {
+                true => "a path ends at the first blank".into(),
+                false if many => format!("its fields are {}; for most there is a `...Texture` too", words.join(", ")),
+                false => format!("its fields are {}", words.join(", ")),
+            }
+        });
+        let help = super::meant::misplaced(word, name).map_or(help, String::from);
+        let message = match word.parse::<f32>() {
+            Ok(_) => format!("{} is a number too many in `{name}`", shown(word.as_bytes())),
+            Err(_) => format!("`{name}` has no field {}", shown(word.as_bytes())),
+        };
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        self.error(self.with_meant(error, word, span, known()));
+        self.skip_value();
+    }
+
+    /// Reads a value of a field's kind and checks its rule.
+    fn value(&mut self, field: &Field, word: &str, keyword: Span) -> Option<Value> {
+        let start = self.peek().map_or(keyword, |t| t.span);
+        let value = match field.kind {
+            Kind::Float => Value::Float(self.number(word, 1, 1)?),
+            Kind::Int if word == "materialIndex" => Value::Int(self.material_number(word)?),
+            Kind::Int => Value::Int(self.whole(word)?),
+            Kind::Vec3 => Value::Vec3(self.vec3(word)?),
+            Kind::Path => {
+                let token = self.peek().filter(|t| t.kind == TokenKind::Word);
+                let Some(token) = token else {
+                    self.expected("a path", word);
+                    return None;
+                };
+                self.advance();
+                Value::Path(FileName { path: self.text(token.span), span: token.span })
+            }
+            Kind::Word(words) => Value::Word(self.one_of(word, words)?),
+            Kind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
+        };
+        if field.rule != Rule::Any
+            && let Some(violation) = field.rule.violation(&value)
+        {
+            let span = start.to(self.last_span());
+            let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
+            // Where only the sign is wrong, it is clear what was meant.
+            self.error(match value {
+                Value::Float(x) if x < 0.0 => error.fix(span, self.text(span).trim_start_matches('-')),
+                Value::Vec3(v) if word == "direction" && v == Vec3::ZERO => error.help(
+                    "a light's is where the light goes; a camera's is the point to look at less the place of the eye",
+                ),
+                _ => error,
+            });
+        }
+        Some(value)
+    }
+
+    /// One of some words.
+    fn one_of(&mut self, field: &str, words: &[&str]) -> Option<String> {
+        let text = self.peek_word().unwrap_or_default();
+        if words.contains(&text.as_str()) {
+            self.advance();
+            return Some(text);
+        }
+        let list = words.join(", ");
+        let Some(token) = self.peek().filter(|t| t.kind == TokenKind::Word) else {
+            self.expected(&format!("one of {list}"), field);
+            return None;
+        };
+        self.advance();
+        let message = format!("`{field}` cannot be {}", shown(text.as_bytes()));
+        let help = match did_you_mean(&text, words.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None => format!("it is one of {list}"),
+        };
+        self.error(Diagnostic::error(message).at(token.span).help(help));
+        None
+    }
+
+    /// `{ numbers }`: rows of so many each.
+    fn rows(&mut self, field: &str, keyword: Span, width: usize) -> Option<Vec<Vec<f32>>> {
+        if !self.at_open() {
+            self.expected("`{`", field);
+            return None;
+        }
+        let open = self.advance();
+        let mut numbers = Vec::new();
+        while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
+            match self.number(field, numbers.len() % width + 1, width) {
+                Some(number) => numbers.push(number),
+                None => {
+                    // The error stands for the whole block.
+                    while self.peek().is_some_and(|token| token.kind == TokenKind::Word) {
+                        self.advance();
+                    }
+                    if self.peek().is_some_and(|token| token.kind == TokenKind::Close) {
+                        self.advance();
+                    }
+                    return None;
+                }
+            }
+        }
+        match self.peek().map(|token| token.kind) {
+            Some(TokenKind::Close) => self.advance(),
+            _ => {
+                self.expected("`}`", field);
+                return None;
+            }
+        };
+        if numbers.len() % width != 0 {
+            let message = format!("`{field}` is made of rows of {width} numbers, but has {} in all", numbers.len());
+            self.error(Diagnostic::error(message).at(open.to(self.last_span())).related(keyword, "in this block"));
+            return None;
+        }
+        Some(numbers.chunks_exact(width).map(<[f32]>::to_vec).collect())
+    }
+
+    /// Three numbers.
+    pub(super) fn vec3(&mut self, word: &str) -> Option<Vec3> {
+        let x = self.number(word, 1, 3)?;
+        let y = self.number(word, 2, 3)?;
+        let z = self.number(word, 3, 3)?;
+        Some(Vec3::new(x, y, z))
+    }
+
+    /// A whole number, zero or more.
+    pub(super) fn whole(&mut self, word: &str) -> Option<u32> {
+        let value = self.peek_word().and_then(|text| text.parse().ok());
+        match value {
+            Some(_) => {
+                self.advance();
+            }
+            None => self.expected("a whole number", word),
+        }
+        value
+    }
+
+    /// The i-th of `count` finite numbers.
+    pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
+        let text = self.peek_word().unwrap_or_default();
+        // Rust also parses words such as `inf` and `nan`: a number has a digit first.
+        let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
+        match text.parse::<f32>() {
+            Ok(value) if numeric && value.is_finite() => {
+                self.advance();
+                Some(value)
+            }
+            Ok(_) if numeric => {
+                let span = self.advance();
+                let error = Diagnostic::error(format!("{} is too large a number", shown(text.as_bytes()))).at(span);
+                let error = error.code("bad-value");
+                self.error(error.help("numbers must be within about ±3.4e38"));
+                None
+            }
+            _ => {
+                let what = if count == 1 { "a number".into() } else { format!("number {i} of {count}") };
+                self.expected(&what, word);
+                None
+            }
+        }
+    }
+
+    /// Reports that something else stands where a value should.
+    pub(super) fn expected(&mut self, what: &str, after: &str) {
+        let Some(token) = self.peek() else {
+            let message = format!("`{after}` needs {what}, but the file ends");
+            self.error(Diagnostic::error(message).at(self.end_span()).label(format!("{what} expected")));
+            return self.stop();
+        };
+        let text = self.text(token.span);
+        let message = format!("`{after}` needs {what}, but found {}", shown(text.as_bytes()));
+        let error = Diagnostic::error(message).code("syntax").at(token.span).label(format!("{what} expected"));
+        let Some((help, meant)) = number_help(&text).filter(|_| what.contains("number")) else {
+            return self.error(error);
+        };
+        let mut error = error.help(help);
+        // The numbers that follow are most likely written alike.
+        let following = (self.at..).map_while(|i| self.ahead(i - self.at)).map_while(|t| {
+            let text = self.text(t.span);
+            let meant = number_help(&text).and_then(|(_, meant)| meant);
+            (meant.is_some() || text.parse::<f32>().is_ok()).then_some((t.span, meant))
+        });
+        if meant.is_some() {
+            let edits: Vec<_> = following.take(16).filter_map(|(span, meant)| Some((span, meant?))).collect();
+            error = edits.into_iter().fold(error, |error, (span, meant)| error.fix(span, meant));
+        }
+        self.error(error);
+    }
+
+    /// A word that this dialect does not have: refused if strict, else taken with a warning, once.
+    pub(super) fn foreign(&mut self, word: &str, span: Span, set: DialectSet) {
+        let dialect = self.options.dialect;
+        if self.options.strict && set == Dialect::Durer as u8 {
+            let message = format!("`{word}` is Dürer's own, and no word of the course's language");
+            self.error(Diagnostic::error(message).at(span));
+            return;
+        }
+        if dialect.is_in(set) || dialect == Dialect::Durer && !self.options.strict {
+            return;
+        }
+        if !self.options.strict && !self.foreign_seen.insert(word.to_string()) {
+            return;
+        }
+        let message = format!("`{word}` is not a word of {}, but of {}", dialect.name(), names(set));
+        if self.options.strict {
+            self.error(Diagnostic::error(message).at(span));
+        } else {
+            let warning = Diagnostic::warning(message).code("foreign-word").at(span);
+            self.diagnostics.push(match super::meant::here(word, dialect) {
+                Some(here) => warning.help(format!("in {} it is `{here}`", dialect.name())),
+                None => warning,
+            });
+        }
+    }
+}
+
+/// What may be meant by a word that should have been a number, and how it is written, where that is
+/// clear.
+fn number_help(text: &str) -> Option<(String, Option<String>)> {
+    let is_number = |text: &str| !text.is_empty() && text.parse::<f32>().is_ok();
+    let bare = text.trim_matches(['(', ')', ',', ';', '<', '>', '[', ']', 'f', 'F']);
+    let point = bare.replace(',', ".");
+    if is_number(&point) && bare.contains(',') && !bare.contains('.') {
+        let help = "decimals are written with a point, and nothing stands between numbers but blanks";
+        Some((help.into(), Some(point).filter(|_| bare == text)))
+    } else if bare.contains(',') || bare != text && is_number(bare) {
+        let parts: Vec<&str> = bare.split(',').filter(|part| !part.is_empty()).collect();
+        let clear = parts.iter().all(|part| is_number(part)).then(|| parts.join(" "));
+        Some(("numbers stand alone, with blanks between them: `1 0.5 0`".into(), clear))
+    } else if text.starts_with("0x") || text.starts_with("0X") {
+        Some(("numbers are written in decimal".into(), None))
+    } else if text == "=" || text == ":" {
+        let help = format!("nothing stands between a word and its value but blanks: leave the `{text}` out");
+        Some((help, Some(String::new())))
+    } else if is_number(&text.replace(['O', 'o'], "0")) && text.contains(['O', 'o']) {
+        Some(("this has the letter O where a zero is meant".into(), Some(text.replace(['O', 'o'], "0"))))
+    } else {
+        let number = text.trim_end_matches(|c: char| c.is_alphabetic() || c == '°' || c == '%');
+        let unit = &text[number.len()..];
+        let help = || match unit {
+            "rad" => "angles are in degrees, without a unit".into(),
+            "deg" | "°" => "angles are in degrees: they need no unit".into(),
+            _ => format!("numbers have no units: leave `{unit}` out"),
+        };
+        let same = ["deg", "°", "px", "m"].contains(&unit);
+        // An exponent without its number is no unit.
+        let is_unit = !unit.is_empty() && !unit.eq_ignore_ascii_case("e");
+        (is_number(number) && is_unit).then(|| (help(), same.then(|| number.to_string())))
+    }
+}
+
+/// A value that a field may have, to show how it is written.
+fn example(field: &str) -> Option<&'static str> {
+    Some(match field {
+        "radius" => "1",
+        "offset" => "0",
+        "normal" | "up" => "0 1 0",
+        "center" | "position" => "0 0 5",
+        "direction" => "0 0 -1",
+        "angle" | "fov" => "30",
+        "size" => "5",
+        "color" => "1 1 1",
+        "vertex0" => "-1 0 0",
+        "vertex1" => "1 0 0",
+        "vertex2" => "0 1 0",
+        "obj_file" => "cube.obj",
+        _ => return None,
+    })
+}

@@ -1,0 +1,157 @@
+//! Which dialect a scene is written in, and why.
+
+use super::lexer::{TokenKind, tokens};
+use super::words::dialects_of;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::dialect::{Dialect, DialectSet, set};
+
+/// What something else than the file says of its dialect. It is not heard where it contradicts what
+/// is known already.
+#[derive(Clone, Debug)]
+pub struct Hint {
+    /// The dialects that it leaves.
+    pub set: DialectSet,
+    /// Why, as the end of a sentence.
+    pub why: String,
+}
+
+/// A guess and its reasons.
+#[derive(Clone, Debug)]
+pub struct Guess {
+    /// What was guessed.
+    pub dialect: Dialect,
+    /// What narrowed it down, as ends of sentences, and where.
+    pub reasons: Vec<(String, Option<Span>)>,
+    /// Other dialects that would have done as well.
+    pub others: Vec<Dialect>,
+}
+
+impl Guess {
+    /// The guess as a note for people.
+    pub fn note(&self) -> Diagnostic {
+        let reasons: Vec<&str> = self.reasons.iter().map(|r| r.0.as_str()).collect();
+        let mut message = format!("read as {}", self.dialect.name());
+        if !reasons.is_empty() {
+            message += &format!(": {}", reasons.join("; "));
+        }
+        if !self.others.is_empty() {
+            let names: Vec<&str> = self.others.iter().map(|d| d.name()).collect();
+            message += &format!(" (nothing in it rules out {})", names.join(", "));
+        }
+        Diagnostic::note(message).code("dialect")
+    }
+}
+
+/// Where several dialects are left, the first of these is taken.
+const PREFERENCE: [Dialect; 6] =
+    [Dialect::F12a4, Dialect::F04, Dialect::F12a5, Dialect::F16, Dialect::F23, Dialect::F03];
+
+/// Guesses the dialect of a scene from its words. `exists` tells whether a file that it names is
+/// there.
+pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> bool) -> Guess {
+    let mut left = set::ALL & !set::DURER;
+    let mut reasons: Vec<(DialectSet, String, Option<Span>)> = Vec::new();
+    let tokens = tokens(bytes, file);
+    let text = |i: usize| {
+        let span = tokens.get(i).map_or(Span::default(), |t| t.span);
+        String::from_utf8_lossy(&bytes[span.start as usize..span.end as usize])
+    };
+    let mut narrow = |keep: DialectSet, why: String, span: Option<Span>| {
+        if left & keep != left {
+            left &= keep;
+            reasons.push((keep, why, span));
+        }
+    };
+    // Words of nodes among words of the years before: what there is most of is meant, and the
+    // others are foreign.
+    let (mut nodes, mut classic) = (0_usize, 0_usize);
+    for (i, token) in tokens.iter().enumerate().filter(|(_, token)| token.kind == TokenKind::Word) {
+        let _ = token;
+        let word = text(i);
+        match dialects_of(&word) {
+            Some(set::F23) => nodes += usize::from(is_telling(&word)) * 2,
+            Some(words) if !Dialect::F23.is_in(words) && words != set::DURER => classic += 1,
+            _ => {}
+        }
+    }
+    let majority = if nodes > classic { set::F23 } else { set::ALL };
+    let has_section = (0..tokens.len()).any(|i| text(i) == "Materials");
+    for (i, token) in tokens.iter().enumerate() {
+        let word = text(i);
+        let at = |i: usize| tokens.get(i).map(|token| token.kind);
+        let (braced, named) = (at(i + 1) == Some(TokenKind::Open), at(i + 1) == Some(TokenKind::Word));
+        let (keep, why) = if token.kind != TokenKind::Word {
+            continue;
+        } else if braced && matches!(&*word, "Translate" | "Scale" | "XRotate" | "YRotate" | "ZRotate") {
+            (set::F03, format!("`{word} {{` with a brace is 2003's"))
+        } else if braced && !has_section && matches!(&*word, "Material" | "PhongMaterial") {
+            (set::F03, format!("`{word}` inside a group is 2003's"))
+        } else if word == "cubeMap" && exists(&format!("{}/left.png", text(i + 1))) {
+            (set::F16, "its cube map is of PNG files".into())
+        } else if word == "cubeMap" && exists(&format!("{}/left.bmp", text(i + 1))) {
+            (set::F12A5, "its cube map is of BMP files".into())
+        } else if named && matches!(&*word, "include" | "define" | "use") {
+            (set::DURER, format!("`{word}` is a word of ours"))
+        } else if named
+            && at(i + 2) == Some(TokenKind::Open)
+            && word.ends_with("Material")
+            && dialects_of(&text(i + 1)).is_none()
+        {
+            (set::DURER, "only ours has names for materials".into())
+        } else if let Some(set) = dialects_of(&word).filter(|set| match *set {
+            set::F23 => is_telling(&word),
+            // Ours alone: `top` or `min` may be anybody's file name.
+            set::DURER => braced,
+            _ => true,
+        }) {
+            (set, format!("`{word}` is a word of {}", names(set)))
+        } else {
+            continue;
+        };
+        // The minority is said where it stands.
+        if majority == set::F23 && keep & set::F23 == 0 {
+            continue;
+        }
+        narrow(keep, why, Some(token.span));
+    }
+    if let Some(comment) = tokens.iter().find(|token| token.kind == TokenKind::Comment) {
+        // Ours has no nodes: a file of nodes stays one.
+        let nodes = (0..tokens.len()).any(|i| text(i) == "Scene" || text(i).starts_with("Component<"));
+        let keep = if nodes { set::F23 } else { 0 };
+        narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
+    }
+    for hint in hints {
+        // What contradicts the file and the hints before it tells nothing: options may be another
+        // year's.
+        let keep = left & hint.set;
+        if keep != 0 && keep != left {
+            left = keep;
+            reasons.push((hint.set, hint.why.clone(), None));
+        }
+    }
+    // Reasons that later ones make needless are not told.
+    for i in (0..reasons.len()).rev() {
+        let others = reasons.iter().enumerate().filter(|(j, _)| *j != i);
+        if others.fold(set::ALL & !set::DURER, |left, (_, reason)| left & reason.0) == left {
+            reasons.remove(i);
+        }
+    }
+    let reasons = reasons.into_iter().map(|(_, why, span)| (why, span)).collect();
+    let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
+    let dialect = candidates.next().unwrap_or(Dialect::Durer);
+    Guess { dialect, reasons, others: candidates.collect() }
+}
+
+fn names(set: DialectSet) -> String {
+    if set & set::ALL == set::CLASSIC {
+        return "the years before 2020".into();
+    }
+    let names: Vec<&str> =
+        Dialect::ALL.iter().filter(|d| d.is_in(set) && **d != Dialect::Durer).map(|d| d.name()).collect();
+    if names.is_empty() { Dialect::Durer.name().into() } else { names.join(", ") }
+}
+
+/// Whether a word of 2020's alone shows that year: `sphere` or `point` may be anybody's file name.
+fn is_telling(word: &str) -> bool {
+    word.contains(['<', '_']) || word.starts_with(char::is_uppercase)
+}

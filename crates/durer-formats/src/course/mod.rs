@@ -1,0 +1,91 @@
+//! The course's scene language, in all its dialects.
+
+mod fields;
+pub mod guess;
+mod include;
+mod lexer;
+mod meant;
+mod named;
+mod nodes;
+pub mod place;
+#[cfg(any(test, fuzzing, feature = "testing"))]
+#[doc(hidden)]
+pub mod random;
+mod reader;
+mod recover;
+pub mod reference;
+mod sections;
+mod transform;
+mod words;
+pub mod write;
+
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::dialect::{CompatSet, Dialect};
+use durer_scene::scene::Scene;
+pub use guess::{Guess, Hint, guess};
+pub use include::{Opened, below};
+pub(super) use lexer::is_word;
+pub(super) use transform::{flat, senseless};
+pub use write::write;
+
+/// How a scene file is to be read.
+#[derive(Clone, Copy, Debug)]
+pub struct ReadOptions {
+    /// Its dialect.
+    pub dialect: Dialect,
+    /// Whether only the words of that dialect are allowed: no comments, no words of other years,
+    /// counts and order as the old programs wanted them.
+    pub strict: bool,
+    /// Quirks of its program.
+    pub compat: CompatSet,
+}
+
+/// Reads a scene that includes no files. All errors are collected; with any, there is no scene.
+pub fn read(bytes: &[u8], file: u32, options: ReadOptions, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    read_with(bytes, file, options, &|_| Opened::Nowhere, diagnostics)
+}
+
+/// Reads a scene; `open` finds the files that it includes.
+pub fn read_with(
+    bytes: &[u8],
+    file: u32,
+    options: ReadOptions,
+    open: &dyn Fn(&str) -> Opened,
+    diagnostics: &mut Diagnostics,
+) -> Option<Scene> {
+    if bytes.len() >= u32::MAX as usize {
+        diagnostics.push(Diagnostic::error("a scene file must be smaller than 4 GiB"));
+        return None;
+    }
+    if let Some(problem) = no_text(bytes) {
+        diagnostics.push(Diagnostic::error(problem).code("syntax").at(Span { file, start: 0, end: 0 }));
+        return None;
+    }
+    let mut own = Diagnostics::default();
+    let mut reader = reader::Reader::new(bytes, file, options, open, &mut own);
+    match options.dialect {
+        Dialect::F23 => reader.nodes_file(),
+        _ => reader.scene_file(),
+    }
+    let scene = reader.finish();
+    let failed = own.has_errors();
+    diagnostics.extend(own);
+    (!failed).then_some(scene)
+}
+
+/// Why a file is no text that could be a scene, if it is none.
+fn no_text(bytes: &[u8]) -> Option<&'static str> {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    let zeros = |from: usize| head.iter().skip(from).step_by(2).filter(|b| **b == 0).count() * 4 > head.len();
+    if head.starts_with(b"\xff\xfe") || head.starts_with(b"\xfe\xff") || head.len() > 3 && (zeros(0) != zeros(1)) {
+        return Some("this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+    }
+    // Escape colours what a terminal shows, and may be pasted with it.
+    let odd = |b: &&u8| **b < 9 || (14..32).contains(*b) && **b != 27;
+    let count = head.iter().filter(odd).count();
+    let binary = head.contains(&0) || count * 20 > head.len();
+    binary.then_some("this file is no text, but binary: a picture or a model, perhaps, in place of a scene")
+}
+
+#[cfg(test)]
+mod tests;

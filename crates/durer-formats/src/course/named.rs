@@ -1,0 +1,150 @@
+//! Names: of materials, and of objects that are defined once and used many times.
+
+use super::lexer::TokenKind;
+use super::nodes::paint;
+use super::reader::Reader;
+use super::words::dialects_of;
+use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_scene::dialect::set;
+use durer_scene::scene::{Group, Node, Object};
+
+/// Objects of a scene that uses defined ones, each counted as often as it is there.
+const MAX_OBJECTS: usize = 1 << 20;
+
+impl Reader<'_, '_> {
+    /// The name of a material, between its keyword and its block.
+    pub(super) fn material_name(&mut self) -> Option<(String, Span)> {
+        let named = self.peek_word().filter(|_| self.ahead(1).is_some_and(|next| next.kind == TokenKind::Open));
+        let name = named.filter(|name| dialects_of(name).is_none())?;
+        let span = self.advance();
+        self.foreign("names of materials", span, set::DURER);
+        Some((name, span))
+    }
+
+    /// Gives the material that comes next a name.
+    pub(super) fn name_material(&mut self, (name, span): (String, Span)) {
+        if !self.is_name(&name, span) {
+            return;
+        }
+        let number = self.scene.materials.len() as u32;
+        if self.named.materials.insert(name.clone(), number).is_some() {
+            self.error(Diagnostic::error(format!("there is a material `{name}` already")).code("repeated").at(span));
+        }
+    }
+
+    /// A material's number, or the one of its name.
+    pub(super) fn material_number(&mut self, word: &str) -> Option<u32> {
+        let name = self.peek_word().filter(|text| !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)));
+        // A word of the language shows that the number is missing.
+        let Some(name) = name.filter(|name| self.named.materials.contains_key(name) || dialects_of(name).is_none())
+        else {
+            return self.whole(word);
+        };
+        let span = self.advance();
+        let number = self.named.materials.get(&name).copied();
+        if number.is_none() {
+            let near = did_you_mean(&name, self.named.materials.keys().map(String::as_str)).map(str::to_string);
+            let error =
+                Diagnostic::error(format!("there is no material `{name}` before this")).code("unknown-word").at(span);
+            self.error_once(match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
+                None => error.help("a material has its name before its block, as in `PhongMaterial gold { ... }`"),
+            });
+            return None;
+        }
+        self.foreign("names of materials", span, set::DURER);
+        number
+    }
+
+    /// Whether a word can be a name; complains if not.
+    fn is_name(&mut self, name: &str, span: Span) -> bool {
+        let taken = dialects_of(name).is_some();
+        let number = name.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
+        if taken || number {
+            let why = if taken { "a word of the language" } else { "a number" };
+            let error = Diagnostic::error(format!("`{name}` cannot be a name: it is {why}")).code("bad-value");
+            self.error(error.at(span));
+        }
+        !taken && !number
+    }
+
+    /// A name that a word needs.
+    fn name_after(&mut self, word: &str) -> Option<(String, Span)> {
+        let Some(name) = self.peek_word() else {
+            self.expected("a name", word);
+            return None;
+        };
+        let span = self.advance();
+        Some((name, span))
+    }
+
+    /// `define NAME object`: nothing is shown yet. What is in it and has no material gets that of
+    /// the place where it is used.
+    pub(super) fn define(&mut self, keyword: Span) {
+        self.foreign("define", keyword, set::DURER);
+        let Some((name, span)) = self.name_after("define") else { return };
+        let sound = self.is_name(&name, span);
+        let Some(word) = self.peek_word() else { return self.expected("an object", "define") };
+        let at = self.advance();
+        let (outer, used) = (self.material.take(), self.named.used);
+        let object = self.object(&word, at);
+        self.material = outer;
+        // What is used in it counts where it is used itself.
+        self.named.used = used;
+        let Some(object) = object.filter(|_| sound) else {
+            self.named.broken.insert(name);
+            return;
+        };
+        if let Some((_, _, first)) = self.named.objects.get(&name) {
+            let error = Diagnostic::error(format!("`{name}` is defined already")).code("repeated").at(span);
+            let error = error.related(*first, "the first is here");
+            return self.error(error);
+        }
+        let count = count(&object);
+        self.named.objects.insert(name, (object, count, span));
+    }
+
+    /// `use NAME`: what was defined by that name.
+    pub(super) fn used(&mut self, keyword: Span) -> Option<Node> {
+        self.foreign("use", keyword, set::DURER);
+        let (name, span) = self.name_after("use")?;
+        if self.named.broken.contains(&name) {
+            self.repeated += 1;
+            return None;
+        }
+        let Some((object, count, _)) = self.named.objects.get(&name) else {
+            let near = did_you_mean(&name, self.named.objects.keys().map(String::as_str)).map(str::to_string);
+            let error =
+                Diagnostic::error(format!("nothing is defined as `{name}` before this")).code("unknown-word").at(span);
+            self.error_once(match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
+                None => error.help("write `define NAME` and an object first, outside of what uses it"),
+            });
+            return None;
+        };
+        self.named.used = self.named.used.saturating_add(*count);
+        if self.named.used > MAX_OBJECTS {
+            let message = format!("more than {MAX_OBJECTS} objects, each counted as often as it is used, are too many");
+            self.error(Diagnostic::error(message).code("limit").at(keyword.to(span)));
+            self.stop();
+            return None;
+        }
+        let mut object = object.clone();
+        if let Some(material) = self.material {
+            paint(&mut object, material);
+        }
+        // A group of one object has no material of its own.
+        Some(Node::Group(Group { objects: vec![object] }))
+    }
+}
+
+/// How many objects an object is made of.
+fn count(object: &Object) -> usize {
+    let all = |objects: &[Object]| objects.iter().map(count).fold(0, usize::saturating_add);
+    1 + match &object.node {
+        Node::Group(group) => all(&group.objects),
+        Node::Transform(_, inner) => count(inner),
+        Node::Solid(_, parts) => all(parts),
+        _ => 0,
+    }
+}

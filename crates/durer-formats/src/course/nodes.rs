@@ -1,0 +1,319 @@
+//! The grammar of 2020 to 2023: a tree of nodes with components.
+
+use super::fields::Order;
+use super::reader::Reader;
+use super::words::camera_of;
+use crate::report::shown;
+use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_scene::camera::Camera;
+use durer_scene::describe::DescribedList;
+use durer_scene::dialect::{Dialect, set};
+use durer_scene::light::Light;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Group, MatrixOp, Node, Object, Operation, Spanned};
+use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
+use glam::DVec3;
+
+impl Reader<'_, '_> {
+    /// The whole file.
+    pub(super) fn nodes_file(&mut self) {
+        self.scene.lights = Some(Vec::new());
+        self.top(&["Camera", "Background", "Materials", "Scene"], |reader, word, span| {
+            match word {
+                "Camera" => reader.camera(Camera::Perspective(Default::default()), span),
+                "Background" => reader.background(span),
+                "Materials" => reader.node_materials(span),
+                "Scene" => reader.root_node(span),
+                _ => match camera_of(word).filter(|camera| !matches!(camera, Camera::Perspective(_))) {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
+            }
+            true
+        });
+    }
+
+    fn node_materials(&mut self, keyword: Span) {
+        self.scene.materials.clear();
+        if !self.open(keyword) {
+            return;
+        }
+        while let Some((word, span)) = self.word_before_close() {
+            if let Some(value) = self.material(&word, span) {
+                self.scene.materials.push(Spanned { value, span });
+            }
+        }
+    }
+
+    fn root_node(&mut self, keyword: Span) {
+        let mut inside = self.node(keyword);
+        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), self.options.compat);
+        let lights = std::mem::take(&mut inside.lights).into_iter().map(|(mut light, position)| {
+            if let Light::Point(point) = &mut light.value {
+                point.position = to_world.transform_point3(position).as_vec3();
+            }
+            light
+        });
+        self.scene.lights = Some(lights.collect());
+        self.scene.root = match inside.ops {
+            None => Some(Group { objects: inside.objects }),
+            Some(_) => Some(Group { objects: inside.object(keyword).into_iter().collect() }),
+        };
+    }
+
+    /// Reads one node: its transform, its components and its nodes, in any order.
+    fn node(&mut self, keyword: Span) -> Inside {
+        const KNOWN: [&str; 5] = ["Node", "Transform", "Component<Material>", "Component<Light>", "Component<Object>"];
+        let mut inside = Inside::default();
+        if !self.descend("nodes", keyword) || !self.open(keyword) {
+            return inside;
+        }
+        let (mut material_span, mut transform_span) = (None, None);
+        while let Some((word, span)) = self.word_before_close() {
+            match word.as_str() {
+                "Transform" => {
+                    if let Some(first) = transform_span.replace(span) {
+                        let warning = Diagnostic::warning("a node has one transform; the last counts").at(span);
+                        let warning = warning.related(first, "the first is here");
+                        self.diagnostics.push(warning.help("nested nodes have one each"));
+                    }
+                    inside.ops = Some(self.node_matrices(span));
+                }
+                "Node" => {
+                    let child = self.node(span);
+                    inside.has_nodes = true;
+                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), self.options.compat);
+                    let lights = child.lights.iter().map(|(light, p)| (light.clone(), to_outer.transform_point3(*p)));
+                    inside.lights.extend(lights);
+                    inside.objects.extend(child.object(span));
+                }
+                "Component<Material>" => {
+                    if let Some(first) = material_span.replace(span) {
+                        let warning = Diagnostic::warning("a node has one material; the last counts").at(span);
+                        self.diagnostics.push(warning.related(first, "the first is here"));
+                    }
+                    inside.material = self.component_index(span).or(inside.material);
+                }
+                "Component<Light>" => inside.lights.extend(self.component_light(span)),
+                "Component<Object>" => {
+                    let node = self.component_object(span);
+                    inside.objects.extend(node.map(|node| Object { node, material: None, span }));
+                }
+                _ => match Operation::from_keyword(&word) {
+                    Some(operation) => {
+                        self.foreign(&word, span, set::DURER);
+                        let node = Node::Solid(operation, self.node_parts(span));
+                        inside.objects.push(Object { node, material: None, span });
+                    }
+                    None => self.unknown(&word, span, "in a node", &KNOWN),
+                },
+            }
+        }
+        self.depth -= 1;
+        if let Some(material) = inside.material {
+            inside.objects.iter_mut().for_each(|object| paint(object, material));
+        }
+        inside
+    }
+
+    /// The parts of a solid, each a node without lights.
+    fn node_parts(&mut self, keyword: Span) -> Vec<Object> {
+        let mut parts = Vec::new();
+        if !self.open(keyword) {
+            return parts;
+        }
+        while let Some((word, span)) = self.word_before_close() {
+            match word.as_str() {
+                "Node" => {
+                    let part = self.node(span);
+                    if let Some((light, _)) = part.lights.first() {
+                        self.error(Diagnostic::error("a light cannot be part of a solid").at(light.span));
+                    }
+                    parts.extend(part.object(span));
+                }
+                _ => self.unknown(&word, span, "in a solid", &["Node"]),
+            }
+        }
+        parts
+    }
+
+    fn node_matrices(&mut self, keyword: Span) -> Vec<MatrixOp> {
+        const KNOWN: [&str; 7] = ["translate", "scale", "x_rotate", "y_rotate", "z_rotate", "uniform_scale", "rotate"];
+        let mut ops = Vec::new();
+        if !self.open(keyword) {
+            return ops;
+        }
+        while let Some((word, span)) = self.word_before_close() {
+            let op = match word.as_str() {
+                "translate" => self.vec3(&word).map(MatrixOp::Translate),
+                "scale" => self.vec3(&word).map(MatrixOp::Scale),
+                "uniform_scale" => self.number(&word, 1, 1).map(MatrixOp::UniformScale),
+                "x_rotate" => self.number(&word, 1, 1).map(MatrixOp::XRotate),
+                "y_rotate" => self.number(&word, 1, 1).map(MatrixOp::YRotate),
+                "z_rotate" => self.number(&word, 1, 1).map(MatrixOp::ZRotate),
+                "rotate" => self.vec3(&word).and_then(|axis| Some(MatrixOp::Rotate(axis, self.number(&word, 1, 1)?))),
+                // What nodes have no word for is written as in the years before.
+                "Matrix4f" => self.matrix(&word, span).flatten(),
+                _ => {
+                    self.unknown(&word, span, "in a transform", &KNOWN);
+                    continue;
+                }
+            };
+            if op.is_none() {
+                self.skip_values();
+            }
+            self.check_flat(op, span);
+            ops.extend(op);
+        }
+        ops
+    }
+
+    fn component_index(&mut self, keyword: Span) -> Option<u32> {
+        let errors = self.errors();
+        if !self.open(keyword) {
+            return None;
+        }
+        let mut index = None;
+        while let Some((word, span)) = self.word_before_close() {
+            if word != "index" {
+                self.unknown(&word, span, "in a material component", &["index"]);
+                continue;
+            }
+            index = self.whole(&word);
+            match index {
+                Some(index) => self.material_uses.push((index, span.to(self.last_span()))),
+                None => self.skip_values(),
+            }
+        }
+        if index.is_none() && self.errors() == errors {
+            let message = format!("`{}` has no `index`", self.text(keyword));
+            self.error(Diagnostic::error(message).at(keyword));
+        }
+        index
+    }
+
+    /// The `type` of a component, whose `{` is left to be read by its fields: one of the known
+    /// ones, or of ours.
+    fn component_type(&mut self, keyword: Span, known: &[&str], ours: &[&str]) -> Option<String> {
+        // The word after `{ type` is known before any field is read: type comes first in every
+        // file.
+        let name = self.text(keyword);
+        let at = |reader: &Self, i: usize| reader.ahead(i).map(|t| (reader.text(t.span), t.span));
+        let first = at(self, usize::from(self.at_open()));
+        let Some((_, first_span)) = first.filter(|(word, _)| word == "type") else {
+            let span = at(self, 1).map_or(keyword, |(_, span)| span);
+            let error = Diagnostic::error(format!("`{name}` must begin with its `type`")).at(span);
+            self.error(error.help(format!("types are {}", known.join(", "))));
+            if self.at_open() {
+                self.skip_block();
+            }
+            return None;
+        };
+        let (kind, span) = at(self, 1 + usize::from(self.at_open())).unwrap_or((String::new(), first_span));
+        if known.contains(&kind.as_str()) || ours.contains(&kind.as_str()) {
+            return Some(kind);
+        }
+        let error = Diagnostic::error(format!("`{name}` has no type {}", shown(kind.as_bytes()))).at(span);
+        let list = format!("types are {}", known.join(", "));
+        self.error(
+            error.help(
+                did_you_mean(&kind, known.iter().copied()).map_or(list, |near| format!("did you mean `{near}`?")),
+            ),
+        );
+        if self.at_open() {
+            self.skip_block();
+        }
+        None
+    }
+
+    /// A light, placed as if its node were the whole scene, and its place there in full precision.
+    fn component_light(&mut self, keyword: Span) -> Option<(Spanned<Light>, DVec3)> {
+        let kind = self.component_type(keyword, &["point", "directional"], &[])?;
+        let mut light = Light::from_keyword(&kind)?;
+        if let Light::Point(point) = &mut light {
+            point.position = Vec3::ZERO;
+        }
+        self.component_fields(&mut light, keyword);
+        let position = if let Light::Point(point) = &light { point.position.as_dvec3() } else { DVec3::ZERO };
+        Some((Spanned { value: light, span: keyword }, position))
+    }
+
+    fn component_object(&mut self, keyword: Span) -> Option<Node> {
+        // What nodes have no word for is written as in our own dialect.
+        let own = Primitive::kinds().into_iter().map(|shape| shape.keyword(Dialect::F23));
+        let own: Vec<&str> = own.filter(|word| word.starts_with(char::is_uppercase)).chain(["HeightField"]).collect();
+        let kind = self.component_type(keyword, &["sphere", "plane", "triangle", "mesh", "Grid"], &own)?;
+        if kind == "Grid" {
+            return Some(self.voxels(keyword));
+        }
+        if kind == "HeightField" {
+            let mut field = HeightField::default();
+            self.component_fields(&mut field, keyword);
+            return Some(Node::HeightField(field));
+        }
+        if kind == "mesh" {
+            let mut mesh = TriangleMesh::default();
+            self.component_fields(&mut mesh, keyword);
+            return Some(Node::Mesh(mesh));
+        }
+        let mut shape = Primitive::from_keyword(&kind)?;
+        if let Primitive::Sphere(sphere) = &mut shape {
+            sphere.center = Vec3::ZERO;
+        }
+        self.component_fields(&mut shape, keyword);
+        Some(Node::Primitive(shape))
+    }
+
+    /// The fields of a component, of which `type` is passed over.
+    fn component_fields<T: DescribedList>(&mut self, thing: &mut T, keyword: Span) {
+        self.fields(thing, keyword, Order::Any, |reader, word, _| {
+            let is_type = word == "type";
+            if is_type {
+                reader.advance();
+            }
+            is_type
+        });
+    }
+}
+
+/// What a node holds.
+#[derive(Default)]
+struct Inside {
+    /// Its own matrices; `None` without a `Transform`.
+    ops: Option<Vec<MatrixOp>>,
+    material: Option<u32>,
+    objects: Vec<Object>,
+    /// Its lights and those of its nodes, and where they are in its own space.
+    lights: Vec<(Spanned<Light>, DVec3)>,
+    has_nodes: bool,
+}
+
+impl Inside {
+    /// The node as one object; `None` if it is there for its lights alone.
+    fn object(self, span: Span) -> Option<Object> {
+        let Inside { ops, material, mut objects, lights, has_nodes } = self;
+        if objects.is_empty() && !lights.is_empty() {
+            return None;
+        }
+        let alone = objects.len() == 1 && (ops.is_some() || !has_nodes);
+        let inner = match alone.then(|| objects.pop()).flatten() {
+            Some(object) => object,
+            None => Object { node: Node::Group(Group { objects }), material, span },
+        };
+        Some(match ops {
+            Some(ops) => Object { node: Node::Transform(ops, Box::new(inner)), material, span },
+            None => inner,
+        })
+    }
+}
+
+/// Gives a material to what has none of its own.
+pub(super) fn paint(object: &mut Object, material: u32) {
+    object.material.get_or_insert(material);
+    match &mut object.node {
+        Node::Group(group) => group.objects.iter_mut().for_each(|object| paint(object, material)),
+        Node::Transform(_, inner) => paint(inner, material),
+        Node::Solid(_, parts) => parts.iter_mut().for_each(|part| paint(part, material)),
+        Node::Primitive(_) | Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {}
+    }
+}

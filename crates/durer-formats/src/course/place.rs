@@ -1,0 +1,89 @@
+//! Where in a file the value of a field is written: for those who change it.
+
+use super::lexer::{Token, TokenKind, tokens};
+use durer_diag::Span;
+
+/// The tokens inside the block that a keyword begins, and not inside blocks in it, with the block's
+/// end.
+fn inside(bytes: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
+    let rest = bytes.get(keyword.start as usize..)?;
+    // Blocks are short: the rest of a long file is not read for each of them.
+    let mut reach = 1 << 10;
+    loop {
+        let part = &rest[..rest.len().min(reach)];
+        match block_of(part, keyword) {
+            None if part.len() < rest.len() => reach *= 8,
+            found => return found,
+        }
+    }
+}
+
+/// The same for a text that begins with the keyword; `None` where the block does not end in it.
+fn block_of(text: &[u8], keyword: Span) -> Option<(Vec<Token>, u32)> {
+    let moved = |token: Token| {
+        let Span { file, start, end } = token.span;
+        Token { span: Span { file, start: start + keyword.start, end: end + keyword.start }, ..token }
+    };
+    let mut rest = tokens(text, keyword.file).into_iter().filter(|token| token.kind != TokenKind::Comment).map(moved);
+    rest.next()?;
+    rest.next().filter(|token| token.kind == TokenKind::Open)?;
+    let (mut depth, mut own) = (1, Vec::new());
+    for token in rest {
+        match token.kind {
+            TokenKind::Open => depth += 1,
+            TokenKind::Close => depth -= 1,
+            _ if depth == 1 => own.push(token),
+            _ => {}
+        }
+        if depth == 0 {
+            return Some((own, token.span.end));
+        }
+    }
+    None
+}
+
+/// The place of a field's value: its numbers, or the one word after it. The last where it is given
+/// several times, as it counts.
+pub fn value(bytes: &[u8], keyword: Span, field: &str) -> Option<Span> {
+    let text = |span: Span| std::str::from_utf8(&bytes[span.start as usize..span.end as usize]).unwrap_or_default();
+    let (own, _) = inside(bytes, keyword)?;
+    let at = own.iter().rposition(|token| text(token.span) == field)?;
+    let values = &own[at + 1..];
+    let numbers = values.iter().take_while(|token| text(token.span).parse::<f32>().is_ok()).count();
+    let first = values.first()?.span;
+    Some(first.to(values[numbers.max(1) - 1].span))
+}
+
+/// A whole block, from its keyword to its last brace.
+pub fn block(bytes: &[u8], keyword: Span) -> Option<Span> {
+    inside(bytes, keyword).map(|(_, end)| Span { end, ..keyword })
+}
+
+/// The keyword of a section at the top of a file, if it has it; the last, which counts.
+pub fn section(bytes: &[u8], file: u32, keyword: &str) -> Option<Span> {
+    let (mut depth, mut found) = (0, None);
+    for token in tokens(bytes, file) {
+        match token.kind {
+            TokenKind::Open => depth += 1,
+            TokenKind::Close => depth -= 1,
+            TokenKind::Word
+                if depth == 0 && &bytes[token.span.start as usize..token.span.end as usize] == keyword.as_bytes() =>
+            {
+                found = Some(token.span);
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+/// The places of the words after each occurrence of a word.
+pub fn values(bytes: &[u8], file: u32, word: &str) -> Vec<Span> {
+    let tokens: Vec<Token> = tokens(bytes, file).into_iter().filter(|token| token.kind != TokenKind::Comment).collect();
+    let is_word = |token: &Token| &bytes[token.span.start as usize..token.span.end as usize] == word.as_bytes();
+    tokens
+        .windows(2)
+        .filter(|pair| is_word(&pair[0]) && pair[1].kind == TokenKind::Word)
+        .map(|pair| pair[1].span)
+        .collect()
+}

@@ -1,0 +1,240 @@
+//! Random scenes, made by walking what every thing says of its fields: for tests, and for fuzzing,
+//! whose bytes then decide.
+
+use durer_scene::camera::Camera;
+use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
+use durer_scene::dialect::Dialect;
+use durer_scene::light::Light;
+use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, is_material_index};
+use durer_scene::math::Vec3;
+use durer_scene::medium::Fog;
+use durer_scene::scene::{
+    Assets, Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Operation, Scene, Spanned,
+};
+use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
+
+/// A source of choices: given bytes, and after them a generator of random numbers (Knuth's
+/// multiplier, the upper half of the state).
+pub struct Random {
+    state: u64,
+    bytes: std::vec::IntoIter<u8>,
+    /// Whether scenes should be such as can be rendered: small numbers, and files `a.obj` and
+    /// `a.ppm`.
+    tame: bool,
+}
+
+impl Random {
+    /// Random choices.
+    pub fn seeded(state: u64) -> Self {
+        Random { state, bytes: Vec::new().into_iter(), tame: false }
+    }
+
+    /// Choices that bytes make, for scenes that can be rendered.
+    pub fn tame(bytes: &[u8]) -> Self {
+        Random { state: 1, bytes: Vec::from(bytes).into_iter(), tame: true }
+    }
+
+    /// A number below another, which is not 0.
+    pub fn below(&mut self, n: usize) -> usize {
+        // Two bytes say more than 256 things.
+        let count = if n > 256 { 2 } else { 1 };
+        if self.bytes.len() >= count {
+            return self.bytes.by_ref().take(count).fold(0, |number, byte| number << 8 | usize::from(byte)) % n;
+        }
+        self.state = self.state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.state >> 33) as usize % n
+    }
+
+    /// Any finite number, odd ones among them.
+    pub fn float(&mut self) -> f32 {
+        if self.tame {
+            return self.below(129) as f32 / 16.0 - 4.0;
+        }
+        match self.below(6) {
+            0 => [0.0, -0.0, 1.0, f32::MAX, f32::MIN_POSITIVE, 1e-45, 16777216.0, 0.1][self.below(8)],
+            1 => self.below(100) as f32 / 8.0 - 5.0,
+            _ => loop {
+                let value = f32::from_bits((self.below(1 << 16) << 16 | self.below(1 << 16)) as u32);
+                if value.is_finite() {
+                    break value;
+                }
+            },
+        }
+    }
+
+    fn vec3(&mut self) -> Vec3 {
+        Vec3::new(self.float(), self.float(), self.float())
+    }
+
+    /// A value that a field may have; materials are below `materials`.
+    fn value(&mut self, field: &Field, materials: usize) -> Value {
+        loop {
+            let value = match field.kind {
+                Kind::Float => Value::Float(self.float()),
+                Kind::Int if is_material_index(field) => Value::Int(self.below(materials) as u32),
+                Kind::Int => Value::Int(self.below(40) as u32),
+                Kind::Vec3 => Value::Vec3(self.vec3()),
+                Kind::Path if self.tame => {
+                    let path = if field.name == "obj_file" { "a.obj" } else { "a.ppm" }.into();
+                    Value::Path(FileName { path, ..Default::default() })
+                }
+                Kind::Path => {
+                    let path = ["a.obj", "meshes/B-2.OBJ", "../x", "Sphere", "\\w\\é.bmp"][self.below(5)].into();
+                    Value::Path(FileName { path, ..Default::default() })
+                }
+                Kind::Word(words) => Value::Word(words[self.below(words.len())].into()),
+                Kind::Rows(width) => {
+                    Value::Rows((0..self.below(6)).map(|_| (0..width).map(|_| self.float()).collect()).collect())
+                }
+            };
+            // Angles are rare among all numbers.
+            let value = match (field.rule, value) {
+                (Rule::Counts(most), _) => {
+                    Value::Vec3(Vec3::from([0; 3].map(|_| 1.0 + self.below(most as usize) as f32)))
+                }
+                (Rule::From(low, high), _) => Value::Float(low + (high - low) * self.below(1001) as f32 / 1000.0),
+                (Rule::Between(low, high), _) => {
+                    Value::Float(low + (high - low) * (1 + self.below(998)) as f32 / 1000.0)
+                }
+                (Rule::Share, _) => Value::Float(self.below(1001) as f32 / 1000.0),
+                (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
+                (_, value) => value,
+            };
+            if field.rule.violation(&value).is_none() {
+                return value;
+            }
+        }
+    }
+
+    fn thing<T: DescribedList>(&mut self, materials: usize) -> T {
+        let mut kinds = T::kinds();
+        let mut thing = kinds.remove(self.below(kinds.len()));
+        for (i, field) in thing.fields().iter().enumerate() {
+            // A sky is six files.
+            let missing = self.tame && field.name.to_lowercase().starts_with("cube");
+            if field.required || self.below(2) == 0 && !missing {
+                let value = self.value(field, materials);
+                thing.set(i, value);
+            }
+        }
+        thing
+    }
+
+    fn matrix(&mut self) -> MatrixOp {
+        let nonzero = |random: &mut Self| loop {
+            let v = random.vec3();
+            if !v.to_array().contains(&0.0) {
+                break v;
+            }
+        };
+        match self.below(8) {
+            0 => MatrixOp::Translate(self.vec3()),
+            1 => MatrixOp::Scale(nonzero(self)),
+            2 => MatrixOp::UniformScale(nonzero(self).x),
+            3 => MatrixOp::XRotate(self.float()),
+            4 => MatrixOp::YRotate(self.float()),
+            5 => MatrixOp::ZRotate(self.float()),
+            6 => MatrixOp::Rotate(nonzero(self), self.float()),
+            _ => {
+                let mut rows = std::array::from_fn(|_| self.float());
+                rows[12..].copy_from_slice(&[0.0, 0.0, 0.0, 1.0]);
+                MatrixOp::Matrix(rows)
+            }
+        }
+    }
+
+    fn matrices(&mut self) -> Vec<MatrixOp> {
+        (0..self.below(4)).map(|_| self.matrix()).collect()
+    }
+
+    fn object(&mut self, depth: usize, materials: usize, current: &mut Option<u32>, may_change: bool) -> Object {
+        if may_change && materials > 0 && self.below(2) == 0 {
+            *current = Some(self.below(materials + 1) as u32);
+        }
+        let material = *current;
+        let node = match self.below(if depth > 4 { 5 } else { 8 }) {
+            0 | 1 => Node::Primitive(self.thing::<Primitive>(materials)),
+            2 => Node::Mesh(self.thing::<TriangleMesh>(materials)),
+            3 => Node::HeightField(self.thing::<HeightField>(materials)),
+            4 => Node::Voxels(
+                self.thing::<VoxelGrid>(materials),
+                (0..self.below(3))
+                    .map(|_| Sphere { center: self.vec3(), radius: 1.0 + self.below(9) as f32 })
+                    .collect(),
+            ),
+            5 => Node::Solid(
+                Operation::ALL[self.below(5)].1,
+                (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
+            ),
+            6 => Node::Group(Group {
+                objects: (0..self.below(4)).map(|_| self.object(depth + 1, materials, current, true)).collect(),
+            }),
+            _ => {
+                let ops = self.matrices();
+                Node::Transform(ops, Box::new(self.object(depth + 1, materials, current, false)))
+            }
+        };
+        Object { node, material, span: Default::default() }
+    }
+
+    /// Textures of different names.
+    fn textures(&mut self) -> Assets {
+        let mut assets = Assets::default();
+        for i in 0..self.below(3) {
+            assets.pictures.insert(format!("t{i}"), self.thing::<NamedTexture>(0).picture());
+        }
+        assets
+    }
+
+    /// A scene that the dialect's text can hold, as reading it would make it.
+    pub fn scene(&mut self, dialect: Dialect) -> Scene {
+        let nodes = dialect == Dialect::F23;
+        fn spanned<T>(value: T) -> Spanned<T> {
+            Spanned { value, span: Default::default() }
+        }
+        let mut materials = Vec::new();
+        for i in 0..self.below(6) {
+            materials.push(spanned(if i > 0 && self.below(3) == 0 {
+                Material::Solid(self.thing::<Solid>(i), self.matrices())
+            } else if dialect == Dialect::Durer && self.below(3) == 0 {
+                Material::Principled(Box::new(self.thing::<PrincipledMaterial>(i)))
+            } else if dialect == Dialect::Durer && self.below(4) == 0 {
+                Material::Hair(self.thing::<HairMaterial>(i))
+            } else {
+                let noise = (self.below(3) == 0).then(|| self.thing::<ColorNoise>(i));
+                Material::Phong(Box::new(self.thing::<PhongMaterial>(i)), noise)
+            }));
+        }
+        let light = |random: &mut Self| {
+            // The trees of nodes know lights of their own only.
+            let mut value = loop {
+                let value = random.thing::<Light>(0);
+                if !(nodes && value.is_ours()) {
+                    break value;
+                }
+            };
+            if let (Light::Point(point), true) = (&mut value, nodes) {
+                // A node adds its place to 0, which makes 0 of -0.
+                point.position += Vec3::ZERO;
+            }
+            Spanned { value, span: Default::default() }
+        };
+        let lights = (nodes || self.below(4) > 0).then(|| (0..self.below(4)).map(|_| light(self)).collect());
+        let mut current = None;
+        let objects = (0..self.below(5)).map(|_| self.object(0, materials.len(), &mut current, true)).collect();
+        Scene {
+            wishes: Default::default(),
+            camera: (self.below(4) > 0).then(|| self.thing::<Camera>(0)),
+            background: self.thing::<Background>(0),
+            fog: (dialect == Dialect::Durer && self.below(3) == 0).then(|| spanned(self.thing::<Fog>(0))),
+            lights,
+            materials,
+            root: (nodes || self.below(8) > 0).then_some(Group { objects }),
+            assets: if dialect == Dialect::Durer { self.textures() } else { Default::default() },
+            up: None,
+            lumens: None,
+            camera_span: Default::default(),
+            background_span: Default::default(),
+        }
+    }
+}

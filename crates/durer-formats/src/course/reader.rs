@@ -1,0 +1,300 @@
+//! A file being read: its tokens, and how reading goes on after a mistake.
+
+use super::ReadOptions;
+use super::include::{Opened, Splicer, Texts};
+use super::lexer::{Token, TokenKind, tokens};
+use super::words::{begins_block, dialects_of, home_of, is_section};
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::dialect::{Dialect, DialectSet};
+use durer_scene::scene::{Object, Scene};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+
+/// Groups, transforms and nodes may be nested this deep.
+const DEEPEST: usize = 200;
+
+/// What has a name in the file.
+#[derive(Default)]
+pub(super) struct Named {
+    pub materials: BTreeMap<String, u32>,
+    pub objects: BTreeMap<String, (Object, usize, Span)>,
+    /// Names whose object is wrong, of which that is told.
+    pub broken: BTreeSet<String>,
+    /// Objects that are there by `use`.
+    pub used: usize,
+}
+
+impl Named {
+    /// Forgets the names of materials.
+    pub fn clear_materials(&mut self) {
+        self.materials.clear();
+    }
+}
+
+/// A file being read.
+pub(super) struct Reader<'a, 'd> {
+    texts: Texts<'a>,
+    tokens: Vec<Token>,
+    pub at: usize,
+    pub options: ReadOptions,
+    pub diagnostics: &'d mut Diagnostics,
+    pub scene: Scene,
+    pub foreign_seen: HashSet<String>,
+    pub depth: usize,
+    /// The keywords of the blocks that are open, outermost first.
+    pub blocks: Vec<Span>,
+    /// The token before which a missing `}` was reported: all blocks that end there are complained
+    /// of once.
+    pub unclosed_at: Option<usize>,
+    /// Whether nothing more is reported, since the rest of the file was given up.
+    stopped: bool,
+    /// The current material, for all objects that follow.
+    pub material: Option<u32>,
+    /// Every `MaterialIndex`, to be checked when all materials are known.
+    pub material_uses: Vec<(u32, Span)>,
+    /// Materials and objects with names.
+    pub named: Named,
+    /// Errors that were told once for several places.
+    pub repeated: usize,
+}
+
+impl<'a, 'd> Reader<'a, 'd> {
+    pub(super) fn new(
+        bytes: &'a [u8],
+        file: u32,
+        options: ReadOptions,
+        open: &dyn Fn(&str) -> Opened,
+        diagnostics: &'d mut Diagnostics,
+    ) -> Self {
+        let (mut all, mut texts) = (tokens(bytes, file), Texts::new(bytes, file));
+        if options.dialect == Dialect::Durer {
+            let stack = Vec::new();
+            let mut splicer = Splicer { open, texts: &mut texts, diagnostics, stack, files: 0, words: 0 };
+            all = splicer.splice(all);
+        }
+        let (comments, tokens): (Vec<Token>, Vec<Token>) = all.into_iter().partition(|t| t.kind == TokenKind::Comment);
+        let mut reader = Reader {
+            texts,
+            tokens,
+            at: 0,
+            options,
+            diagnostics,
+            scene: Scene::default(),
+            foreign_seen: HashSet::new(),
+            depth: 0,
+            blocks: Vec::new(),
+            unclosed_at: None,
+            stopped: false,
+            material: None,
+            material_uses: Vec::new(),
+            named: Named::default(),
+            repeated: 0,
+        };
+        reader.check_form(&comments);
+        reader
+    }
+
+    /// Complains of comments and of missing blanks where the old programs did.
+    fn check_form(&mut self, comments: &[Token]) {
+        if !self.options.strict {
+            let slashes = comments.iter().find(|c| self.texts.at(c.span).starts_with(b"/"));
+            if let Some(comment) = slashes {
+                let message = "comments begin with `#`; this one is passed over all the same";
+                let slashes = Span { end: comment.span.start + 2, ..comment.span };
+                let warning = Diagnostic::warning(message).code("comment").at(comment.span);
+                self.diagnostics.push(warning.fix(slashes, "#"));
+            }
+            return;
+        }
+        if let Some(comment) = comments.first() {
+            self.error(Diagnostic::error("the course's language has no comments").at(comment.span));
+        }
+        // They read words up to the next blank, but a number ends where it cannot go on.
+        for i in 1..self.tokens.len() {
+            let (before, token) = (self.tokens[i - 1], self.tokens[i]);
+            let ends_number = token.kind == TokenKind::Close && self.text(before.span).parse::<f32>().is_ok();
+            if token.touches && !ends_number {
+                let place = if token.kind == TokenKind::Word { before } else { token };
+                let side = if token.kind == TokenKind::Word { "after" } else { "before" };
+                let message = format!("there must be a blank {side} `{}`", self.text(place.span));
+                self.error(Diagnostic::error(message).at(place.span));
+            }
+            if self.stopped {
+                return;
+            }
+        }
+    }
+
+    /// What was read, with the checks that need the whole file.
+    pub(super) fn finish(self) -> Scene {
+        let count = self.scene.materials.len();
+        for (index, span) in self.material_uses.iter().filter(|(index, _)| *index as usize >= count) {
+            let has = match count {
+                0 => "there are no materials".to_string(),
+                1 => "there is only material 0".to_string(),
+                n => format!("there are materials 0 to {}", n - 1),
+            };
+            let message = format!("material {index} does not exist: {has}");
+            let help = "objects that use it are drawn in plain grey";
+            self.diagnostics.push(Diagnostic::warning(message).code("material-index").at(*span).help(help));
+        }
+        self.scene
+    }
+
+    pub(super) fn peek(&self) -> Option<Token> {
+        self.tokens.get(self.at).copied()
+    }
+
+    /// The token so many further on.
+    pub(super) fn ahead(&self, count: usize) -> Option<Token> {
+        self.tokens.get(self.at + count).copied()
+    }
+
+    /// Whether `{` comes next.
+    pub(super) fn at_open(&self) -> bool {
+        self.peek().is_some_and(|t| t.kind == TokenKind::Open)
+    }
+
+    /// The next token's text, if it is a word.
+    pub(super) fn peek_word(&self) -> Option<String> {
+        self.peek().filter(|t| t.kind == TokenKind::Word).map(|t| self.text(t.span))
+    }
+
+    /// Goes to the next token and gives the place of this one.
+    pub(super) fn advance(&mut self) -> Span {
+        let span = self.peek().map_or(self.end_span(), |t| t.span);
+        self.at = (self.at + 1).min(self.tokens.len());
+        span
+    }
+
+    /// Goes back to the token that was read last, unless the rest of the file was given up.
+    pub(super) fn step_back(&mut self) {
+        if !self.stopped {
+            self.at -= 1;
+        }
+    }
+
+    pub(super) fn last_span(&self) -> Span {
+        self.tokens.get(self.at.wrapping_sub(1)).map_or(self.end_span(), |t| t.span)
+    }
+
+    pub(super) fn end_span(&self) -> Span {
+        self.texts.end()
+    }
+
+    pub(super) fn text(&self, span: Span) -> String {
+        String::from_utf8_lossy(self.texts.at(span)).into_owned()
+    }
+
+    /// How many errors there are: a block is checked as a whole only if none was found in it.
+    pub(super) fn errors(&self) -> usize {
+        self.diagnostics.error_count() + self.repeated
+    }
+
+    /// Reports an error about a name, which may stand at many places, once.
+    pub(super) fn error_once(&mut self, error: Diagnostic) {
+        let known = self.diagnostics.error_count();
+        if !self.stopped && !self.diagnostics.push_once(error) {
+            self.repeated += 1;
+        }
+        if self.diagnostics.error_count() > known && self.diagnostics.is_full() {
+            self.stop();
+        }
+    }
+
+    /// Reports an error, unless the rest of the file was given up; after too many, it is.
+    pub(super) fn error(&mut self, error: Diagnostic) {
+        if self.stopped {
+            return;
+        }
+        self.diagnostics.push(error);
+        if self.diagnostics.is_full() {
+            self.stop();
+        }
+    }
+
+    /// Gives up the rest of the file.
+    pub(super) fn stop(&mut self) {
+        self.stopped = true;
+        self.at = self.tokens.len();
+    }
+
+    /// Goes one level deeper, unless that is too deep.
+    pub(super) fn descend(&mut self, what: &str, span: Span) -> bool {
+        if self.depth >= DEEPEST {
+            self.error(Diagnostic::error(format!("{what} are nested deeper than {DEEPEST}")).at(span));
+            self.stop();
+            return false;
+        }
+        self.depth += 1;
+        true
+    }
+
+    /// Expects the `{` of a block. Where it is missing but the block's inside follows, it is read
+    /// as if it were there.
+    pub(super) fn open(&mut self, keyword: Span) -> bool {
+        let opens = self.at_open();
+        let name = self.text(keyword);
+        if opens {
+            self.advance();
+        } else {
+            self.expected("`{`", &name);
+        }
+        let is_inside = |word: &str| !begins_block(word) || home_of(word) == Some(&name);
+        let inside = self.peek_word().is_some_and(|word| dialects_of(&word).is_some() && is_inside(&word));
+        if opens || inside {
+            self.blocks.push(keyword);
+        }
+        opens || inside
+    }
+
+    /// The next word inside the innermost block; `None` after its end.
+    pub(super) fn word_before_close(&mut self) -> Option<(String, Span)> {
+        let name = self.blocks.last().map(|&block| self.text(block)).unwrap_or_default();
+        loop {
+            let Some(token) = self.peek() else {
+                let message = format!("the file ends inside `{name}`");
+                let braces = format!("\n{}\n", "}".repeat(self.blocks.len()));
+                let error = Diagnostic::error(message).code("unclosed-block").at(self.end_span());
+                let error = error.fix(self.end_span(), braces);
+                let error = self.blocks.iter().rev().take(1).fold(error, |e, &b| e.related(b, "opened here"));
+                self.error(error.label("`}` expected"));
+                self.stop();
+                self.blocks.pop();
+                return None;
+            };
+            if self.at_section() {
+                self.unclosed();
+                return None;
+            }
+            self.advance();
+            match token.kind {
+                TokenKind::Close => {
+                    self.blocks.pop();
+                    return None;
+                }
+                TokenKind::Open => {
+                    self.step_back();
+                    self.skip_block();
+                    self.error(Diagnostic::error(format!("`{{` without a keyword in `{name}`")).at(token.span));
+                }
+                _ => return Some((self.text(token.span), token.span)),
+            }
+        }
+    }
+
+    /// Whether a section begins here, which can only stand at the top of a file.
+    fn at_section(&self) -> bool {
+        let block = self.ahead(1).is_some_and(|t| t.kind == TokenKind::Open);
+        let word = self.peek_word().filter(|_| block).unwrap_or_default();
+        match self.options.dialect {
+            Dialect::F23 => matches!(word.as_str(), "Camera" | "Background" | "Materials" | "Scene"),
+            _ => is_section(&word) && word != "Group",
+        }
+    }
+}
+
+/// The names of some dialects.
+pub(super) fn names(set: DialectSet) -> String {
+    let years: Vec<&str> = Dialect::ALL.iter().filter(|d| d.is_in(set)).map(|d| d.name()).collect();
+    if years.is_empty() { "no dialect".to_string() } else { years.join(", ") }
+}

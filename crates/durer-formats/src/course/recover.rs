@@ -1,0 +1,149 @@
+//! How reading goes on after a mistake, so that one mistake is one error.
+
+use super::lexer::TokenKind;
+use super::meant::{counterpart, misplaced, slip};
+use super::reader::{Reader, names};
+use super::words::{dialects_of, home_of};
+use crate::report::shown;
+use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_scene::dialect::Dialect;
+
+impl Reader<'_, '_> {
+    /// Ends the innermost block before the next token, which cannot stand in it.
+    pub(super) fn unclosed(&mut self) {
+        let Some(block) = self.blocks.pop() else { return };
+        if self.unclosed_at != Some(self.at) {
+            self.unclosed_at = Some(self.at);
+            let span = self.peek().map_or(self.end_span(), |t| t.span);
+            let message = format!("`{}` cannot stand in `{}`", self.text(span), self.text(block));
+            let error = Diagnostic::error(message).code("unclosed-block").at(span);
+            let (before, brace) = (Span { end: span.start, ..span }, "}\n");
+            let error = error.label("is there a `}` missing before this?").fix(before, brace);
+            self.error(error.related(block, "opened here"));
+        }
+    }
+
+    /// Opens the block again that the `}` just read has closed, which is one too many.
+    pub(super) fn reopen_block(&mut self, keyword: Span, found: u32) {
+        let message = format!("this `}}` ends `{}` after {found}, but more of it follow", self.text(keyword));
+        let brace = self.last_span();
+        let error = Diagnostic::error(message).code("extra-brace").at(brace).fix(brace, "");
+        self.error(error.label("is this `}` one too many?"));
+        self.blocks.push(keyword);
+    }
+
+    /// Passes over `{ ... }` with all that is nested in it.
+    pub(super) fn skip_block(&mut self) {
+        let mut depth = 0usize;
+        while let Some(token) = self.peek() {
+            match token.kind {
+                TokenKind::Open => depth += 1,
+                TokenKind::Close => depth = depth.saturating_sub(1),
+                _ => {}
+            }
+            self.advance();
+            if depth == 0 {
+                return;
+            }
+        }
+    }
+
+    /// After a wrong value: passes over what is no word of the language.
+    pub(super) fn skip_values(&mut self) {
+        while self.peek_word().is_some_and(|word| dialects_of(&word).is_none()) {
+            self.advance();
+        }
+    }
+
+    /// After an unknown word: passes over its value, be it a word, numbers or a block.
+    pub(super) fn skip_value(&mut self) {
+        if self.at_open() {
+            return self.skip_block();
+        }
+        let mut first = true;
+        while let Some(word) = self.peek_word() {
+            let number = word.bytes().next().is_some_and(|b| b.is_ascii_digit() || b"+-.,(".contains(&b));
+            if dialects_of(&word).is_some() || !number && !first {
+                return;
+            }
+            self.advance();
+            if !number {
+                return;
+            }
+            first = false;
+        }
+    }
+
+    /// Reports a word that means nothing here, and passes over it, its values and its block.
+    pub(super) fn unknown(&mut self, word: &str, span: Span, place: &str, known: &[&str]) {
+        let message = match word.parse::<f32>() {
+            Ok(_) => format!("{} is a number too many {place}", shown(word.as_bytes())),
+            Err(_) => format!("{} means nothing {place}", shown(word.as_bytes())),
+        };
+        let list = || format!("known here: {}", known.join(", "));
+        let help = misplaced(word, place).map(String::from);
+        let help = help.or_else(|| self.advice(word, known.iter().copied())).unwrap_or_else(list);
+        let error = Diagnostic::error(message).code("unknown-word").at(span).label("not known here").help(help);
+        self.error(self.with_meant(error, word, span, known.iter().copied()));
+        while let Some(token) = self.peek() {
+            match token.kind {
+                TokenKind::Close => return,
+                TokenKind::Open => return self.skip_block(),
+                _ if known.contains(&self.text(token.span).as_str()) => return,
+                _ => {
+                    self.advance();
+                }
+            }
+        }
+    }
+
+    /// The known word that is meant by one that is none. A word of the language is hardly a slip of
+    /// another, unless of its capitals.
+    fn meant<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<&'w str> {
+        let known: Vec<&str> = known.into_iter().collect();
+        let there = counterpart(word, self.options.dialect);
+        if let Some(there) = known.iter().find(|known| there == Some(*known)) {
+            return Some(there);
+        }
+        if let Some((meant, _)) = slip(word, known.iter().copied()) {
+            return Some(meant);
+        }
+        let near = did_you_mean(word, known).filter(|near| *near != word)?;
+        (dialects_of(word).is_none() || near.eq_ignore_ascii_case(word)).then_some(near)
+    }
+
+    /// An error about a word, with the edit that makes it the one that is meant, if that is clear.
+    pub(super) fn with_meant<'w>(
+        &self,
+        error: Diagnostic,
+        word: &str,
+        span: Span,
+        known: impl IntoIterator<Item = &'w str>,
+    ) -> Diagnostic {
+        let meant = self.meant(word, known);
+        error.fix_at(meant.map(|_| span), meant.unwrap_or_default())
+    }
+
+    /// What may be meant by a word that stands in a wrong place.
+    pub(super) fn advice<'w>(&self, word: &str, known: impl IntoIterator<Item = &'w str>) -> Option<String> {
+        let known: Vec<&str> = known.into_iter().collect();
+        let year = self.options.dialect.name();
+        if let Some(near) = self.meant(word, known.iter().copied()) {
+            let remark = slip(word, known.iter().copied()).map(|slip| slip.1).filter(|remark| !remark.is_empty());
+            return Some(match (counterpart(word, self.options.dialect), remark) {
+                (Some(there), _) if there == near => format!("in {year} it is `{near}`"),
+                (_, Some(remark)) => format!("did you mean `{near}`? {remark}"),
+                _ => format!("did you mean `{near}`?"),
+            });
+        }
+        let set = dialects_of(word)?;
+        let nodes = self.options.dialect == Dialect::F23;
+        if let Some(there) = counterpart(word, self.options.dialect) {
+            return Some(format!("it is a word of {}; in {year} it is `{there}`", names(set)));
+        }
+        if nodes && !Dialect::F23.is_in(set) || !nodes && set == Dialect::F23 as u8 {
+            return Some(format!("it is a word of {}", names(set)));
+        }
+        home_of(word).map(|home| format!("it belongs into a `{home}`"))
+    }
+}

@@ -1,0 +1,414 @@
+//! The grammar of 2003 to 2019: sections, groups, objects.
+
+use super::fields::Order;
+use super::lexer::TokenKind;
+use super::reader::Reader;
+use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
+use durer_diag::{Diagnostic, Span, did_you_mean};
+use durer_scene::camera::Camera;
+use durer_scene::describe::{DescribedList, FileName};
+use durer_scene::dialect::{Dialect, DialectSet, set};
+use durer_scene::light::Light;
+use durer_scene::material::presets;
+use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::medium::Fog;
+use durer_scene::scene::{Background, Group, Material, NamedTexture, Node, Object, Operation, Spanned};
+use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
+
+/// What stands in a group: [`OBJECTS`] of them are objects.
+#[rustfmt::skip]
+pub(super) const IN_GROUP: [&str; OBJECTS + 4] = [
+    "Group", "Transform", "use", "Sphere", "Plane", "Triangle", "TriangleMesh",
+    "Box", "Cylinder", "Cone", "Torus", "Ellipsoid", "Quadric", "Disc", "Rectangle", "HeightField",
+    "Union", "Merge", "Intersection", "Difference", "Xor",
+    "MaterialIndex", "numObjects", "Grid", "define",
+];
+
+/// How many words of [`IN_GROUP`] begin an object that is proposed in a transform.
+pub(super) const OBJECTS: usize = 21;
+
+impl Reader<'_, '_> {
+    /// The whole file.
+    pub(super) fn scene_file(&mut self) {
+        // Years before ours had two cameras.
+        let dialect = self.options.dialect;
+        let kinds = Camera::kinds();
+        let cameras = kinds.iter().filter(|c| dialect == Dialect::Durer || c.keywords()[0].1 != set::DURER);
+        let sections = SECTIONS.into_iter().filter(|word| dialect == Dialect::Durer || !OURS.contains(word));
+        let known: Vec<&str> = cameras.map(|camera| camera.keywords()[0].0).chain(sections).collect();
+        self.top(&known, |reader, word, span| {
+            match word {
+                "Background" => reader.background(span),
+                "Fog" => reader.fog(span),
+                "Lights" => reader.lights(span),
+                "Textures" => reader.textures(span),
+                "Materials" => reader.materials(span),
+                "Group" => reader.scene.root = Some(reader.group(span)),
+                "define" => reader.define(span),
+                _ => match camera_of(word) {
+                    Some(camera) => reader.camera(camera, span),
+                    None => return false,
+                },
+            }
+            true
+        });
+    }
+
+    /// Reads sections up to the end of the file; `section` says whether it knew the word.
+    pub(super) fn top(&mut self, known: &[&str], mut section: impl FnMut(&mut Self, &str, Span) -> bool) {
+        let mut seen: Vec<(String, Span)> = Vec::new();
+        while let Some(token) = self.peek() {
+            let span = self.advance();
+            let word = self.text(span);
+            if token.kind == TokenKind::Open {
+                self.step_back();
+                self.skip_block();
+                self.error(Diagnostic::error("`{` without a keyword").at(span));
+            } else if token.kind == TokenKind::Close {
+                let message = "this `}` closes nothing";
+                let error = Diagnostic::error(message).code("extra-brace").at(span).fix(span, "");
+                self.error(error.help("is there a `}` too many before it?"));
+            } else if !section(self, &word, span) {
+                self.unknown(&word, span, "at the top of a scene", known);
+            } else if word != "define" {
+                // A scene has one camera, whatever its kind.
+                let kind = if word.ends_with("Camera") { "Camera".to_string() } else { word.clone() };
+                if let Some((_, first)) = seen.iter().find(|(earlier, _)| *earlier == kind) {
+                    let message = format!("this is another `{kind}`: the last counts, the others are dropped");
+                    let warning = Diagnostic::warning(message).code("repeated").at(span);
+                    let warning = warning.related(*first, "the first is here");
+                    self.diagnostics.push(warning);
+                } else {
+                    seen.push((kind, span));
+                }
+            }
+        }
+    }
+
+    pub(super) fn camera(&mut self, mut camera: Camera, keyword: Span) {
+        self.check_keyword(&camera, keyword);
+        self.fields(&mut camera, keyword, Order::Listed, |_, _, _| false);
+        self.scene.camera = Some(camera);
+        self.scene.camera_span = keyword;
+    }
+
+    pub(super) fn background(&mut self, keyword: Span) {
+        let mut background = Background::default();
+        self.fields(&mut background, keyword, Order::Any, |_, _, _| false);
+        self.scene.background = background;
+        self.scene.background_span = keyword;
+    }
+
+    fn fog(&mut self, keyword: Span) {
+        let mut fog = Fog::default();
+        self.check_keyword(&fog, keyword);
+        self.fields(&mut fog, keyword, Order::Any, |_, _, _| false);
+        self.scene.fog = Some(Spanned { value: fog, span: keyword });
+    }
+
+    /// Warns of a keyword that this dialect does not have.
+    pub(super) fn check_keyword<T: DescribedList>(&mut self, thing: &T, keyword: Span) {
+        let word = self.text(keyword);
+        let set = thing.keywords().iter().find(|(w, _)| *w == word).map_or(0, |k| k.1);
+        self.foreign(&word, keyword, set);
+    }
+
+    /// Reads `{ count n element ... }`: the elements and their number, which must agree.
+    fn counted(&mut self, keyword: Span, count_word: &str, mut element: impl FnMut(&mut Self, &str, Span) -> bool) {
+        let errors = self.errors();
+        let name = self.text(keyword);
+        if !self.open(keyword) {
+            return;
+        }
+        let (mut count, mut found) = (None, 0u32);
+        loop {
+            let Some((word, span)) = self.word_before_close() else {
+                let short = count.is_none_or(|(n, _)| n > found);
+                if !short || !self.closed_early(&name) {
+                    break;
+                }
+                self.reopen_block(keyword, found);
+                continue;
+            };
+            if word == count_word || word == "num_objects" && count_word == "numObjects" {
+                if word == "num_objects" {
+                    self.foreign(&word, span, set::F03);
+                }
+                if found > 0 && self.options.strict {
+                    self.error(Diagnostic::error(format!("`{word}` must come first in `{name}`")).at(span));
+                }
+                match self.whole(&word) {
+                    Some(n) => count = Some((n, span.to(self.last_span()))),
+                    None => self.skip_values(),
+                }
+            } else if element(self, &word, span) {
+                found += 1;
+            }
+        }
+        if self.errors() > errors {
+            return;
+        }
+        match count {
+            Some((n, span)) if n != found => {
+                let message =
+                    format!("`{count_word}` says {n}, but {found} {}", if found == 1 { "follows" } else { "follow" });
+                let fixed = format!("{count_word} {found}");
+                let error = Diagnostic::error(message).code("wrong-count").at(span).fix(span, &*fixed);
+                self.error(error.help(format!("write `{fixed}`")));
+            }
+            None if self.options.strict => {
+                self.error(Diagnostic::error(format!("`{name}` has no `{count_word}`")).at(keyword));
+            }
+            _ => {}
+        }
+    }
+
+    /// Whether a section of the top ended by a `}` too many: what follows can only stand in it.
+    fn closed_early(&self, name: &str) -> bool {
+        let word = self.peek_word().unwrap_or_default();
+        self.depth == 0 && !is_section(&word) && home_of(&word) == Some(name)
+    }
+
+    fn lights(&mut self, keyword: Span) {
+        let mut lights = Vec::new();
+        self.counted(keyword, "numLights", |reader, word, span| {
+            let light = Light::from_keyword(word).filter(|_| word.ends_with("Light"));
+            let Some(mut light) = light else {
+                reader.unknown(word, span, "among lights", &["DirectionalLight", "PointLight", "numLights"]);
+                return false;
+            };
+            reader.check_keyword(&light, span);
+            // From 2012's last assignment on, point lights may have their fields in any order.
+            let free = matches!(reader.options.dialect, Dialect::F12a5 | Dialect::F16 | Dialect::Durer);
+            let order = if free && matches!(light, Light::Point(_)) { Order::Any } else { Order::Listed };
+            reader.fields(&mut light, span, order, |_, _, _| false);
+            lights.push(Spanned { value: light, span });
+            true
+        });
+        self.scene.lights = Some(lights);
+    }
+
+    fn textures(&mut self, keyword: Span) {
+        self.foreign("Textures", keyword, set::DURER);
+        self.counted(keyword, "numTextures", |reader, word, span| {
+            let Some(mut texture) = NamedTexture::from_keyword(word) else {
+                reader.unknown(word, span, "among textures", &["Texture"]);
+                return false;
+            };
+            let errors = reader.errors();
+            reader.fields(&mut texture, span, Order::Any, |_, _, _| false);
+            let FileName { path: name, span: at } = texture.name.clone();
+            let twice = reader.scene.assets.pictures.insert(name.clone(), texture.picture()).is_some();
+            if twice && reader.errors() == errors {
+                reader.error(Diagnostic::error(format!("there is a texture `{name}` already")).code("repeated").at(at));
+            }
+            true
+        });
+    }
+
+    fn materials(&mut self, keyword: Span) {
+        if let (Some(_), true) = (&self.scene.root, self.options.strict) {
+            self.error(Diagnostic::error("`Materials` must come before `Group`").at(keyword));
+        }
+        self.scene.materials.clear();
+        self.named.clear_materials();
+        self.counted(keyword, "numMaterials", |reader, word, span| {
+            let name = reader.material_name();
+            let Some(value) = reader.material(word, span) else { return false };
+            if let Some(name) = name {
+                reader.name_material(name);
+            }
+            reader.scene.materials.push(Spanned { value, span });
+            true
+        });
+    }
+
+    /// One material, if the word begins one.
+    pub(super) fn material(&mut self, word: &str, span: Span) -> Option<Material> {
+        let errors = self.errors();
+        if let Some(mut solid) = Solid::from_keyword(word) {
+            self.check_keyword(&solid, span);
+            let mut transform = Vec::new();
+            self.fields(&mut solid, span, Order::Listed, |reader, word, span| {
+                let known = word == "Transform";
+                if known && reader.open(span) {
+                    transform = reader.matrices();
+                }
+                known
+            });
+            if self.errors() == errors {
+                self.check_solid(&solid, span);
+            }
+            return Some(Material::Solid(solid, transform));
+        }
+        if let Some(mut principled) = PrincipledMaterial::from_keyword(word) {
+            self.check_keyword(&principled, span);
+            // A preset comes first, so that what follows changes it.
+            let first = self.ahead(1).filter(|token| self.at_open() && self.text(token.span) == "preset");
+            let name = first.and_then(|_| self.ahead(2)).map(|token| self.text(token.span));
+            principled = name.as_deref().and_then(presets::named).unwrap_or(principled);
+            let mut seen = first.map(|token| token.span.start);
+            self.fields(&mut principled, span, Order::Any, |reader, word, span| {
+                let known = word == "preset";
+                if known {
+                    reader.preset(span, seen.take() == Some(span.start));
+                }
+                known
+            });
+            return Some(Material::Principled(Box::new(principled)));
+        }
+        if let Some(mut hair) = HairMaterial::from_keyword(word) {
+            self.check_keyword(&hair, span);
+            self.fields(&mut hair, span, Order::Any, |_, _, _| false);
+            return Some(Material::Hair(hair));
+        }
+        let Some(mut phong) = PhongMaterial::from_keyword(word) else {
+            let known = [
+                "PhongMaterial",
+                "PrincipledMaterial",
+                "HairMaterial",
+                "Material",
+                "Checkerboard",
+                "Noise",
+                "Marble",
+                "Wood",
+                "Mix",
+                "numMaterials",
+            ];
+            self.unknown(word, span, "among materials", &known);
+            return None;
+        };
+        self.check_keyword(&phong, span);
+        let mut noise = None;
+        self.fields(&mut phong, span, Order::Any, |reader, word, span| {
+            let known = word == "Noise";
+            if known {
+                let mut colors = ColorNoise::default();
+                reader.check_keyword(&colors, span);
+                reader.fields(&mut colors, span, Order::Any, |_, _, _| false);
+                noise = Some(colors);
+            }
+            known
+        });
+        Some(Material::Phong(Box::new(phong), noise))
+    }
+
+    /// The name of a preset, which was taken already where it stands first.
+    fn preset(&mut self, word: Span, first: bool) {
+        let Some(name) = self.peek_word() else { return self.expected("a name", "preset") };
+        let span = self.advance();
+        if presets::named(&name).is_none() {
+            let near = did_you_mean(&name, presets::PRESETS.iter().map(|row| row.0));
+            let error = Diagnostic::error(format!("there is no material `{name}`")).code("unknown-word").at(span);
+            self.error(match near {
+                Some(near) => error.help(format!("did you mean `{near}`?")).fix(span, near),
+                None => error.help("`durer words preset` lists them"),
+            });
+        } else if !first {
+            let error = Diagnostic::error("`preset` must come first in its block").at(word);
+            self.error(error.help("it sets all fields; those that follow change it"));
+        }
+    }
+
+    /// A solid may only be made of earlier materials, so that there is no circle.
+    fn check_solid(&mut self, solid: &Solid, span: Span) {
+        let own = self.scene.materials.len() as u32;
+        if let Some(index) = durer_scene::material::Pattern::materials(solid).into_iter().find(|index| *index >= own) {
+            let message = format!("material {own} is mixed of earlier ones, but {index} is not before {own}");
+            self.error(Diagnostic::error(message).at(span).help("materials are numbered from 0, as they are written"));
+        }
+    }
+
+    pub(super) fn group(&mut self, keyword: Span) -> Group {
+        let mut objects = Vec::new();
+        self.counted(keyword, "numObjects", |reader, word, span| {
+            match word {
+                "MaterialIndex" => {
+                    match reader.material_number(word) {
+                        Some(index) => {
+                            reader.material = Some(index);
+                            reader.material_uses.push((index, span.to(reader.last_span())));
+                        }
+                        None => reader.skip_values(),
+                    }
+                    false
+                }
+                "define" => {
+                    reader.define(span);
+                    false
+                }
+                // 2003 writes materials where they are used.
+                "Material" | "PhongMaterial" => {
+                    reader.foreign("Material in Group", span, set::F03);
+                    if let Some(value) = reader.material(word, span) {
+                        reader.material = Some(reader.scene.materials.len() as u32);
+                        reader.scene.materials.push(Spanned { value, span });
+                    }
+                    false
+                }
+                _ => reader.object(word, span).map(|object| objects.push(object)).is_some(),
+            }
+        });
+        Group { objects }
+    }
+
+    /// Cells of a box and the balls that fill them; also where a component says so by its type.
+    pub(super) fn voxels(&mut self, keyword: Span) -> Node {
+        let (mut grid, mut balls) = (VoxelGrid::default(), Vec::new());
+        self.fields(&mut grid, keyword, Order::Any, |reader, word, span| {
+            match word {
+                "type" => {
+                    reader.advance();
+                }
+                "rasterizeSphere" => {
+                    let mut ball = Sphere::default();
+                    reader.fields(&mut ball, span, Order::Any, |_, _, _| false);
+                    balls.push(ball);
+                }
+                _ => return false,
+            }
+            true
+        });
+        Node::Voxels(grid, balls)
+    }
+
+    /// One object, if the word begins one.
+    pub(super) fn object(&mut self, word: &str, span: Span) -> Option<Object> {
+        if !self.descend("objects", span) {
+            return None;
+        }
+        // What is current now belongs to the object; inside a group it may change.
+        let material = self.material;
+        let classic = |words: &[(&str, DialectSet)]| words.iter().any(|(w, s)| *w == word && s & set::CLASSIC != 0);
+        let node = if word == "Group" {
+            Some(Node::Group(self.group(span)))
+        } else if word == "Transform" {
+            self.transform(span)
+        } else if word == "use" {
+            self.used(span)
+        } else if let Some(operation) = Operation::from_keyword(word) {
+            self.foreign(word, span, set::DURER);
+            Some(Node::Solid(operation, self.group(span).objects))
+        } else if word == "HeightField" {
+            let mut field = HeightField::default();
+            self.check_keyword(&field, span);
+            self.fields(&mut field, span, Order::Any, |_, _, _| false);
+            Some(Node::HeightField(field))
+        } else if let Some(mut shape) = Primitive::from_keyword(word).filter(|s| classic(s.keywords())) {
+            self.check_keyword(&shape, span);
+            self.fields(&mut shape, span, Order::Listed, |_, _, _| false);
+            Some(Node::Primitive(shape))
+        } else if word == "TriangleMesh" {
+            let mut mesh = TriangleMesh::default();
+            self.fields(&mut mesh, span, Order::Listed, |_, _, _| false);
+            Some(Node::Mesh(mesh))
+        } else if word == "Grid" {
+            Some(self.voxels(span))
+        } else {
+            self.unknown(word, span, "among objects", &IN_GROUP);
+            None
+        };
+        self.depth -= 1;
+        node.map(|node| Object { node, material, span })
+    }
+}

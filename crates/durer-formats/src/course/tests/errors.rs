@@ -1,0 +1,325 @@
+//! Each kind of error and warning, with its place and words.
+
+use super::*;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{MatrixOp, Node};
+
+fn findings(text: &str, dialect: Dialect) -> Vec<String> {
+    read_as(text.as_bytes(), dialect, false).1
+}
+
+#[track_caller]
+fn one(text: &str, expected: &str) {
+    assert_eq!(findings(text, Dialect::F04), [expected], "{text}");
+}
+
+#[track_caller]
+fn one_of_nodes(text: &str, expected: &str) {
+    assert_eq!(findings(text, Dialect::F23), [expected], "{text}");
+}
+
+#[track_caller]
+fn in_group(text: &str, expected: &str) {
+    one(&format!("Group {{\n{text}\n}}"), expected);
+}
+
+#[test]
+fn unknown_words() {
+    one(
+        "\nBackgrund { color 1 1 1 }",
+        "2:1 error: `Backgrund` means nothing at the top of a scene [Backgrund] (did you mean `Background`?)",
+    );
+    one(
+        "Background { colour 1 1 1 }",
+        "1:14 error: `Background` has no field `colour` [colour] (did you mean `color`?)",
+    );
+    in_group(
+        "Sphre { center 0 0 0 radius 1 }",
+        "2:1 error: `Sphre` means nothing among objects [Sphre] (did you mean `Sphere`?)",
+    );
+    in_group(
+        "materialIndex 0\nSphere { center 0 0 0 radius 1 }",
+        "2:1 error: `materialIndex` means nothing among objects [materialIndex] (did you mean `MaterialIndex`?)",
+    );
+    in_group(
+        "numObject 0",
+        "2:1 error: `numObject` means nothing among objects [numObject] (did you mean `numObjects`?)",
+    );
+    in_group(
+        "Transform { Translat 1 2 3 Sphere { center 0 0 0 radius 1 } }",
+        "2:13 error: `Translat` means nothing in a transform [Translat] (did you mean `Translate`?)",
+    );
+    one(
+        "Lights { PointLihgt { position 0 0 0 color 1 1 1 } }",
+        "1:10 error: `PointLihgt` means nothing among lights [PointLihgt] (did you mean `PointLight`?)",
+    );
+    one(
+        "Materials { PhongMateral { diffuseColor 1 1 1 } }",
+        "1:13 error: `PhongMateral` means nothing among materials [PhongMateral] (did you mean `PhongMaterial`?)",
+    );
+    one(
+        "Materials { Material { difuseColor 1 1 1 } }",
+        "1:24 error: `Material` has no field `difuseColor` [difuseColor] (did you mean `diffuseColor`?)",
+    );
+    one_of_nodes("Scene { Nod { } }", "1:9 error: `Nod` means nothing in a node [Nod] (did you mean `Node`?)");
+    one_of_nodes(
+        "Scene { Node { Transform { xrotate 4 } Component<Object> { type sphere radius 1 } } }",
+        "1:28 error: `xrotate` means nothing in a transform [xrotate] (did you mean `x_rotate`?)",
+    );
+    one_of_nodes(
+        "Scene { Component<Object> { type spere radius 1 } }",
+        "1:34 error: `Component<Object>` has no type `spere` [spere] (did you mean `sphere`?)",
+    );
+    one_of_nodes(
+        "Scene { Component<Object> { radius 1 type sphere } }",
+        "1:29 error: `Component<Object>` must begin with its `type` [radius] (types are sphere, plane, triangle, mesh, Grid)",
+    );
+}
+
+#[test]
+fn a_byte_order_mark_is_no_column_and_other_bytes_are_shown_safely() {
+    let help = "(known here: PerspectiveCamera, OrthographicCamera, Background, Lights, Materials, Group)";
+    let found = |text: &str| findings(text, Dialect::F04);
+    assert_eq!(
+        found("\u{feff}Foo { }\n Foo { }"),
+        [
+            format!("1:1 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
+            format!("2:2 error: `Foo` means nothing at the top of a scene [Foo] {help}"),
+        ]
+    );
+    assert!(
+        found("\u{1b}[31m { }")[0].starts_with("1:1 error: `\\u{1b}[31m` means nothing"),
+        "{:?}",
+        found("\u{1b}[31m")
+    );
+    let png = b"\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x01{\0\0}\xff\xfe";
+    let (scene, found) = read_as(png, Dialect::F04, false);
+    assert!(scene.is_none() && found.len() <= 20, "{found:?}");
+}
+
+#[test]
+fn words_in_the_wrong_place() {
+    one(
+        "Sphere { center 0 0 0 radius 1 }",
+        "1:1 error: `Sphere` means nothing at the top of a scene [Sphere] (it belongs into a `Group`)",
+    );
+    one(
+        "PointLight { position 0 0 0 color 1 1 1 }",
+        "1:1 error: `PointLight` means nothing at the top of a scene [PointLight] (it belongs into a `Lights`)",
+    );
+    in_group(
+        "Translate 1 2 3",
+        "2:1 error: `Translate` means nothing among objects [Translate] (it belongs into a `Transform`)",
+    );
+    one("Scene { Node { } }", "1:1 error: `Scene` means nothing at the top of a scene [Scene] (it is a word of f23)");
+    one_of_nodes(
+        "Group { numObjects 0 }",
+        "1:1 error: `Group` means nothing at the top of a scene [Group] (it is a word of f03, f04, f12a4, f12a5, f16, durer; in f23 it is `Node`)",
+    );
+}
+
+#[test]
+fn fields_and_values() {
+    in_group(
+        "Sphere { center 0 0 0 }",
+        "2:1 error: `Sphere` has no `radius` [Sphere] (write it into the block, as in `radius 1`)",
+    );
+    in_group(
+        "Sphere { center 0 0\n radius 1 }",
+        "3:2 error: `center` needs number 3 of 3, but found `radius` [radius]",
+    );
+    in_group("Sphere { center 0 0 0 radius }", "2:30 error: `radius` needs a number, but found `}` [}]");
+    in_group("Sphere { center 0 0 0 radius big }", "2:30 error: `radius` needs a number, but found `big` [big]");
+    in_group(
+        "Sphere { center 0 0 0 radius 1e39 }",
+        "2:30 error: `1e39` is too large a number [1e39] (numbers must be within about ±3.4e38)",
+    );
+    for word in ["inf", "nan", "-inf", "NaN", "infinity", "1.2.3", "--1", "1e", "½"] {
+        let column = format!("2:30 error: `radius` needs a number, but found `{word}` [{word}]");
+        in_group(&format!("Sphere {{ center 0 0 0 radius {word} }}"), &column);
+    }
+    in_group(
+        "Sphere { center 0 0 0 radius 0x10 }",
+        "2:30 error: `radius` needs a number, but found `0x10` [0x10] (numbers are written in decimal)",
+    );
+    in_group(
+        "Sphere { center 0 0 0 radius 1,5 }",
+        "2:30 error: `radius` needs a number, but found `1,5` [1,5] (decimals are written with a point, and nothing stands between numbers but blanks)",
+    );
+    in_group(
+        "Sphere { center 1, 2, 3 radius 1 }",
+        "2:17 error: `center` needs number 1 of 3, but found `1,` [1,] (numbers stand alone, with blanks between them: `1 0.5 0`)",
+    );
+    in_group(
+        "Sphere { center 0 0 0 radius 1.f }",
+        "2:30 error: `radius` needs a number, but found `1.f` [1.f] (numbers stand alone, with blanks between them: `1 0.5 0`)",
+    );
+    in_group("MaterialIndex -1", "2:15 error: `MaterialIndex` needs a whole number, but found `-1` [-1]");
+    in_group("MaterialIndex 1.5", "2:15 error: `MaterialIndex` needs a whole number, but found `1.5` [1.5]");
+    in_group("TriangleMesh { obj_file }", "2:25 error: `obj_file` needs a path, but found `}` [}]");
+    in_group("Sphere center 0 0 0 radius 1 }", "2:8 error: `Sphere` needs `{`, but found `center` [center]");
+}
+
+#[test]
+fn values_too_many() {
+    in_group(
+        "Sphere { center 0 0 0 4 radius 1 }",
+        "2:23 error: `4` is a number too many in `Sphere` [4] (its fields are center, radius)",
+    );
+    in_group(
+        "TriangleMesh { obj_file my cube.obj }",
+        "2:28 error: `TriangleMesh` has no field `cube.obj` [cube.obj] (a path ends at the first blank)",
+    );
+    one(
+        "Lights { numLights 0 0 }",
+        "1:22 error: `0` is a number too many among lights [0] (known here: DirectionalLight, PointLight, numLights)",
+    );
+}
+
+#[test]
+fn rules_of_values() {
+    in_group("Sphere { center 0 0 0 radius 0 }", "2:30 error: `radius` must be more than 0 [0]");
+    in_group("Sphere { center 0 0 0 radius -0 }", "2:30 error: `radius` must be more than 0 [-0]");
+    in_group("Plane { normal 0 0. -0 offset 1 }", "2:16 error: `normal` must not be 0 0 0 [0 0. -0]");
+    let camera = |direction: &str, angle: &str| {
+        format!("PerspectiveCamera {{ center 0 0 0 direction {direction} up 0 1 0 angle {angle} }}")
+    };
+    one(&camera("0 0 1", "180"), "1:65 error: `angle` must be more than 0 and less than 180 [180]");
+    one(&camera("0 0 1", "0"), "1:65 error: `angle` must be more than 0 and less than 180 [0]");
+    one(&camera("0 0 1e30", "20"), "1:44 error: `direction` is too long or too short for a direction [0 0 1e30]");
+    one(&camera("0 0 1e-30", "20"), "1:44 error: `direction` is too long or too short for a direction [0 0 1e-30]");
+    one(
+        "Materials { Material { } Noise { materialIndex 0 materialIndex 0 octaves 33 } }",
+        "1:74 error: `octaves` must be at most 32 [33]",
+    );
+    one("Materials { Material { exponent -1 } }", "1:33 error: `exponent` must not be less than 0 [-1]");
+}
+
+#[test]
+fn counts_and_indices() {
+    let ball = "Sphere { center 0 0 0 radius 1 }";
+    in_group(
+        &format!("numObjects 3 {ball}"),
+        "2:1 error: `numObjects` says 3, but 1 follows [numObjects 3] (write `numObjects 1`)",
+    );
+    in_group(
+        &format!("numObjects 1 {ball} {ball}"),
+        "2:1 error: `numObjects` says 1, but 2 follow [numObjects 1] (write `numObjects 2`)",
+    );
+    one("Lights { numLights 1 }", "1:10 error: `numLights` says 1, but 0 follow [numLights 1] (write `numLights 0`)");
+    one(
+        "Materials { numMaterials 2 Material { } }",
+        "1:13 error: `numMaterials` says 2, but 1 follows [numMaterials 2] (write `numMaterials 1`)",
+    );
+    one(
+        "Materials { Checkerboard { materialIndex 0 materialIndex 1 } Material { } }",
+        "1:13 error: material 0 is mixed of earlier ones, but 0 is not before 0 [Checkerboard] (materials are numbered from 0, as they are written)",
+    );
+    in_group(
+        "MaterialIndex 7",
+        "2:1 warning: material 7 does not exist: there are no materials [MaterialIndex 7] (objects that use it are drawn in plain grey)",
+    );
+    one_of_nodes(
+        "Materials { Material { } } Scene { Node { Component<Material> { index 1 } } }",
+        "1:65 warning: material 1 does not exist: there is only material 0 [index 1] (objects that use it are drawn in plain grey)",
+    );
+}
+
+#[test]
+fn transforms() {
+    let ball = "Sphere { center 0 0 0 radius 1 }";
+    in_group(
+        &format!("Transform {{ MaterialIndex 0 {ball} }}"),
+        "2:13 error: `MaterialIndex` cannot stand in a `Transform` [MaterialIndex] (write it before the `Transform`)",
+    );
+    in_group(
+        &format!("Transform {{ {ball} {ball} {ball} }}"),
+        "2:46 error: a `Transform` has exactly one object [Sphere] (put several objects into a `Group`)",
+    );
+    in_group(
+        "Transform { Scale 1 1 1 }",
+        "2:1 error: this `Transform` has no object [Transform] (write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`)",
+    );
+    in_group(
+        &format!("Transform {{ {ball} XRotate 3 YRotate 3 }}"),
+        "2:46 error: a transform's matrices come before its object [XRotate]",
+    );
+    for scale in ["Scale -1 0 1", "Scale 0 0 0", "UniformScale 0"] {
+        in_group(
+            &format!("Transform {{ {scale} {ball} }}"),
+            &format!(
+                "2:13 error: a scale by 0 flattens space, which cannot be undone [{scale}] (what should keep its size along an axis has a scale of 1 there)"
+            ),
+        );
+    }
+    in_group(
+        &format!("Transform {{ Rotate {{ 0 0 0 45 }} {ball} }}"),
+        "2:13 error: an axis of 0 0 0 points nowhere [Rotate { 0 0 0 45 }] (write the axis first, then the angle)",
+    );
+    in_group(
+        &format!("Transform {{ Rotate 0 1 0 45 {ball} }}"),
+        "2:13 error: the axis and the angle of `Rotate` stand in braces [Rotate 0 1 0 45] (write `Rotate { 0 1 0 45 }`)",
+    );
+    in_group(
+        &format!("Transform {{ Translate 1 x 3 {ball} }}"),
+        "2:25 error: `Translate` needs number 2 of 3, but found `x` [x]",
+    );
+    in_group(
+        &format!("Transform {{ Matrix {{ 1 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1 }} {ball} }}"),
+        "2:13 error: the last row of a matrix must be 0 0 0 1 [Matrix { 1 0 0 0 0 1 0 0 0 0 1 0 5 0 0 1 }] (`Matrix` of 2003 and 2004 lists rows, `Matrix4f` lists columns)",
+    );
+    one_of_nodes(
+        "Scene { Node { Transform { scale 1 0 1 } } }",
+        "1:28 error: a scale by 0 flattens space, which cannot be undone [scale 1 0 1] (what should keep its size along an axis has a scale of 1 there)",
+    );
+    // A scale that is small is none by 0.
+    assert_eq!(findings(&format!("Group {{ Transform {{ Scale 1e-30 1e-30 1 {ball} }} }}"), Dialect::F04), [""; 0]);
+}
+
+#[test]
+fn braces() {
+    one("Group {\n numObjects 0", "2:14 error: the file ends inside `Group` []");
+    one("Group { Transform { Sphere { center 0 0", "1:40 error: `center` needs number 3 of 3, but the file ends []");
+    one("}\n", "1:1 error: this `}` closes nothing [}] (is there a `}` too many before it?)");
+    one("{ Sphere { } }", "1:1 error: `{` without a keyword [{]");
+    one("Group { { } }", "1:9 error: `{` without a keyword in `Group` [{]");
+    one(
+        "Group {\nSphere { center 0 0 0 radius 1\nPlane { normal 0 1 0 offset 0 } }",
+        "3:1 error: `Plane` cannot stand in `Sphere` [Plane]",
+    );
+    one("Group { numObjects 0\nLights { numLights 0 }", "2:1 error: `Lights` cannot stand in `Group` [Lights]");
+    one(
+        "Group { numObjects 2 Sphere { center 0 0 0 radius 1 }\n}\nPlane { normal 0 1 0 offset 0 } }",
+        "2:1 error: this `}` ends `Group` after 1, but more of it follow [}]",
+    );
+    one_of_nodes("Scene { Node {", "1:15 error: the file ends inside `Node` []");
+    one_of_nodes("}", "1:1 error: this `}` closes nothing [}] (is there a `}` too many before it?)");
+}
+
+#[test]
+fn what_is_written_twice_or_by_another_year_is_told_once() {
+    one("Background { color 1 1 1 color 0 0 0 }", "1:26 warning: `color` is given twice; the last counts [color]");
+    one(
+        "Group { numObjects 0 } Group { numObjects 0 }",
+        "1:24 warning: this is another `Group`: the last counts, the others are dropped [Group]",
+    );
+    one(
+        "Materials { Material { shininess 1 } Material { shininess 2 } }",
+        "1:24 warning: `shininess` is not a word of f04, but of f12a4, f12a5, f16, f23, durer [shininess] (in f04 it is `exponent`)",
+    );
+    one(
+        "Group { num_objects 0 }",
+        "1:9 warning: `num_objects` is not a word of f04, but of f03 [num_objects] (in f04 it is `numObjects`)",
+    );
+    let twice = "Scene { Node { Transform { scale 2 2 2 } Transform { translate 1 0 0 } Component<Object> { type sphere radius 1 } } }";
+    one_of_nodes(
+        twice,
+        "1:42 warning: a node has one transform; the last counts [Transform] (nested nodes have one each)",
+    );
+    let objects = read_as(twice.as_bytes(), Dialect::F23, false).0.unwrap().root.unwrap().objects;
+    let Node::Transform(ops, _) = &objects[0].node else { panic!("{objects:?}") };
+    assert_eq!(ops[..], [MatrixOp::Translate(Vec3::X)]);
+    one("Group { } // no", "1:11 warning: comments begin with `#`; this one is passed over all the same [// no]");
+    let shared = "Lights { PointLight { position 0 0 0 color 1 1 1 attenuation 1 0 0 attenuation 1 0 0 } }";
+    assert_eq!(findings(shared, Dialect::F12a5).len(), 2, "{:?}", findings(shared, Dialect::F12a5));
+}

@@ -1,0 +1,134 @@
+//! Files in files, names of materials, objects that are defined and used.
+
+use super::*;
+use crate::testing::{folder, read_in};
+use durer_scene::material::Pattern;
+use durer_scene::scene::{Material, Node, Object};
+
+const HEAD: &str = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n";
+const PAINTS: &str = "Materials { PhongMaterial red { diffuseColor 1 0 0 } PhongMaterial blue { diffuseColor 0 0 1 } Mix both { materialIndex blue materialIndex red } }\n";
+
+fn ours(text: &str) -> Scene {
+    clean(&format!("{HEAD}{PAINTS}{text}"), Dialect::Durer)
+}
+
+fn refused(text: &str) -> Vec<String> {
+    let (scene, found) = read_as(format!("{HEAD}{PAINTS}{text}").as_bytes(), Dialect::Durer, false);
+    assert!(scene.is_none(), "{text}");
+    found
+}
+
+/// The materials of all shapes, in their order.
+fn materials(object: &Object, found: &mut Vec<Option<u32>>) {
+    match &object.node {
+        Node::Group(group) => group.objects.iter().for_each(|object| materials(object, found)),
+        Node::Transform(_, inner) => materials(inner, found),
+        Node::Solid(_, parts) => parts.iter().for_each(|object| materials(object, found)),
+        _ => found.push(object.material),
+    }
+}
+
+#[test]
+fn names_are_numbers_in_other_words() {
+    let named = ours(
+        "Group { MaterialIndex blue Sphere { center 0 0 0 radius 1 } MaterialIndex both Sphere { center 0 0 0 radius 1 } }",
+    );
+    let numbered = ours(
+        "Group { MaterialIndex 1 Sphere { center 0 0 0 radius 1 } MaterialIndex 2 Sphere { center 0 0 0 radius 1 } }",
+    );
+    assert_eq!(named, numbered);
+    let Material::Solid(mix, _) = &named.materials[2].value else { panic!() };
+    assert_eq!(mix.materials(), [1, 0]);
+}
+
+#[test]
+fn what_is_defined_is_there_as_often_as_it_is_used() {
+    let ball = "Sphere { center 1 2 3 radius 1 }";
+    let scene = ours(&format!(
+        "define ball {ball} define two Group {{ use ball MaterialIndex 1 Transform {{ Translate 1 0 0 use ball }} }}\n\
+         Group {{ MaterialIndex red use two MaterialIndex both Union {{ use two use ball }} define more use ball use more }}"
+    ));
+    let mut found = Vec::new();
+    scene.root.iter().flat_map(|root| &root.objects).for_each(|object| materials(object, &mut found));
+    // What has a material in its definition keeps it.
+    assert_eq!(found, [Some(0), Some(1), Some(2), Some(1), Some(2), Some(2)]);
+    // The same as if it were written out.
+    let used =
+        ours(&format!("define ball {ball} Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 use ball }} }}"));
+    let plain = ours(&format!("Group {{ MaterialIndex 0 Transform {{ Translate 1 0 0 Group {{ {ball} }} }} }}"));
+    assert_eq!(used, plain);
+}
+
+#[test]
+fn wrong_names_are_told() {
+    for (text, told) in [
+        (
+            "Group { MaterialIndex rad Sphere { center 0 0 0 radius 1 } }",
+            "3:23 error: there is no material `rad` before this [rad] (did you mean `red`?)",
+        ),
+        (
+            "Group { use ball }",
+            "3:13 error: nothing is defined as `ball` before this [ball] (write `define NAME` and an object first, outside of what uses it)",
+        ),
+        ("define a Sphere { center 0 0 0 radius 1 } define a use a", "3:50 error: `a` is defined already [a]"),
+        (
+            "define Sphere Sphere { center 0 0 0 radius 1 }",
+            "3:8 error: `Sphere` cannot be a name: it is a word of the language [Sphere]",
+        ),
+        ("define 3 Sphere { center 0 0 0 radius 1 }", "3:8 error: `3` cannot be a name: it is a number [3]"),
+        // No circle can be written: what is being defined is not there yet.
+        (
+            "define a Group { use a }",
+            "3:22 error: nothing is defined as `a` before this [a] (write `define NAME` and an object first, outside of what uses it)",
+        ),
+        ("include lamp.txt", "3:1 error: this text is in no folder: it includes no files [include lamp.txt]"),
+        ("include", "3:1 error: `include` needs the name of a file [include] (as in `include lamp.txt`)"),
+    ] {
+        assert_eq!(refused(text)[0], told, "{text}");
+    }
+    // Twice as many in each: a bomb is refused before it takes memory.
+    let mut text = "define a0 Sphere { center 0 0 0 radius 1 }\n".to_string();
+    for i in 1..64 {
+        text += &format!("define a{i} Group {{ use a{} use a{} }}\n", i - 1, i - 1);
+    }
+    assert!(refused(&text)[0].contains("more than 1048576 objects"), "{:?}", refused(&text));
+    // Other years have none of these words.
+    let (_, found) = read_as(b"Group { numObjects 1 use ball }", Dialect::F04, true);
+    assert!(!found.is_empty());
+}
+
+#[test]
+fn files_stand_where_they_are_included() {
+    let files: [(&str, &[u8]); 9] = [
+        ("paints.txt", PAINTS.as_bytes()),
+        ("parts/ball.txt", b"# a ball\nSphere { center 0 0 0 radius 1 }"),
+        ("parts/both.txt", b"include parts/ball.txt include parts/ball.txt"),
+        ("a.txt", b"include b.txt"),
+        ("b.txt", b"\n  include a.txt"),
+        ("open.txt", b"Group { MaterialIndex 0"),
+        ("close.txt", b"Sphere { center 0 0 0 radius 1 } }"),
+        ("wrong.txt", b"Sphere {\n  center 0 0 0 radius x }"),
+        ("utf16.txt", b"\xff\xfeS\0p\0"),
+    ];
+    let files = folder(&files);
+    let (scene, told) = read_in(
+        files.path(),
+        "s.txt",
+        &format!("{HEAD}include paints.txt Group {{ MaterialIndex red include parts/both.txt }}"),
+    );
+    assert_eq!(told, [""; 0]);
+    assert_eq!(scene.unwrap().root.unwrap().objects.len(), 2);
+    for (text, told) in [
+        ("Group { include a.txt }", "b.txt:2:3 error `a.txt` includes itself"),
+        ("Group { include open.txt }", "open.txt:1:7 error this block is not closed in its file"),
+        ("Group { include close.txt }", "close.txt:1:34 error this `}` closes nothing in its file"),
+        ("Group { include wrong.txt }", "wrong.txt:2:23 error "),
+        ("Group { include missing.txt }", "s.txt:2:17 error there is no file `missing.txt`"),
+        ("Group { include ../s.txt }", "s.txt:2:17 error "),
+        ("Group { include utf16.txt }", "utf16.txt:1:1 error this file is UTF-16"),
+    ] {
+        let (scene, found) = read_in(files.path(), "s.txt", &format!("{HEAD}{text}"));
+        assert!(scene.is_none(), "{text}");
+        assert!(found[0].starts_with(told), "{text}: {found:?}");
+    }
+}

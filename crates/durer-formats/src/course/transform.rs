@@ -1,0 +1,220 @@
+//! Transforms: matrices, then one object.
+
+use super::lexer::TokenKind;
+use super::reader::Reader;
+use super::sections::{IN_GROUP, OBJECTS};
+use super::words::home_of;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::dialect::{Dialect, set};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{MatrixOp, Node};
+
+impl Reader<'_, '_> {
+    /// `Transform { matrix ... object }`.
+    pub(super) fn transform(&mut self, keyword: Span) -> Option<Node> {
+        let errors = self.errors();
+        if !self.open(keyword) {
+            return None;
+        }
+        let (mut ops, mut object, mut objects) = (Vec::new(), None, 0);
+        let mut late = false;
+        while let Some((word, span)) = self.word_before_close() {
+            if let Some(op) = self.matrix(&word, span) {
+                if objects > 0 && !late {
+                    late = true;
+                    let message = "a transform's matrices come before its object";
+                    self.error(Diagnostic::error(message).at(span));
+                }
+                self.check_flat(op, span);
+                ops.extend(op);
+            } else if word == "MaterialIndex" {
+                let error = Diagnostic::error("`MaterialIndex` cannot stand in a `Transform`").at(span);
+                self.error(error.help("write it before the `Transform`"));
+                self.skip_value();
+            } else if home_of(&word) != Some("Group") {
+                let known: Vec<&str> =
+                    MatrixOp::words().into_iter().chain(IN_GROUP.into_iter().take(OBJECTS)).collect();
+                self.unknown(&word, span, "in a transform", &known);
+            } else {
+                objects += 1;
+                if objects == 2 {
+                    let error = Diagnostic::error("a `Transform` has exactly one object").at(span);
+                    self.error(error.help("put several objects into a `Group`"));
+                }
+                let read = self.object(&word, span);
+                object = object.or(read);
+            }
+        }
+        if object.is_none() && self.errors() == errors {
+            let error = Diagnostic::error("this `Transform` has no object").code("missing-field").at(keyword);
+            self.error(
+                error.help("write the object after its matrices: `Transform { Translate 0 1 0 Sphere { ... } }`"),
+            );
+        }
+        Some(Node::Transform(ops, Box::new(object?)))
+    }
+
+    /// The matrices of a block whose `{` is read.
+    pub(super) fn matrices(&mut self) -> Vec<MatrixOp> {
+        let mut ops = Vec::new();
+        while let Some((word, span)) = self.word_before_close() {
+            match self.matrix(&word, span) {
+                Some(op) => ops.extend(op),
+                None => self.unknown(&word, span, "among matrices", &MatrixOp::words()),
+            }
+        }
+        ops
+    }
+
+    /// Complains of a matrix that flattens space, by its own.
+    pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
+        if let Some(error) = op.and_then(flat) {
+            self.error(error.at(span.to(self.last_span())));
+        }
+    }
+
+    /// A matrix, if the word begins one; the inner `None` after an error.
+    pub(super) fn matrix(&mut self, word: &str, span: Span) -> Option<Option<MatrixOp>> {
+        let braces_needed = matches!(word, "Rotate" | "Matrix" | "Matrix4f");
+        if !braces_needed && !MatrixOp::words().contains(&word) {
+            return None;
+        }
+        let errors = self.errors();
+        let opens = self.at_open();
+        if opens {
+            let open = self.advance();
+            if !braces_needed {
+                self.foreign(&format!("{word} {{"), open, set::F03);
+            }
+        } else if braces_needed {
+            if word == "Rotate" && self.rotate_without_braces(span) {
+                return Some(None);
+            }
+            self.expected("`{`", word);
+        } else if word == "Scale" && self.scale_by_one(span) {
+            return Some(None);
+        }
+        let known = self.errors();
+        let op = self.matrix_values(word);
+        if op.is_none() {
+            self.skip_values();
+        }
+        if opens {
+            // What is wrong inside the braces was said already.
+            self.close(word, self.errors() == known);
+        }
+        if self.errors() == errors
+            && let Some(error) = op.and_then(senseless)
+        {
+            self.error(error.at(span.to(self.last_span())));
+        }
+        Some(op)
+    }
+
+    /// How many numbers follow, and where they end.
+    fn numbers_ahead(&self) -> (usize, Span) {
+        let number = |i: usize| self.ahead(i).filter(|t| self.text(t.span).parse::<f32>().is_ok());
+        let count = (0..17).take_while(|i| number(*i).is_some()).count();
+        (count, number(count.saturating_sub(1)).map_or(self.last_span(), |token| token.span))
+    }
+
+    /// `Rotate 0 1 0 45`: says what is missing, and passes over it.
+    fn rotate_without_braces(&mut self, word: Span) -> bool {
+        let (count, last) = self.numbers_ahead();
+        if count != 4 && count != 1 {
+            return false;
+        }
+        let whole = word.to(last);
+        let numbers = self.text(Span { start: word.end, ..whole }).trim().to_string();
+        let error = Diagnostic::error("the axis and the angle of `Rotate` stand in braces").code("syntax").at(whole);
+        self.error(match count {
+            4 => error.help(format!("write `Rotate {{ {numbers} }}`")).fix(whole, format!("Rotate {{ {numbers} }}")),
+            _ => error
+                .help(format!("about one axis it is `XRotate {numbers}`, `YRotate {numbers}` or `ZRotate {numbers}`")),
+        });
+        for _ in 0..count {
+            self.advance();
+        }
+        true
+    }
+
+    /// `Scale 2`: says what is meant, and passes over it.
+    fn scale_by_one(&mut self, word: Span) -> bool {
+        let (count, last) = self.numbers_ahead();
+        // What is cut off or no number is told as that.
+        let ends = |text: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || c == '}');
+        if count != 1 || !self.ahead(1).is_some_and(|next| ends(&self.text(next.span))) {
+            return false;
+        }
+        let number = self.text(last);
+        let error =
+            Diagnostic::error("`Scale` takes three numbers, one for each axis").code("syntax").at(word.to(last));
+        self.error(
+            error.help(format!("alike along all of them it is `UniformScale {number}`")).fix(word, "UniformScale"),
+        );
+        self.advance();
+        true
+    }
+
+    fn matrix_values(&mut self, word: &str) -> Option<MatrixOp> {
+        Some(match word {
+            "Translate" => MatrixOp::Translate(self.vec3(word)?),
+            "Scale" => MatrixOp::Scale(self.vec3(word)?),
+            "UniformScale" => MatrixOp::UniformScale(self.number(word, 1, 1)?),
+            "XRotate" => MatrixOp::XRotate(self.number(word, 1, 1)?),
+            "YRotate" => MatrixOp::YRotate(self.number(word, 1, 1)?),
+            "ZRotate" => MatrixOp::ZRotate(self.number(word, 1, 1)?),
+            "Rotate" => {
+                let axis: Vec3 = self.vec3(word)?;
+                MatrixOp::Rotate(axis, self.number(word, 1, 1)?)
+            }
+            _ => {
+                let mut rows = [0.0; 16];
+                for (i, value) in rows.iter_mut().enumerate() {
+                    *value = self.number(word, i + 1, 16)?;
+                }
+                // 2004 lists rows; `Matrix4f`, and `Matrix` of later years, columns.
+                let rows_listed =
+                    word == "Matrix" && matches!(self.options.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
+                MatrixOp::Matrix(if rows_listed { rows } else { std::array::from_fn(|i| rows[i % 4 * 4 + i / 4]) })
+            }
+        })
+    }
+
+    /// Expects `}`, and passes over what is before it. Where a word of the language comes first,
+    /// `}` is missing.
+    fn close(&mut self, block: &str, complain: bool) {
+        if complain && self.peek().is_none_or(|t| t.kind != TokenKind::Close) {
+            self.expected("`}`", block);
+        }
+        self.skip_values();
+        if self.peek().is_some_and(|t| t.kind == TokenKind::Close) {
+            self.advance();
+        }
+    }
+}
+
+/// What is wrong with a matrix that moves objects and flattens space.
+pub(crate) fn flat(op: MatrixOp) -> Option<Diagnostic> {
+    let flat = match op {
+        MatrixOp::Scale(v) => v.to_array().contains(&0.0),
+        MatrixOp::UniformScale(s) => s == 0.0,
+        _ => false,
+    };
+    let error = Diagnostic::error("a scale by 0 flattens space, which cannot be undone").code("flat-transform");
+    flat.then(|| error.help("what should keep its size along an axis has a scale of 1 there"))
+}
+
+/// What is wrong with a matrix that has all its numbers.
+pub(crate) fn senseless(op: MatrixOp) -> Option<Diagnostic> {
+    match op {
+        MatrixOp::Rotate(axis, _) if axis == Vec3::ZERO => {
+            Some(Diagnostic::error("an axis of 0 0 0 points nowhere").help("write the axis first, then the angle"))
+        }
+        MatrixOp::Matrix(rows) if rows[12..] != [0.0, 0.0, 0.0, 1.0] => {
+            let error = Diagnostic::error("the last row of a matrix must be 0 0 0 1");
+            Some(error.help("`Matrix` of 2003 and 2004 lists rows, `Matrix4f` lists columns"))
+        }
+        _ => None,
+    }
+}

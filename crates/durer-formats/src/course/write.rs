@@ -1,0 +1,288 @@
+//! Scenes as text.
+
+use durer_scene::describe::{DescribedList, Value};
+use durer_scene::dialect::Dialect;
+use durer_scene::light::{Light, PointLight};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use durer_scene::shape::{Sphere, VoxelGrid};
+use std::fmt::Write;
+
+/// Writes a scene in a dialect. What the dialect has no word for is written in the words of another
+/// year.
+pub fn write(scene: &Scene, dialect: Dialect) -> String {
+    let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
+    match dialect {
+        Dialect::F23 => writer.node_scene(scene),
+        _ => writer.scene(scene),
+    }
+    writer.out
+}
+
+/// Writes one thing by itself, as [`write`] would.
+pub(super) fn write_thing<T: DescribedList>(thing: &T, dialect: Dialect) -> String {
+    let mut writer = Writer { out: String::new(), depth: 0, dialect, material: None };
+    writer.thing(thing);
+    writer.out
+}
+
+struct Writer {
+    out: String,
+    depth: usize,
+    dialect: Dialect,
+    /// The material that is current for what follows.
+    material: Option<u32>,
+}
+
+impl Writer {
+    fn line(&mut self, text: impl AsRef<str>) {
+        let indent = "    ".repeat(self.depth);
+        // Writing to a String cannot fail.
+        let _ = writeln!(self.out, "{indent}{}", text.as_ref());
+    }
+
+    fn block(&mut self, head: &str, inside: impl FnOnce(&mut Self)) {
+        self.line(format!("{head} {{"));
+        self.depth += 1;
+        inside(self);
+        self.depth -= 1;
+        self.line("}");
+    }
+
+    fn fields<T: DescribedList>(&mut self, thing: &T) {
+        let plain = T::from_keyword(thing.keywords()[0].0);
+        // What only our dialect has is written in its words.
+        let ours = thing.is_ours();
+        let dialect = if ours { Dialect::Durer } else { self.dialect };
+        for (i, field) in thing.fields().iter().enumerate() {
+            let Some(value) = thing.get(i) else { continue };
+            let (word, text) = (field.spelling(dialect), value_text(&value));
+            // What the dialect cannot say is left out where it says nothing. Texts tell 0 from -0.
+            let plain_text = plain.as_ref().and_then(|plain| plain.get(i)).map(|value| value_text(&value));
+            if word.is_none() && plain_text.as_ref() == Some(&text) {
+                continue;
+            }
+            self.line(format!("{} {text}", word.unwrap_or(field.spellings[0].0)));
+        }
+    }
+
+    fn thing<T: DescribedList>(&mut self, thing: &T) {
+        self.block(thing.keyword(self.dialect), |w| w.fields(thing));
+    }
+
+    fn scene(&mut self, scene: &Scene) {
+        if let Some(camera) = &scene.camera {
+            self.thing(camera);
+        }
+        self.thing(&scene.background);
+        if let Some(fog) = &scene.fog {
+            self.thing(&fog.value);
+        }
+        if let Some(lights) = &scene.lights {
+            self.block("Lights", |w| {
+                w.line(format!("numLights {}", lights.len()));
+                lights.iter().for_each(|light| w.thing(&light.value));
+            });
+        }
+        let mut textures = scene.assets.textures().peekable();
+        if textures.peek().is_some() {
+            self.block("Textures", |w| textures.for_each(|texture| w.thing(&texture)));
+        }
+        if !scene.materials.is_empty() {
+            self.block("Materials", |w| {
+                w.line(format!("numMaterials {}", scene.materials.len()));
+                scene.materials.iter().for_each(|material| w.material(&material.value));
+            });
+        }
+        if let Some(root) = &scene.root {
+            self.group(root);
+        }
+    }
+
+    fn material(&mut self, material: &Material) {
+        match material {
+            Material::Phong(phong, noise) => {
+                let word = if self.dialect == Dialect::F23 { "Material" } else { "PhongMaterial" };
+                self.block(word, |w| {
+                    w.fields(&**phong);
+                    if let Some(noise) = noise {
+                        w.block("Noise", |w| w.fields(noise));
+                    }
+                });
+            }
+            Material::Principled(principled) => self.thing(&**principled),
+            Material::Hair(hair) => self.thing(hair),
+            Material::Solid(solid, transform) => self.block(solid.keyword(self.dialect), |w| {
+                if !transform.is_empty() {
+                    w.block("Transform", |w| transform.iter().for_each(|op| w.matrix(op)));
+                }
+                w.fields(solid);
+            }),
+        }
+    }
+
+    fn group(&mut self, group: &Group) {
+        self.block("Group", |w| {
+            w.line(format!("numObjects {}", group.objects.len()));
+            w.objects(&group.objects);
+        });
+    }
+
+    fn objects(&mut self, objects: &[Object]) {
+        for object in objects {
+            if let Some(index) = object.material.filter(|_| object.material != self.material) {
+                self.line(format!("MaterialIndex {index}"));
+                self.material = Some(index);
+            }
+            self.object(object);
+        }
+    }
+
+    fn object(&mut self, object: &Object) {
+        match &object.node {
+            Node::Group(group) => self.group(group),
+            Node::Transform(ops, inner) => self.block("Transform", |w| {
+                ops.iter().for_each(|op| w.matrix(op));
+                match inner.material == object.material {
+                    true => w.object(inner),
+                    // A transform has no word for a material: a group in it does.
+                    false => w.group(&Group { objects: vec![Object::clone(inner)] }),
+                }
+            }),
+            Node::Primitive(shape) => self.thing(shape),
+            Node::Mesh(mesh) => self.thing(mesh),
+            Node::HeightField(field) => self.thing(field),
+            Node::Solid(operation, parts) => self.block(operation.keyword(), |w| w.objects(parts)),
+            Node::Voxels(grid, balls) => self.block(grid.keyword(self.dialect), |w| w.voxels(grid, balls)),
+        }
+    }
+
+    fn voxels(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.fields(grid);
+        balls.iter().for_each(|ball| self.block("rasterizeSphere", |w| w.fields(ball)));
+    }
+
+    fn matrix(&mut self, op: &MatrixOp) {
+        let old = self.dialect == Dialect::F03;
+        let braced = |word: &str, values: String| match old {
+            true => format!("{word} {{ {values} }}"),
+            false => format!("{word} {values}"),
+        };
+        let text = match *op {
+            MatrixOp::Translate(v) => braced("Translate", vec3_text(v)),
+            MatrixOp::Scale(v) => braced("Scale", vec3_text(v)),
+            MatrixOp::UniformScale(s) => braced("UniformScale", s.to_string()),
+            MatrixOp::XRotate(a) => braced("XRotate", a.to_string()),
+            MatrixOp::YRotate(a) => braced("YRotate", a.to_string()),
+            MatrixOp::ZRotate(a) => braced("ZRotate", a.to_string()),
+            MatrixOp::Rotate(axis, a) => format!("Rotate {{ {} {a} }}", vec3_text(axis)),
+            MatrixOp::Matrix(rows) => {
+                let by_rows = matches!(self.dialect, Dialect::F03 | Dialect::F04 | Dialect::Durer);
+                let listed: [f32; 16] = if by_rows { rows } else { std::array::from_fn(|i| rows[i % 4 * 4 + i / 4]) };
+                let word = if by_rows { "Matrix" } else { "Matrix4f" };
+                format!("{word} {{ {} }}", listed.map(|x| x.to_string()).join(" "))
+            }
+        };
+        self.line(text);
+    }
+
+    fn node_scene(&mut self, scene: &Scene) {
+        if let Some(camera) = &scene.camera {
+            self.thing(camera);
+        }
+        self.thing(&scene.background);
+        self.block("Materials", |w| scene.materials.iter().for_each(|m| w.material(&m.value)));
+        let lights = scene.lights.as_deref().unwrap_or_default();
+        if scene.root.is_some() || !lights.is_empty() {
+            self.block("Scene", |w| {
+                scene.root.iter().flat_map(|root| &root.objects).for_each(|object| w.node(object));
+                lights.iter().for_each(|light| w.light_node(&light.value));
+            });
+        }
+    }
+
+    fn node(&mut self, object: &Object) {
+        self.block("Node", |w| {
+            if let Node::Transform(ops, _) = &object.node {
+                w.block("Transform", |w| ops.iter().for_each(|op| w.node_matrix(op)));
+            }
+            if let Some(index) = object.material {
+                w.line(format!("Component<Material> {{ index {index} }}"));
+            }
+            match &object.node {
+                Node::Group(group) => group.objects.iter().for_each(|inner| w.node(inner)),
+                Node::Primitive(shape) => w.component("Object", shape),
+                Node::Mesh(mesh) => w.component("Object", mesh),
+                Node::HeightField(field) => w.component("Object", field),
+                Node::Solid(operation, parts) => {
+                    w.block(operation.keyword(), |w| parts.iter().for_each(|part| w.node(part)));
+                }
+                Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
+                Node::Transform(_, inner) => match &inner.node {
+                    _ if inner.material != object.material => w.node(inner),
+                    Node::Primitive(shape) => w.component("Object", shape),
+                    Node::Mesh(mesh) => w.component("Object", mesh),
+                    Node::Voxels(grid, balls) => w.voxels_component(grid, balls),
+                    _ => w.node(inner),
+                },
+            }
+        });
+    }
+
+    fn light_node(&mut self, light: &Light) {
+        self.block("Node", |w| match light {
+            Light::Point(point) => {
+                w.block("Transform", |w| w.node_matrix(&MatrixOp::Translate(point.position)));
+                // The node has placed it.
+                w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
+            }
+            _ => w.component("Light", light),
+        });
+    }
+
+    fn component<T: DescribedList>(&mut self, name: &str, thing: &T) {
+        self.block(&format!("Component<{name}>"), |w| {
+            w.line(format!("type {}", thing.keyword(w.dialect)));
+            w.fields(thing);
+        });
+    }
+
+    fn voxels_component(&mut self, grid: &VoxelGrid, balls: &[Sphere]) {
+        self.block("Component<Object>", |w| {
+            w.line(format!("type {}", grid.keyword(w.dialect)));
+            w.voxels(grid, balls);
+        });
+    }
+
+    fn node_matrix(&mut self, op: &MatrixOp) {
+        let text = match *op {
+            MatrixOp::Translate(v) => format!("translate {}", vec3_text(v)),
+            MatrixOp::Scale(v) => format!("scale {}", vec3_text(v)),
+            MatrixOp::UniformScale(s) => format!("uniform_scale {s}"),
+            MatrixOp::XRotate(a) => format!("x_rotate {a}"),
+            MatrixOp::YRotate(a) => format!("y_rotate {a}"),
+            MatrixOp::ZRotate(a) => format!("z_rotate {a}"),
+            MatrixOp::Rotate(axis, a) => format!("rotate {} {a}", vec3_text(axis)),
+            MatrixOp::Matrix(_) => return self.matrix(op),
+        };
+        self.line(text);
+    }
+}
+
+fn value_text(value: &Value) -> String {
+    match value {
+        Value::Float(x) => x.to_string(),
+        Value::Int(i) => i.to_string(),
+        Value::Vec3(v) => vec3_text(*v),
+        Value::Path(name) => name.path.clone(),
+        Value::Word(word) => word.clone(),
+        Value::Rows(rows) => {
+            let numbers: Vec<String> = rows.iter().flatten().map(f32::to_string).collect();
+            format!("{{ {} }}", numbers.join(" "))
+        }
+    }
+}
+
+fn vec3_text(v: Vec3) -> String {
+    format!("{} {} {}", v.x, v.y, v.z)
+}

@@ -1,0 +1,101 @@
+//! Spectra as text: rows of a wavelength in nanometres and values, with commas, semicolons or
+//! blanks between them.
+//!
+//! `#` begins a comment. A row of words before the numbers names the columns.
+
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use std::ops::Range;
+
+/// Rows at most.
+const MAX_ROWS: usize = 100_000;
+
+/// Reads wavelengths, ascending, and the values of a column: the first, or that of a name.
+pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
+    std::str::from_utf8(bytes)
+        .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum is text".to_string()))
+        .and_then(|text| parse(text, column))
+        .map_err(|(at, message)| {
+            let span = Span { file, start: at.start as u32, end: at.end as u32 };
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(span));
+        })
+        .ok()
+}
+
+type Wrong = (Range<usize>, String);
+
+fn parse(text: &str, column: Option<&str>) -> Result<Vec<[f32; 2]>, Wrong> {
+    let (mut rows, mut number, mut at) = (Vec::<[f32; 2]>::new(), None, 0);
+    for line in text.split_inclusive('\n') {
+        let content = line.split('#').next().unwrap_or_default().trim_end();
+        let place = at..at + content.len();
+        at += line.len();
+        let words: Vec<&str> = content.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).collect();
+        let words: Vec<&str> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        let Some(first) = words.first() else { continue };
+        let Ok(nm) = first.parse::<f32>() else {
+            if !rows.is_empty() || number.is_some() {
+                return Err((place, format!("`{first}` is no wavelength in nanometres")));
+            }
+            let found = column.map_or(Some(1), |name| words.iter().position(|word| *word == name).filter(|&i| i > 0));
+            let columns = words[1..].join(", ");
+            let missing = || format!("there is no column `{}`: there are {columns}", column.unwrap_or_default());
+            number = Some(found.ok_or_else(|| (place, missing()))?);
+            continue;
+        };
+        if let (Some(name), None) = (column, number) {
+            return Err((place, format!("there is no column `{name}`: no row of names comes before the numbers")));
+        }
+        let word = words.get(number.unwrap_or(1)).ok_or_else(|| (place.clone(), "a value is missing".to_string()))?;
+        let value = word.parse().ok().filter(|value: &f32| value.is_finite() && *value >= 0.0);
+        let value = value.ok_or_else(|| (place.clone(), format!("`{word}` is no value of a spectrum: 0 or more")))?;
+        if !(nm > 0.0 && nm.is_finite()) || rows.last().is_some_and(|last| last[0] >= nm) {
+            return Err((place, "wavelengths are to be more than 0 and to ascend".into()));
+        }
+        if rows.len() == MAX_ROWS {
+            return Err((place, format!("more than {MAX_ROWS} rows are no spectrum")));
+        }
+        rows.push([nm, value]);
+    }
+    if rows.len() < 2 {
+        return Err((0..0, "a spectrum has two rows or more of a wavelength and a value".into()));
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_are_found_by_name_and_number() {
+        let text = "# by hand\nnm,white,red\n400,0.5,0.1\n\n500 , 0.75 , 0.2 # the last\n";
+        assert_eq!(parse(text, None).unwrap(), [[400.0, 0.5], [500.0, 0.75]]);
+        assert_eq!(parse(text, Some("red")).unwrap(), [[400.0, 0.1], [500.0, 0.2]]);
+        assert_eq!(parse("400\t1\r\n410;2\r\n", None).unwrap(), [[400.0, 1.0], [410.0, 2.0]]);
+    }
+
+    #[test]
+    fn bytes_that_are_no_text_are_refused() {
+        let mut diagnostics = Diagnostics::default();
+        assert!(read(b"400 1\n500 \xff\n", None, 0, &mut diagnostics).is_none());
+        assert!(diagnostics.has_errors());
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        for (text, column, place, words) in [
+            ("", None, 0..0, "two rows"),
+            ("400 1\n", None, 0..0, "two rows"),
+            ("nm a\n400 1\n500 2", Some("b"), 0..4, "there are a"),
+            ("400 1\n500 2", Some("b"), 0..5, "no row of names"),
+            ("400 1\n300 2\n", None, 6..11, "ascend"),
+            ("400 1\nblue 2\n", None, 6..12, "no wavelength"),
+            ("400 1\n500 -2\n", None, 6..12, "0 or more"),
+            ("400 1\n500\n", None, 6..9, "missing"),
+            ("400 1\n500 nan\n", None, 6..13, "0 or more"),
+        ] {
+            let (at, message) = parse(text, column).unwrap_err();
+            assert!(at == place && message.contains(words), "{text:?}: {at:?} {message}");
+        }
+    }
+}

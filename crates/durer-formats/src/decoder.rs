@@ -1,0 +1,51 @@
+//! The decoder of asset files that the renderer is given.
+
+use crate::{curve, photometry, read_mesh_as, vol};
+use durer_diag::Diagnostics;
+use durer_scene::asset::AssetDecoder;
+use durer_scene::dialect::CompatSet;
+use durer_scene::light::Profile;
+use durer_scene::math::Aabb;
+use durer_scene::medium::DensityGrid;
+use durer_scene::shape::MeshData;
+
+/// Decodes asset files of every format in this crate.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Decoder;
+
+impl AssetDecoder for Decoder {
+    fn mesh(
+        &self,
+        bytes: &[u8],
+        file: u32,
+        name: &str,
+        quirks: CompatSet,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<MeshData> {
+        read_mesh_as(bytes, file, name, quirks, diagnostics)
+    }
+
+    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+        photometry::read(bytes, file, diagnostics)
+    }
+
+    fn spectrum(
+        &self,
+        bytes: &[u8],
+        column: Option<&str>,
+        file: u32,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Vec<[f32; 2]>> {
+        curve::read(bytes, column, file, diagnostics)
+    }
+
+    fn density(
+        &self,
+        bytes: &[u8],
+        file: u32,
+        memory: u64,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(Aabb, DensityGrid)> {
+        vol::read(bytes, file, memory, diagnostics)
+    }
+}

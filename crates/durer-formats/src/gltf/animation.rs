@@ -1,0 +1,169 @@
+//! Animations: where nodes and weights are at a moment.
+//!
+//! Source: *glTF 2.0 Specification*, chapter 3.11 and appendix C.
+
+use super::Model;
+use super::json::At;
+use super::nodes::NodeData;
+use crate::report::counted;
+use durer_scene::math::fp;
+use glam::{DQuat, DVec3, DVec4};
+
+/// How values between two key frames are had.
+#[derive(Clone, Copy, PartialEq)]
+enum Between {
+    Step,
+    Linear,
+    Cubic,
+}
+
+/// Key frames.
+struct Track {
+    times: Vec<f32>,
+    /// Numbers of each key frame, one row after the other; for cubic splines each has two tangents
+    /// about it.
+    values: Vec<f32>,
+    between: Between,
+}
+
+impl Model<'_> {
+    /// Moves nodes to where the first animation has them at the moment that is wanted.
+    pub(super) fn animate(&self, root: &At, nodes: &mut [NodeData]) {
+        let (at, animations) = match (self.input.staging.at, root.get("animations")) {
+            (Some(at), Some(animations)) => (at, animations),
+            (Some(_), None) => return root.warning("no-animation", "there is no animation: `--at` changes nothing"),
+            (None, Some(animations)) => return at_rest(&animations),
+            (None, None) => return,
+        };
+        let Some(first) = animations.items().next() else { return };
+        let (Some(channels), Some(samplers)) = (first.need("channels"), first.need("samplers")) else { return };
+        let samplers: Vec<Option<Track>> = samplers.items().map(|sampler| self.track(&sampler)).collect();
+        for channel in channels.items() {
+            self.channel(&channel, &samplers, at, nodes);
+        }
+    }
+
+    fn channel(&self, channel: &At, samplers: &[Option<Track>], at: f32, nodes: &mut [NodeData]) -> Option<()> {
+        let track = samplers[channel.need("sampler")?.index(samplers.len())?].as_ref()?;
+        let target = channel.need("target")?;
+        let node = &mut nodes[target.get("node")?.index(nodes.len())?];
+        let path = target.need("path")?;
+        match path.string()? {
+            "translation" => node.local.translation = track.vector(at)?,
+            "scale" => node.local.scale = track.vector(at)?,
+            "rotation" => node.local.rotation = track.rotation(at)?,
+            "weights" => node.weights = track.row(at, track.width()?)?,
+            other => path.warning("ANIMATION_CHANNEL_TARGET_PATH", format!("`{other}` is not animated")),
+        }
+        Some(())
+    }
+
+    fn track(&self, at: &At) -> Option<Track> {
+        let words = [("STEP", Between::Step), ("LINEAR", Between::Linear), ("CUBICSPLINE", Between::Cubic)];
+        let between = at.get("interpolation").map_or(Some(Between::Linear), |word| word.word(&words))?;
+        let (input, output) = (at.need("input")?, at.need("output")?);
+        let times = self.rows::<1>(self.accessor(&input)?, &input)?.into_iter().map(|[t]| t).collect::<Vec<_>>();
+        if !times.is_sorted() {
+            input.error("ACCESSOR_ANIMATION_INPUT_NON_INCREASING", "the moments of key frames must increase");
+            return None;
+        }
+        let accessor = self.accessor(&output)?;
+        let rows = self.rows::<4>(accessor, &output)?;
+        let values = rows.iter().flat_map(|row| row[..accessor.width.min(4)].iter().copied()).collect();
+        Some(Track { times, values, between })
+    }
+}
+
+impl Track {
+    /// How many numbers a key frame has.
+    fn width(&self) -> Option<usize> {
+        let rows = self.times.len() * if self.between == Between::Cubic { 3 } else { 1 };
+        self.values.len().checked_div(rows).filter(|&width| width > 0)
+    }
+
+    fn vector(&self, at: f32) -> Option<DVec3> {
+        let row = self.row(at, 3)?;
+        Some(DVec3::new(row[0].into(), row[1].into(), row[2].into()))
+    }
+
+    fn rotation(&self, at: f32) -> Option<DQuat> {
+        let (i, share, _) = self.around(at);
+        let row = match self.between {
+            Between::Linear if share > 0.0 => slerp(self.key(i, 4)?, self.key(i + 1, 4)?, share),
+            _ => self.row(at, 4)?,
+        };
+        let q = DQuat::from_array([row[0].into(), row[1].into(), row[2].into(), row[3].into()]);
+        (q.length() > 1e-6).then(|| q.normalize())
+    }
+
+    /// The key frame before a moment, how much of the time to the next is over, and that time.
+    fn around(&self, at: f32) -> (usize, f32, f32) {
+        let next = self.times.partition_point(|&time| time <= at);
+        match (next.checked_sub(1), self.times.get(next)) {
+            (Some(i), Some(&end)) => {
+                let length = end - self.times[i];
+                (i, (at - self.times[i]) / length, length)
+            }
+            // Before the first and after the last, nothing moves.
+            (Some(i), None) => (i, 0.0, 0.0),
+            (None, _) => (0, 0.0, 0.0),
+        }
+    }
+
+    fn key(&self, i: usize, width: usize) -> Option<&[f32]> {
+        let (stride, skip) = if self.between == Between::Cubic { (3 * width, width) } else { (width, 0) };
+        self.values.get(i * stride + skip..i * stride + skip + width)
+    }
+
+    fn row(&self, at: f32, width: usize) -> Option<Vec<f32>> {
+        let (i, t, length) = self.around(at);
+        let first = self.key(i, width)?;
+        if t == 0.0 || self.between == Between::Step {
+            return Some(first.to_vec());
+        }
+        let second = self.key(i + 1, width)?;
+        if self.between == Between::Linear {
+            return Some(first.iter().zip(second).map(|(a, b)| a + t * (b - a)).collect());
+        }
+        // Hermite's cubic: the first key frame's tangent leads out, the second's in.
+        let out = self.values.get((3 * i + 2) * width..(3 * i + 3) * width)?;
+        let into = self.values.get(3 * (i + 1) * width..(3 * (i + 1) + 1) * width)?;
+        let (t2, t3) = (t * t, t * t * t);
+        let mix = |k: usize| {
+            (2.0 * t3 - 3.0 * t2 + 1.0) * first[k]
+                + length * (t3 - 2.0 * t2 + t) * out[k]
+                + (3.0 * t2 - 2.0 * t3) * second[k]
+                + length * (t3 - t2) * into[k]
+        };
+        Some((0..width).map(mix).collect())
+    }
+}
+
+/// Says that there is more to be seen than how the nodes stand by themselves.
+fn at_rest(animations: &At) {
+    let mut all = animations.items();
+    let count = all.len();
+    let name = all.next().map_or(String::new(), |first| first.name());
+    let moment = match (count, name.is_empty()) {
+        (0 | 1, _) => "its first moment".into(),
+        (_, true) => "the first moment of the first".into(),
+        (_, false) => format!("the first moment of the first,{name}"),
+    };
+    let count = counted(count, "animation", "animations");
+    animations.note("animations", format!("the file has {count} and is shown at rest: `--at 0` shows {moment}"));
+}
+
+/// Rotations in between, evenly along the shorter way.
+fn slerp(a: &[f32], b: &[f32], t: f32) -> Vec<f32> {
+    let four = |q: &[f32]| DVec4::new(q[0].into(), q[1].into(), q[2].into(), q[3].into()).normalize_or(DVec4::W);
+    let (a, b) = (four(a), four(b));
+    let b = if a.dot(b) < 0.0 { -b } else { b };
+    let angle = 2.0 * fp::atan2_f64((a - b).length(), (a + b).length());
+    let t = f64::from(t);
+    let sine = |x: f64| fp::sin_cos_f64(x).0;
+    let mixed = match angle > 1e-6 {
+        true => (sine((1.0 - t) * angle) * a + sine(t * angle) * b) / sine(angle),
+        false => a.lerp(b, t),
+    };
+    mixed.as_vec4().to_array().to_vec()
+}

@@ -1,0 +1,234 @@
+//! Buffers and their views, and the URIs that lead to bytes.
+
+use super::Model;
+use super::json::At;
+use crate::report::shown;
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::general_purpose::{GeneralPurpose, NO_PAD};
+use base64::engine::{DecodePaddingMode, GeneralPurposeConfig};
+use durer_scene::describe::FileName;
+use serde_json::Value;
+use std::ops::Range;
+use std::sync::Arc;
+
+const MESHOPT: &str = "EXT_meshopt_compression";
+
+/// Some of the bytes in memory.
+#[derive(Clone)]
+pub(super) struct Slice {
+    bytes: Arc<[u8]>,
+    range: Range<usize>,
+}
+
+impl Slice {
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes[self.range.clone()]
+    }
+
+    /// All of some bytes.
+    pub fn whole(bytes: Arc<[u8]>) -> Self {
+        Slice { range: 0..bytes.len(), bytes }
+    }
+
+    pub fn part(&self, range: Range<usize>) -> Option<Slice> {
+        let (start, end) = (self.range.start.checked_add(range.start)?, self.range.start.checked_add(range.end)?);
+        (start <= end && end <= self.range.end).then(|| Slice { bytes: self.bytes.clone(), range: start..end })
+    }
+}
+
+/// A buffer: its length as written, and its bytes if they can be had.
+pub(super) struct Buffer {
+    length: usize,
+    pub slice: Option<Slice>,
+}
+
+/// A part of a buffer.
+#[derive(Clone)]
+pub(super) struct View {
+    pub length: usize,
+    pub slice: Option<Slice>,
+    pub stride: Option<usize>,
+}
+
+impl View {
+    pub fn bytes(&self) -> &[u8] {
+        self.slice.as_ref().map_or(&[], Slice::bytes)
+    }
+}
+
+/// Where a URI leads.
+pub(super) enum Target<'a> {
+    /// The bytes and their media type are in it.
+    Data(&'a str, Arc<[u8]>),
+    /// To a file beside this one.
+    File(String),
+}
+
+/// Reads a URI: one that holds data, or a relative one.
+///
+/// Source: RFC 3986 and RFC 2397. What leads out of the folder is refused by
+/// [`durer_scene::source::Source`].
+pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
+    let uri = at.string()?;
+    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        let data = uri[5..].split_once(',').and_then(|(kind, data)| {
+            let Some(kind) = kind.strip_suffix(";base64") else {
+                // Without that word the data are text.
+                return Some((kind.split(';').next()?, unescaped(data)?.into_bytes()));
+            };
+            if kind.ends_with(';') {
+                return None;
+            }
+            let config: GeneralPurposeConfig = NO_PAD.with_decode_padding_mode(DecodePaddingMode::Indifferent);
+            Some((kind.split(';').next()?, GeneralPurpose::new(&STANDARD, config).decode(data).ok()?))
+        });
+        if data.is_none() {
+            at.error("INVALID_URI", "the URI holds no data");
+        }
+        return data.map(|(kind, bytes)| Target::Data(kind, bytes.into()));
+    }
+    let scheme = uri.split_once(':').filter(|(scheme, _)| !scheme.contains('/'));
+    if let Some((scheme, _)) = scheme {
+        at.error("INVALID_URI", format!("the URI is of the scheme `{scheme}`: only files beside this one are read"));
+        return None;
+    }
+    let Some(path) = unescaped(uri).filter(|path| !path.is_empty() && !path.contains('\0')) else {
+        at.error("INVALID_URI", format!("invalid URI {}", shown(uri.as_bytes())));
+        return None;
+    };
+    if path.starts_with(['/', '\\']) {
+        at.error(
+            "INVALID_URI",
+            format!("the URI {} is absolute: only files beside this one are read", shown(uri.as_bytes())),
+        );
+        return None;
+    }
+    Some(Target::File(path))
+}
+
+/// A text without percent-encoding; `None` where that is broken.
+fn unescaped(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.bytes();
+    while let Some(byte) = rest.next() {
+        bytes.push(match byte {
+            b'%' => {
+                let digits = [rest.next()?, rest.next()?];
+                u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?
+            }
+            other => other,
+        });
+    }
+    String::from_utf8(bytes).ok()
+}
+
+impl Model<'_> {
+    /// Reads the buffers; those that cannot be had are missed only where something is read of them.
+    pub(super) fn buffers(&self, root: &At) -> Vec<Option<Buffer>> {
+        let Some(buffers) = root.get("buffers") else { return Vec::new() };
+        buffers.items().enumerate().map(|(i, buffer)| self.buffer(i, &buffer)).collect()
+    }
+
+    fn buffer(&self, number: usize, at: &At) -> Option<Buffer> {
+        at.object()?;
+        let length = at.need("byteLength")?.whole(1..)? as usize;
+        // What stands there only for those who do not read compressed views.
+        let is_fallback = compression(at).is_some_and(|packed| packed["fallback"] == true);
+        Some(Buffer { length, slice: if is_fallback { None } else { self.data(number, length, at) } })
+    }
+
+    /// The bytes of a buffer.
+    fn data(&self, number: usize, length: usize, at: &At) -> Option<Slice> {
+        let bytes = match at.get("uri") {
+            Some(uri) => match target(&uri)? {
+                Target::Data(kind, bytes) => {
+                    if !matches!(kind, "application/octet-stream" | "application/gltf-buffer") {
+                        uri.error("BUFFER_DATA_URI_MIME_TYPE_INVALID", format!("the data are called `{kind}`"));
+                    }
+                    bytes
+                }
+                Target::File(path) => self.file(&uri, &path)?,
+            },
+            None => match (&self.parts.bin, number) {
+                (Some(bin), 0) => {
+                    let there = bin.len();
+                    if there < length {
+                        let message = format!("the buffer should have {length} bytes, and the chunk has {there}");
+                        at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
+                        return None;
+                    }
+                    return Some(Slice { bytes: self.input.bytes.clone(), range: bin.start..bin.start + length });
+                }
+                _ => {
+                    if self.parts.is_glb && number == 0 {
+                        at.error("BUFFER_MISSING_GLB_DATA", "the buffer refers to a chunk that the file does not have");
+                    }
+                    return None;
+                }
+            },
+        };
+        if bytes.len() < length {
+            let message = format!("the buffer should have {length} bytes, and has {}", bytes.len());
+            at.error("BUFFER_BYTE_LENGTH_MISMATCH", message);
+            return None;
+        }
+        Some(Slice { bytes, range: 0..length })
+    }
+
+    /// Reads a file that a URI names.
+    pub(super) fn file(&self, uri: &At, path: &str) -> Option<Arc<[u8]>> {
+        let name = FileName { path: path.to_string(), span: uri.span() };
+        match self.input.source.read(&name.path) {
+            Ok(bytes) => Some(bytes),
+            Err(error) => {
+                uri.error("IO_ERROR", error.to_string());
+                None
+            }
+        }
+    }
+
+    pub(super) fn views(&self, root: &At) -> Vec<Option<View>> {
+        let Some(views) = root.get("bufferViews") else { return Vec::new() };
+        views.items().map(|view| self.view_of(&view)).collect()
+    }
+
+    fn view_of(&self, at: &At) -> Option<View> {
+        at.object()?;
+        let buffer = at.need("buffer").and_then(|buffer| buffer.index(self.buffers.len()));
+        let offset = at.get("byteOffset").map_or(Some(0), |offset| offset.whole(..));
+        let length = at.need("byteLength").and_then(|length| length.whole(1..));
+        let stride = match at.get("byteStride") {
+            None => None,
+            Some(stride) => {
+                let bytes = stride.whole(4..=252)?;
+                if bytes % 4 != 0 {
+                    stride.error("VALUE_MULTIPLE_OF", format!("value {bytes} is no multiple of 4"));
+                    return None;
+                }
+                Some(bytes as usize)
+            }
+        };
+        let (offset, length) = (offset? as usize, length? as usize);
+        if stride.is_some_and(|stride| stride > length) {
+            at.error("BUFFER_VIEW_TOO_BIG_BYTE_STRIDE", "the stride is longer than the view");
+        }
+        let buffer = self.buffers[buffer?].as_ref()?;
+        let end = offset.checked_add(length).filter(|end| *end <= buffer.length);
+        if end.is_none() {
+            let bytes = buffer.length;
+            let message = format!("{length} bytes from {offset} on do not fit into a buffer of {bytes}");
+            at.get("byteLength").unwrap_or(*at).error("BUFFER_VIEW_TOO_LONG", message);
+        }
+        let slice = match compression(at) {
+            Some(_) => self.unpacked(&at.get("extensions")?.get(MESHOPT)?, length),
+            None => buffer.slice.as_ref().and_then(|slice| slice.part(offset..end?)),
+        };
+        end.map(|_| View { length, slice, stride })
+    }
+}
+
+/// How a buffer or view is compressed, if it is.
+fn compression<'a>(at: &At<'a>) -> Option<&'a Value> {
+    at.value.get("extensions")?.get(MESHOPT)
+}

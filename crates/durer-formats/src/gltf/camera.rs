@@ -1,0 +1,153 @@
+//! Cameras, and the lights of KHR_lights_punctual.
+
+use super::Model;
+use super::json::At;
+use super::nodes::NodeData;
+use durer_diag::did_you_mean;
+use durer_scene::camera::{Camera, OrthographicCamera, PerspectiveCamera};
+use durer_scene::light::{DirectionalLight, Light, PointLight, SpotLight};
+use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::{Scene, Spanned};
+use glam::{DAffine3, DVec3};
+use std::f32::consts::PI;
+
+/// A camera as written.
+#[derive(Clone)]
+pub(super) struct CameraData {
+    name: String,
+    view: Seen,
+}
+
+#[derive(Clone, Copy)]
+enum Seen {
+    /// The angle from bottom to top, in radians.
+    Perspective(f32),
+    /// Half the height.
+    Orthographic(f32),
+}
+
+/// A light as written.
+#[derive(Clone)]
+pub(super) struct LightData {
+    is_directional: bool,
+    /// Degrees from its middle to where a spot light begins to fade and where it ends.
+    cone: Option<[f32; 2]>,
+    color: Vec3,
+}
+
+impl Model<'_> {
+    pub(super) fn read_cameras(&self, root: &At) -> Vec<Option<CameraData>> {
+        root.list("cameras", |at| {
+            at.object()?;
+            let name = at.get("name").and_then(|name| name.value.as_str()).unwrap_or_default().to_string();
+            if at.get("perspective").is_some() && at.get("orthographic").is_some() {
+                at.error("ONE_OF_MISMATCH", "exactly one of `perspective` and `orthographic` must be defined");
+            }
+            let is_flat = at.need("type")?.word(&[("perspective", false), ("orthographic", true)])?;
+            let lens = at.need(if is_flat { "orthographic" } else { "perspective" })?;
+            let far = lens.get("zfar").and_then(|far| far.within(0.0..));
+            if let (Some(far), Some(near)) = (far, lens.get("znear").and_then(|near| near.within(0.0..)))
+                && far <= near
+            {
+                lens.error("CAMERA_ZFAR_LEQUAL_ZNEAR", format!("`zfar` {far} must be greater than `znear` {near}"));
+            }
+            let view = match is_flat {
+                true => Seen::Orthographic(lens.need("ymag")?.number().filter(|half| *half != 0.0)?.abs()),
+                false => {
+                    let angle = lens.need("yfov")?.within(1e-4..)?;
+                    if angle >= PI {
+                        lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
+                    }
+                    Seen::Perspective(angle.min(3.1))
+                }
+            };
+            Some(CameraData { name, view })
+        })
+    }
+
+    pub(super) fn read_lights(&self, root: &At) -> Vec<Option<LightData>> {
+        let extensions = root.get("extensions");
+        let Some(punctual) = extensions.as_ref().and_then(|e| e.get("KHR_lights_punctual")) else { return Vec::new() };
+        punctual.list("lights", |at| {
+            at.object()?;
+            let kinds = [("directional", (true, false)), ("point", (false, false)), ("spot", (false, true))];
+            let (is_directional, is_spot) = at.need("type")?.word(&kinds)?;
+            let color = at.get("color").and_then(|color| color.numbers::<3>()).map_or(Vec3::ONE, Vec3::from_array);
+            let intensity = at.get("intensity").and_then(|intensity| intensity.within(0.0..)).unwrap_or(1.0);
+            let spot = if is_spot { at.need("spot") } else { None };
+            let cone = spot.map(|spot| {
+                let angle = |name: &str, usual: f32| spot.get(name).and_then(|a| a.within(0.0..)).unwrap_or(usual);
+                [angle("innerConeAngle", 0.0), angle("outerConeAngle", 0.25 * PI)].map(f32::to_degrees)
+            });
+            // Intensities are luminous: what a matte white surface shows is a pi-th of them.
+            Some(LightData { is_directional, cone, color: color * (intensity / PI) })
+        })
+    }
+
+    /// The camera that is wanted, or the first of the scene, with its node.
+    pub(super) fn camera(&self, order: &[usize], nodes: &[NodeData], maps: &[DAffine3]) -> Option<(Camera, usize)> {
+        let there = order.iter().filter_map(|&i| Some((i, self.cameras[nodes[i].camera?].as_ref()?)));
+        let there: Vec<(usize, &CameraData)> = there.collect();
+        let names = |&(i, camera): &(usize, &CameraData)| [nodes[i].name.clone(), camera.name.clone()];
+        let chosen = match &self.input.staging.camera {
+            None => there.first(),
+            Some(wanted) => {
+                let by_name = there.iter().find(|camera| names(camera).contains(wanted));
+                let by_number = || wanted.parse().ok().and_then(|number: usize| there.get(number));
+                let found = by_name.or_else(by_number);
+                if found.is_none() {
+                    let all: Vec<String> = there.iter().flat_map(names).filter(|name| !name.is_empty()).collect();
+                    let meant = did_you_mean(wanted, all.iter().map(String::as_str));
+                    let known = match (meant, all.is_empty()) {
+                        (Some(meant), _) => format!("did you mean `{meant}`?"),
+                        (None, true) => format!("there are {} cameras without names, from 0 on", there.len()),
+                        (None, false) => format!("there are `{}`", all.join("`, `")),
+                    };
+                    self.findings.say(
+                        durer_diag::Diagnostic::error,
+                        "no-camera",
+                        "",
+                        &format!("the file shows no camera `{wanted}`: {known}"),
+                    );
+                }
+                found
+            }
+        };
+        let &(node, camera) = chosen?;
+        let map = maps[node];
+        let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
+        let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
+        let center = map.translation.as_vec3();
+        // Here angles and sizes are those of the picture's larger side.
+        let wide = self.input.staging.aspect.unwrap_or(1.0).max(1.0);
+        let camera = match camera.view {
+            Seen::Perspective(angle) => {
+                let half = fp::tan_f64(f64::from(angle) / 2.0) * f64::from(wide);
+                let angle = (2.0 * fp::atan_f64(half)).to_degrees() as f32;
+                PerspectiveCamera { center, direction, up, angle: angle.min(179.9) }.into()
+            }
+            Seen::Orthographic(half) => {
+                OrthographicCamera { center, direction, up, size: 2.0 * half * wide, ..Default::default() }.into()
+            }
+        };
+        Some((camera, node))
+    }
+
+    /// Adds the light of a node, if it has one.
+    pub(super) fn light(&self, number: usize, node: &NodeData, map: DAffine3, scene: &mut Scene) {
+        let Some(LightData { is_directional, cone, color }) = node.light.and_then(|i| self.lights[i].clone()) else {
+            return;
+        };
+        let direction = map.transform_vector3(DVec3::NEG_Z).normalize_or(DVec3::NEG_Z).as_vec3();
+        let position = map.translation.as_vec3();
+        let value: Light = match (is_directional, cone) {
+            (true, _) => DirectionalLight { direction, color, ..DirectionalLight::default() }.into(),
+            (false, Some([inner_angle, angle])) => {
+                let angle = angle.clamp(1e-3, 180.0);
+                SpotLight { position, direction, color, angle, inner_angle, ..SpotLight::default() }.into()
+            }
+            (false, None) => PointLight { position, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into(),
+        };
+        scene.lights.get_or_insert_default().push(Spanned { value, span: self.findings.node(number) });
+    }
+}

@@ -1,0 +1,129 @@
+//! Primitives whose triangles are compressed by Draco.
+//!
+//! Source: *KHR_draco_mesh_compression*, Khronos Group. The accessors of such a primitive say what
+//! is in the compressed bytes, and have no bytes of their own; here they are given those.
+
+use super::Model;
+use super::accessor::Component;
+use super::buffers::{Slice, View};
+use super::json::At;
+use draco_core::{DataType, DecodeLimits, DecoderBuffer, Mesh, MeshDecoder, PointAttribute, PointIndex};
+use durer_image::panics::caught;
+
+const DRACO: &str = "KHR_draco_mesh_compression";
+
+impl Model<'_> {
+    /// Decodes all primitives that are compressed by Draco.
+    pub(super) fn unpack_primitives(&mut self, root: &At) {
+        let Some(meshes) = root.get("meshes") else { return };
+        for mesh in meshes.items() {
+            let Some(primitives) = mesh.get("primitives") else { continue };
+            for primitive in primitives.items() {
+                let extensions = primitive.get("extensions");
+                if let Some(draco) = extensions.as_ref().and_then(|extensions| extensions.get(DRACO)) {
+                    self.unpack_primitive(&primitive, &draco);
+                }
+            }
+        }
+    }
+
+    fn unpack_primitive(&mut self, primitive: &At, at: &At) -> Option<()> {
+        at.object()?;
+        let mode = primitive.get("mode").and_then(|mode| mode.value.as_u64()).unwrap_or(4);
+        if !matches!(mode, 4 | 5) {
+            at.error("VALUE_NOT_IN_LIST", format!("{DRACO} holds triangles, not mode {mode}"));
+            return None;
+        }
+        let view = at.need("bufferView")?;
+        let packed = self.views[view.index(self.views.len())?].clone()?.slice?;
+        let mesh = match decoded(packed.bytes(), self.left.get()) {
+            Ok(mesh) => mesh,
+            Err(message) => {
+                at.error("compressed-data", format!("Draco's bytes are damaged: {message}"));
+                return None;
+            }
+        };
+        let points = mesh.num_points();
+        if let Some(indices) = primitive.get("indices") {
+            let bytes = mesh.faces().iter().flatten().flat_map(|corner| corner.0.to_le_bytes()).collect();
+            self.give(&indices, (Component::U32, 1, 3 * mesh.num_faces()), bytes)?;
+        }
+        let (attributes, packed) = (primitive.need("attributes")?, at.need("attributes")?);
+        for key in packed.object()?.keys() {
+            let number = packed.get(key)?;
+            let id = number.whole(..=u64::from(u32::MAX))? as u32;
+            let Some(attribute) = mesh.attribute_by_unique_id(id) else {
+                number.error("UNRESOLVED_REFERENCE", format!("the compressed bytes have no attribute {id}"));
+                continue;
+            };
+            let Some(component) = component(attribute.data_type()) else {
+                number.error("VALUE_NOT_IN_LIST", "the numbers of this attribute are of no type that glTF has");
+                continue;
+            };
+            let width = usize::from(attribute.num_components());
+            self.charge(points, 2 * width * component.size(), &number)?;
+            let bytes = rows(attribute, points, width * component.size());
+            self.give(&attributes.need(key)?, (component, width, points), bytes);
+        }
+        Some(())
+    }
+
+    /// Gives the accessor that a property names its bytes: rows of so many numbers, and how many.
+    fn give(&mut self, at: &At, (component, width, count): (Component, usize, usize), bytes: Vec<u8>) -> Option<()> {
+        let number = at.index(self.accessors.len())?;
+        let accessor = self.accessors[number].as_mut()?;
+        if (accessor.width, accessor.count) != (width, count) {
+            let (own_width, own_count) = (accessor.width, accessor.count);
+            let message = format!(
+                "the accessor has {own_count} rows of {own_width}, and the compressed bytes {count} rows of {width}"
+            );
+            at.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
+            return None;
+        }
+        accessor.fill(component, View { length: bytes.len(), slice: Some(Slice::whole(bytes.into())), stride: None });
+        accessor.check_values(at);
+        Some(())
+    }
+}
+
+/// The points and triangles of some bytes, which may take so much memory.
+fn decoded(bytes: &[u8], left: u64) -> Result<Mesh, String> {
+    let limits =
+        DecodeLimits::default().with_max_points(left / 16).with_max_faces(left / 64).with_max_decoded_bytes(left);
+    let decode = || {
+        let mut mesh = Mesh::new();
+        let mut buffer = DecoderBuffer::new(bytes).with_limits(limits);
+        MeshDecoder::new().decode(&mut buffer, &mut mesh).map(|()| mesh)
+    };
+    match caught(decode) {
+        Some(Ok(mesh)) if mesh.num_points() <= u32::MAX as usize => Ok(mesh),
+        Some(Ok(_)) => Err("too many points".into()),
+        Some(Err(error)) => Err(error.to_string()),
+        None => Err("their decoder failed".into()),
+    }
+}
+
+/// The rows of an attribute, one a point, side by side; what the attribute does not have is 0.
+fn rows(attribute: &PointAttribute, points: usize, size: usize) -> Vec<u8> {
+    let (data, stride) = (attribute.buffer().data(), attribute.byte_stride().max(0) as usize);
+    let mut all = vec![0; points * size];
+    for (i, row) in all.chunks_exact_mut(size.max(1)).enumerate() {
+        let start = (attribute.mapped_index(PointIndex(i as u32)).0 as usize).saturating_mul(stride);
+        if let Some(found) = start.checked_add(size).and_then(|end| data.get(start..end)) {
+            row.copy_from_slice(found);
+        }
+    }
+    all
+}
+
+fn component(kind: DataType) -> Option<Component> {
+    Some(match kind {
+        DataType::Int8 => Component::I8,
+        DataType::Uint8 => Component::U8,
+        DataType::Int16 => Component::I16,
+        DataType::Uint16 => Component::U16,
+        DataType::Uint32 => Component::U32,
+        DataType::Float32 => Component::F32,
+        _ => return None,
+    })
+}

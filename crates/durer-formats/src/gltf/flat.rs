@@ -1,0 +1,51 @@
+//! Meshes that their nodes scale to 0 along one axis.
+//!
+//! Source: *glTF 2.0 Specification*, chapter 3.5.3: only what is scaled to 0 along all axes need not
+//! be shown.
+
+use super::deform::of_normals;
+use durer_scene::math::Vec3;
+use durer_scene::shape::MeshData;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Of the square of its longest side, what a triangle at least has of area.
+const AREA: f64 = 1e-9;
+
+/// Whether a map without an inverse leaves a plane of space, and not a line or a point.
+pub(super) fn is_sheet(map: DAffine3) -> bool {
+    let longest = |map: DMat3| [map.x_axis, map.y_axis, map.z_axis].map(DVec3::length).into_iter().fold(0.0, f64::max);
+    let (size, area) = (longest(map.matrix3), longest(of_normals(map.matrix3)));
+    area.is_finite() && area > 1e-12 * size * size
+}
+
+/// What such a map makes of a mesh, in the world; `None` beyond the range of numbers. Faces that are
+/// seen from the side are gone.
+pub(super) fn flattened(data: &MeshData, map: DAffine3) -> Option<MeshData> {
+    let mut flat = data.clone();
+    for place in &mut flat.positions {
+        *place = map.transform_point3(place.as_dvec3()).as_vec3();
+        if !place.is_finite() {
+            return None;
+        }
+    }
+    for tangent in &mut flat.tangents {
+        let [x, y, z, _] = *tangent;
+        let along = Vec3::new(x, y, z);
+        let turned = map.transform_vector3(along.as_dvec3()).as_vec3().normalize_or(along);
+        tangent[..3].copy_from_slice(&turned.to_array());
+    }
+    // All of it lies as its faces do.
+    (flat.normals, flat.triangle_normals, flat.flat) = (Vec::new(), Vec::new(), true);
+    let has_area = |corners: &[u32; 3]| {
+        let [a, b, c] = corners.map(|i| data.positions[i as usize].as_dvec3());
+        let [ab, bc, ca] = [b - a, c - b, a - c].map(|side| map.transform_vector3(side));
+        let longest = [ab, bc, ca].map(DVec3::length_squared).into_iter().fold(0.0, f64::max);
+        ab.cross(ca).length() > AREA * longest
+    };
+    let kept: Vec<bool> = flat.triangles.iter().map(has_area).collect();
+    for list in [&mut flat.triangles, &mut flat.triangle_uvs] {
+        let mut kept = kept.iter();
+        list.retain(|_| *kept.next().unwrap_or(&true));
+    }
+    Some(flat)
+}

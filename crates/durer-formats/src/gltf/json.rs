@@ -1,0 +1,286 @@
+//! The JSON of a glTF file, with places: a value knows its JSON pointer, and what is said of it
+//! goes to line and column.
+//!
+//! Codes of errors are those of the Khronos validator (its ISSUES.md).
+
+mod place;
+
+use crate::report::{Report, shown};
+use durer_diag::{Diagnostic, Severity, Span};
+use serde_json::{Map, Value};
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+use std::ops::{Range, RangeBounds};
+
+/// What is said about a file, by whoever reads a part of it.
+pub(super) struct Findings<'a> {
+    /// The text of the JSON: a file, or what a binary file has of it.
+    text: &'a [u8],
+    /// Where the items of the document's lists begin.
+    starts: RefCell<HashMap<String, Vec<usize>>>,
+    report: RefCell<Report>,
+    /// Whether there was an error.
+    failed: Cell<bool>,
+}
+
+impl<'a> Findings<'a> {
+    pub fn new(text: &'a [u8], report: Report) -> Self {
+        Findings { text, starts: RefCell::default(), report: RefCell::new(report), failed: Cell::default() }
+    }
+
+    pub fn finish(self) -> Report {
+        self.report.into_inner()
+    }
+
+    pub fn has_errors(&self) -> bool {
+        self.failed.get() || self.report.borrow().has_errors()
+    }
+
+    /// Where a value stands in the file, or what is nearest around it.
+    fn range(&self, pointer: &str) -> Range<usize> {
+        self.in_list(pointer).unwrap_or_else(|| place::locate(self.text, pointer))
+    }
+
+    /// The same for what is in one of the lists that make up a document: each is walked over once.
+    fn in_list(&self, pointer: &str) -> Option<Range<usize>> {
+        let (list, rest) = pointer.strip_prefix('/')?.split_once('/')?;
+        let (number, rest) = rest.split_at(rest.find('/').unwrap_or(rest.len()));
+        let mut starts = self.starts.borrow_mut();
+        let starts = starts.entry(list.to_string()).or_insert_with(|| place::items(self.text, list));
+        let start = *starts.get(number.parse::<usize>().ok()?)?;
+        let at = place::locate(&self.text[start..], rest);
+        Some(start + at.start..start + at.end)
+    }
+
+    pub fn span(&self, pointer: &str) -> Span {
+        self.report.borrow().span(self.range(pointer))
+    }
+
+    /// The place of a node by its number: of its name, where it has one.
+    pub fn node(&self, number: usize) -> Span {
+        self.span(&format!("/nodes/{number}/name"))
+    }
+
+    /// An error, warning or note at a JSON pointer, which the message begins with.
+    pub fn say(&self, kind: fn(String) -> Diagnostic, code: &'static str, pointer: &str, message: &str) {
+        let is_error = kind(String::new()).severity == Severity::Error;
+        // Whoever reads on must know of an error that nobody is told of any more.
+        self.failed.set(self.failed.get() || is_error);
+        // A file of a million errors or warnings is not walked over a million times.
+        let (full, count) = (self.report.borrow().is_full(), self.report.borrow().count());
+        if full || !is_error && count > 256 {
+            return;
+        }
+        let shown = if pointer.is_empty() { String::new() } else { format!("{pointer}: ") };
+        self.report.borrow_mut().add(self.range(pointer), kind(shown + message).code(code));
+    }
+}
+
+/// A value of the document and the way to it.
+#[derive(Clone, Copy)]
+pub(super) struct At<'a> {
+    pub value: &'a Value,
+    pub findings: &'a Findings<'a>,
+    parent: Option<&'a At<'a>>,
+    step: Step<'a>,
+}
+
+#[derive(Clone, Copy)]
+enum Step<'a> {
+    Key(&'a str),
+    Index(usize),
+}
+
+impl<'a> At<'a> {
+    pub fn root(value: &'a Value, findings: &'a Findings<'a>) -> Self {
+        At { value, findings, parent: None, step: Step::Key("") }
+    }
+
+    /// The JSON pointer (RFC 6901) of this value.
+    pub fn pointer(&self) -> String {
+        let Some(parent) = self.parent else { return String::new() };
+        match self.step {
+            Step::Key(key) => format!("{}/{}", parent.pointer(), key.replace('~', "~0").replace('/', "~1")),
+            Step::Index(i) => format!("{}/{i}", parent.pointer()),
+        }
+    }
+
+    pub fn span(&self) -> Span {
+        self.findings.span(&self.pointer())
+    }
+
+    /// The name of what this value is a part of, as words to follow a noun: a blank and the name in
+    /// backquotes, or nothing.
+    pub fn name(&self) -> String {
+        let own = self.value.get("name").and_then(Value::as_str).filter(|name| !name.is_empty());
+        match (own, self.parent) {
+            (Some(name), _) => format!(" {}", shown(name.as_bytes())),
+            (None, Some(parent)) => parent.name(),
+            (None, None) => String::new(),
+        }
+    }
+
+    pub fn error(&self, code: &'static str, message: impl AsRef<str>) {
+        self.findings.say(Diagnostic::error, code, &self.pointer(), message.as_ref());
+    }
+
+    pub fn warning(&self, code: &'static str, message: impl AsRef<str>) {
+        self.findings.say(Diagnostic::warning, code, &self.pointer(), message.as_ref());
+    }
+
+    pub fn note(&self, code: &'static str, message: impl AsRef<str>) {
+        self.findings.say(Diagnostic::note, code, &self.pointer(), message.as_ref());
+    }
+
+    /// A property of this object, if it is there.
+    pub fn get(&'a self, key: &'a str) -> Option<At<'a>> {
+        let value = self.value.as_object()?.get(key)?;
+        Some(At { value, findings: self.findings, parent: Some(self), step: Step::Key(key) })
+    }
+
+    /// A property that must be there.
+    pub fn need(&'a self, key: &'a str) -> Option<At<'a>> {
+        let found = self.get(key);
+        if found.is_none() && self.value.is_object() {
+            self.error("UNDEFINED_PROPERTY", format!("property `{key}` must be defined"));
+        }
+        found
+    }
+
+    fn mismatch(&self, wanted: &str) {
+        let text = self.value.to_string();
+        self.error("TYPE_MISMATCH", format!("expected {wanted}, found {}", shown(text.as_bytes())));
+    }
+
+    /// This value as an object.
+    pub fn object(&self) -> Option<&'a Map<String, Value>> {
+        let object = self.value.as_object();
+        if object.is_none() {
+            self.mismatch("an object");
+        }
+        object
+    }
+
+    /// The values of this array, which must not be empty.
+    pub fn items(&'a self) -> impl ExactSizeIterator<Item = At<'a>> {
+        let items = match self.value {
+            Value::Array(items) => {
+                if items.is_empty() {
+                    self.error("EMPTY_ENTITY", "entity cannot be empty");
+                }
+                items.as_slice()
+            }
+            _ => {
+                self.mismatch("an array");
+                &[]
+            }
+        };
+        items.iter().enumerate().map(|(i, value)| At {
+            value,
+            findings: self.findings,
+            parent: Some(self),
+            step: Step::Index(i),
+        })
+    }
+
+    /// The values of an array that is a property, all read in one way; none where there is no such
+    /// property.
+    pub fn list<T>(&'a self, key: &'a str, mut read: impl FnMut(&At) -> T) -> Vec<T> {
+        match self.get(key) {
+            Some(array) => array.items().map(|item| read(&item)).collect(),
+            None => Vec::new(),
+        }
+    }
+
+    pub fn string(&self) -> Option<&'a str> {
+        let text = self.value.as_str();
+        if text.is_none() {
+            self.mismatch("a string");
+        }
+        text
+    }
+
+    pub fn boolean(&self) -> Option<bool> {
+        let value = self.value.as_bool();
+        if value.is_none() {
+            self.mismatch("`true` or `false`");
+        }
+        value
+    }
+
+    /// A number that single precision holds.
+    pub fn number(&self) -> Option<f32> {
+        match self.value.as_f64() {
+            Some(x) if (x as f32).is_finite() => Some(x as f32),
+            Some(_) => {
+                self.error("VALUE_NOT_IN_RANGE", "the number is beyond the range of 32-bit floating point");
+                None
+            }
+            None => {
+                self.mismatch("a number");
+                None
+            }
+        }
+    }
+
+    /// A number in some range.
+    pub fn within(&self, range: impl RangeBounds<f32>) -> Option<f32> {
+        let number = self.number()?;
+        if range.contains(&number) {
+            return Some(number);
+        }
+        self.error("VALUE_NOT_IN_RANGE", format!("value {number} is out of range"));
+        None
+    }
+
+    /// A whole number, which may be written as 4.0.
+    pub fn whole(&self, range: impl RangeBounds<u64>) -> Option<u64> {
+        let exact = |x: f64| (x.fract() == 0.0 && (0.0..9.0e15).contains(&x)).then_some(x as u64);
+        match self.value.as_u64().or_else(|| self.value.as_f64().and_then(exact)) {
+            Some(n) if range.contains(&n) => Some(n),
+            Some(n) => {
+                self.error("VALUE_NOT_IN_RANGE", format!("value {n} is out of range"));
+                None
+            }
+            None => {
+                match self.value.as_f64() {
+                    Some(x) if x < 0.0 => self.error("VALUE_NOT_IN_RANGE", format!("value {x} is out of range")),
+                    _ => self.mismatch("a whole number"),
+                }
+                None
+            }
+        }
+    }
+
+    /// The number of a thing in a list of `count`.
+    pub fn index(&self, count: usize) -> Option<usize> {
+        let number = self.whole(..)?;
+        if number < count as u64 {
+            return Some(number as usize);
+        }
+        self.error("UNRESOLVED_REFERENCE", format!("unresolved reference: {number}"));
+        None
+    }
+
+    /// So many numbers.
+    pub fn numbers<const N: usize>(&'a self) -> Option<[f32; N]> {
+        let items = self.items();
+        if self.value.is_array() && items.len() != N {
+            let found = items.len();
+            self.error("ARRAY_LENGTH_NOT_IN_LIST", format!("expected {N} numbers, found {found}"));
+            return None;
+        }
+        items.map(|item| item.number()).collect::<Option<Vec<_>>>()?.try_into().ok()
+    }
+
+    /// One of some words.
+    pub fn word<T: Copy>(&self, words: &[(&str, T)]) -> Option<T> {
+        let text = self.string()?;
+        let found = words.iter().find(|(word, _)| *word == text).map(|&(_, meaning)| meaning);
+        if found.is_none() {
+            let all: Vec<&str> = words.iter().map(|(word, _)| *word).collect();
+            self.error("VALUE_NOT_IN_LIST", format!("invalid value `{text}`, valid values are `{}`", all.join("`, `")));
+        }
+        found
+    }
+}

@@ -1,0 +1,327 @@
+//! Materials: metallic-roughness and the KHR extensions, in the words of OpenPBR.
+//!
+//! Sources: *glTF 2.0 Specification*, chapter 3.9 and appendix B; the KHR_materials extensions; how
+//! they meet OpenPBR: *OpenPBR Surface specification* 1.1, section on translation of other models.
+
+use super::Model;
+use super::json::At;
+use durer_scene::bsdf::layers::opaque_ior;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::math::Vec3;
+use durer_scene::texture::{Channel, Mapping};
+use std::f32::consts::TAU;
+
+/// What of KHR materials has no counterpart, and what is seen instead.
+const WITHOUT_COUNTERPART: [(&str, &str); 1] =
+    [("KHR_materials_subsurface", "scattering below the surface is left out")];
+
+/// Textures of extensions that have no counterpart, by extension, and what is seen instead.
+const TEXTURES: [(&str, &str, &str); 3] = [
+    ("KHR_materials_volume", "thicknessTexture", "light goes as far as the body is thick"),
+    ("KHR_materials_clearcoat", "clearcoatNormalTexture", "the coat lies as its base does"),
+    ("KHR_materials_diffuse_transmission", "diffuseTransmissionTexture", "only its factor counts"),
+];
+
+/// How alpha is meant.
+#[derive(Clone, Copy, PartialEq)]
+enum Alpha {
+    Opaque,
+    Mask,
+    Blend,
+}
+
+/// Whether a material looks otherwise where its surface is turned about its normal.
+pub(super) fn needs_tangents(at: &At) -> bool {
+    let anisotropic = |e: At| e.get("KHR_materials_anisotropy").is_some();
+    at.get("normalTexture").is_some() || at.get("extensions").is_some_and(anisotropic)
+}
+
+impl Model<'_> {
+    pub(super) fn materials(&self, root: &At) -> Vec<PrincipledMaterial> {
+        let Some(materials) = root.get("materials") else { return Vec::new() };
+        materials.items().map(|material| self.material(&material)).collect()
+    }
+
+    fn material(&self, at: &At) -> PrincipledMaterial {
+        // glTF's own default: white, wholly metal and wholly rough, of ior 1.5.
+        let mut m = PrincipledMaterial {
+            base_color: Vec3::ONE,
+            base_metalness: 1.0,
+            specular_roughness: 1.0,
+            ..PrincipledMaterial::default()
+        };
+        if at.object().is_none() {
+            return m;
+        }
+        let words = [("OPAQUE", Alpha::Opaque), ("MASK", Alpha::Mask), ("BLEND", Alpha::Blend)];
+        let alpha = at.get("alphaMode").and_then(|mode| mode.word(&words)).unwrap_or(Alpha::Opaque);
+        let cutoff = at.get("alphaCutoff").and_then(|cutoff| cutoff.within(0.0..)).unwrap_or(0.5);
+        let extensions = at.get("extensions");
+        let extension = |name| extensions.as_ref().and_then(|extensions| extensions.get(name));
+        let glossiness = extension("KHR_materials_pbrSpecularGlossiness");
+        match (&glossiness, at.get("pbrMetallicRoughness")) {
+            (Some(old), _) => self.glossy(&mut m, old, alpha, cutoff),
+            (None, Some(pbr)) => self.metallic(&mut m, &pbr, alpha, cutoff),
+            (None, None) => {}
+        }
+        if alpha == Alpha::Opaque {
+            m.opacity = 1.0;
+        }
+        m.normal_texture = at.get("normalTexture").and_then(|texture| {
+            let strength = texture.get("scale").and_then(|scale| scale.number()).unwrap_or(1.0);
+            self.texture(&texture, |mapping| mapping.strength = strength)
+        });
+        let strength = extension("KHR_materials_emissive_strength");
+        let strength = strength.and_then(|e| e.get("emissiveStrength")?.within(0.0..)).unwrap_or(1.0);
+        let emissive = at.get("emissiveFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ZERO);
+        if emissive != Vec3::ZERO {
+            (m.emission_luminance, m.emission_color) = (strength, emissive);
+            m.emission_texture = at.get("emissiveTexture").and_then(|texture| self.texture(&texture, |_| ()));
+        }
+        if let Some(extensions) = &extensions {
+            self.extended(&mut m, extensions);
+        }
+        // Of glass both sides of the skin are seen.
+        let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
+        if m.transmission_weight == 0.0 {
+            match both {
+                false => m.backs = Backs::Hidden,
+                // What shines does so to both sides, as a sheet does.
+                true if m.emission_luminance > 0.0 => m.walls = Walls::Thin,
+                true => {}
+            }
+        }
+        m
+    }
+
+    fn metallic(&self, m: &mut PrincipledMaterial, pbr: &At, alpha: Alpha, cutoff: f32) {
+        let factor = pbr.get("baseColorFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
+        m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
+        self.base(m, pbr.get("baseColorTexture"), factor[3], alpha, cutoff);
+        m.base_metalness = share(pbr, "metallicFactor", 1.0);
+        m.specular_roughness = share(pbr, "roughnessFactor", 1.0);
+        m.metallic_roughness_texture =
+            pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
+    }
+
+    /// The base colour's texture, and what its alpha and that of the factor make of opacity.
+    fn base(&self, m: &mut PrincipledMaterial, texture: Option<At>, factor: f32, alpha: Alpha, cutoff: f32) {
+        // The texture's alpha times the factor is compared with the cutoff.
+        let least = match alpha {
+            Alpha::Opaque => Some(0.0),
+            Alpha::Mask if factor > 0.0 => Some(cutoff / factor),
+            Alpha::Mask => Some(if cutoff > 0.0 { 2.0 } else { 0.0 }),
+            Alpha::Blend => None,
+        };
+        m.base_color_texture = texture.and_then(|texture| self.texture(&texture, |mapping| mapping.cutoff = least));
+        m.opacity = match alpha {
+            Alpha::Opaque => 1.0,
+            Alpha::Mask if m.base_color_texture.is_some() || factor >= cutoff => 1.0,
+            Alpha::Mask => 0.0,
+            Alpha::Blend => factor.clamp(0.0, 1.0),
+        };
+    }
+
+    /// KHR_materials_pbrSpecularGlossiness: what reflects at right angles is a colour of its own.
+    fn glossy(&self, m: &mut PrincipledMaterial, old: &At, alpha: Alpha, cutoff: f32) {
+        let factor = old.get("diffuseFactor").and_then(|factor| factor.numbers::<4>()).unwrap_or([1.0; 4]);
+        let specular = old.get("specularFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
+        m.base_color = Vec3::new(factor[0], factor[1], factor[2]);
+        m.base_metalness = 0.0;
+        m.specular_roughness = 1.0 - share(old, "glossinessFactor", 1.0);
+        let most = specular.max_element();
+        // Ior 1.5 reflects 0.04 at right angles.
+        m.specular_weight = most / 0.04;
+        m.specular_color = if most > 0.0 { specular / most } else { Vec3::ONE };
+        if most > 0.5 && m.base_color.max_element() < 0.2 {
+            (m.base_color, m.base_metalness, m.specular_weight, m.specular_color) = (specular, 1.0, 1.0, Vec3::ONE);
+        }
+        self.base(m, old.get("diffuseTexture"), factor[3], alpha, cutoff);
+        let Some(texture) = old.get("specularGlossinessTexture") else { return };
+        let color = self.texture_as(&texture, ":color", |_| ());
+        match m.base_metalness > 0.0 {
+            true => m.base_color_texture = color,
+            false => m.specular_color_texture = color,
+        }
+        // Roughness is what glossiness times alpha leaves of 1: the picture multiplies a roughness
+        // of 1.
+        let glossiness = 1.0 - m.specular_roughness;
+        m.specular_roughness = 1.0;
+        m.specular_roughness_texture = self.number(&texture, Channel::Alpha, [1.0, 1.0 - glossiness]);
+    }
+
+    fn extended(&self, m: &mut PrincipledMaterial, extensions: &At) {
+        for (name, key, instead) in TEXTURES {
+            let Some(extension) = extensions.get(name) else { continue };
+            if let Some(texture) = extension.get(key) {
+                texture.warning("NO_COUNTERPART", format!("this texture of {name} is left out: {instead}"));
+            }
+        }
+        let number = |at: &At, key, channel| self.number(&at.get(key)?, channel, [0.0, 1.0]);
+        let picture = |at: &At, key| self.texture(&at.get(key)?, |_| ());
+        for (name, message) in WITHOUT_COUNTERPART {
+            if extensions.get(name).is_some() {
+                self.once(name, message);
+            }
+        }
+        if let Some(e) = extensions.get("KHR_materials_ior") {
+            // 0 stands for an index without bound, which reflects everything.
+            m.specular_ior = match e.get("ior") {
+                Some(ior) if ior.value.as_f64() == Some(0.0) => 1e4,
+                ior => ior.and_then(|ior| ior.within(1.0..)).unwrap_or(1.5),
+            };
+        }
+        if let Some(e) = extensions.get("KHR_materials_specular") {
+            m.specular_weight = share(&e, "specularFactor", 1.0);
+            m.specular_color = e.get("specularColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
+            m.specular_weight_texture = number(&e, "specularTexture", Channel::Alpha);
+            m.specular_color_texture = picture(&e, "specularColorTexture");
+            let clear = extensions.get("KHR_materials_transmission").is_some();
+            weighed_by_brightness(m, clear);
+            not_of_metals(m, clear);
+        }
+        if let Some(e) = extensions.get("KHR_materials_transmission") {
+            m.transmission_weight = share(&e, "transmissionFactor", 0.0);
+            // Light that passes takes on the base colour.
+            m.transmission_color = m.base_color;
+            m.transmission_color_texture = m.base_color_texture.clone();
+            m.transmission_weight_texture = number(&e, "transmissionTexture", Channel::Red);
+            m.walls = Walls::Thin;
+        }
+        if let Some(e) = extensions.get("KHR_materials_volume") {
+            let thickness = e.get("thicknessFactor").and_then(|thickness| thickness.within(0.0..)).unwrap_or(0.0);
+            let depth = e.get("attenuationDistance").and_then(|distance| distance.within(f32::MIN_POSITIVE..));
+            let tint = e.get("attenuationColor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ONE);
+            if thickness > 0.0 {
+                m.walls = Walls::Solid;
+                if let Some(depth) = depth {
+                    (m.transmission_depth, m.transmission_color) = (depth, tint);
+                }
+            }
+        }
+        if let Some(e) = extensions.get("KHR_materials_clearcoat") {
+            m.coat_weight = share(&e, "clearcoatFactor", 0.0);
+            m.coat_roughness = share(&e, "clearcoatRoughnessFactor", 0.0);
+            (m.coat_ior, m.coat_darkening) = (1.5, 0.0);
+            m.coat_weight_texture = number(&e, "clearcoatTexture", Channel::Red);
+            m.coat_roughness_texture = number(&e, "clearcoatRoughnessTexture", Channel::Green);
+        }
+        if let Some(e) = extensions.get("KHR_materials_sheen") {
+            let tint = e.get("sheenColorFactor").and_then(|factor| color(&factor)).unwrap_or(Vec3::ZERO);
+            let most = tint.max_element();
+            m.fuzz_weight = most.clamp(0.0, 1.0);
+            m.fuzz_color = if most > 0.0 { tint / most } else { Vec3::ONE };
+            m.fuzz_roughness = share(&e, "sheenRoughnessFactor", 0.0);
+            m.fuzz_color_texture = picture(&e, "sheenColorTexture");
+            m.fuzz_roughness_texture = number(&e, "sheenRoughnessTexture", Channel::Alpha);
+        }
+        if let Some(e) = extensions.get("KHR_materials_anisotropy") {
+            m.specular_anisotropy = share(&e, "anisotropyStrength", 0.0);
+            let turn = e.get("anisotropyRotation").and_then(|turn| turn.number()).unwrap_or(0.0);
+            m.specular_rotation = turn / TAU;
+            let pictured = m.metallic_roughness_texture.is_some() || e.get("anisotropyTexture").is_some();
+            if m.specular_anisotropy > 0.0 && !pictured {
+                // Along the highlight alpha grows towards 1 by the square of the strength; across it is
+                // that of the roughness. What pictures say is only like that.
+                let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
+                let along = alpha + (1.0 - alpha) * m.specular_anisotropy * m.specular_anisotropy;
+                [m.specular_roughness, m.specular_anisotropy, _] = Ggx::parameters([along, alpha]);
+            }
+            m.specular_anisotropy_texture = number(&e, "anisotropyTexture", Channel::Blue);
+            m.specular_rotation_texture = number(&e, "anisotropyTexture", Channel::Angle);
+        }
+        if let Some(e) = extensions.get("KHR_materials_iridescence") {
+            let at_least = |key, or, least: f32| e.get(key).and_then(|x| x.within(least..)).unwrap_or(or);
+            m.thin_film_weight = share(&e, "iridescenceFactor", 0.0);
+            m.thin_film_weight_texture = number(&e, "iridescenceTexture", Channel::Red);
+            m.thin_film_ior = at_least("iridescenceIor", 1.3, 1.0);
+            // Nanometres there, micrometres here; without a picture the greatest thickness counts.
+            let [thin, thick] = [("iridescenceThicknessMinimum", 100.0), ("iridescenceThicknessMaximum", 400.0)]
+                .map(|(key, or)| at_least(key, or, 0.0));
+            m.thin_film_thickness = 1e-3 * thick;
+            let texture = e.get("iridescenceThicknessTexture").filter(|_| thick > 0.0);
+            m.thin_film_thickness_texture =
+                texture.and_then(|texture| self.number(&texture, Channel::Green, [thin / thick, 1.0]));
+        }
+        if let Some(e) = extensions.get("KHR_materials_dispersion") {
+            // Abbe's number is 20 over that, as ours over its scale.
+            let dispersion = e.get("dispersion").and_then(|x| x.within(0.0..)).unwrap_or(0.0);
+            m.transmission_dispersion_scale = dispersion.min(1.0);
+            m.transmission_dispersion_abbe_number = 20.0 / dispersion.max(1.0);
+        }
+        if let Some(e) = extensions.get("KHR_materials_diffuse_transmission") {
+            self.let_through(m, &e);
+        }
+        if extensions.get("KHR_materials_unlit").is_some() {
+            // What is not lit shines by itself.
+            m.emission_color = m.base_color;
+            m.emission_texture = m.base_color_texture.clone();
+            (m.emission_luminance, m.base_weight, m.specular_weight, m.base_metalness) = (1.0, 0.0, 0.0, 0.0);
+        }
+    }
+}
+
+/// KHR_materials_specular is of dielectrics alone; ours is of metals too.
+fn not_of_metals(m: &mut PrincipledMaterial, clear: bool) {
+    let is_metal = m.base_metalness == 1.0 && m.metallic_roughness_texture.is_none();
+    if is_metal {
+        (m.specular_weight, m.specular_color) = (1.0, Vec3::ONE);
+        (m.specular_weight_texture, m.specular_color_texture) = (None, None);
+    } else if m.base_metalness > 0.0 && m.specular_weight < 1.0 && !clear {
+        // A smaller index reflects less, which is all that a weight does to what is no metal.
+        (m.specular_ior, m.specular_weight) = (opaque_ior(m), 1.0);
+    }
+}
+
+/// Only what reflects at right angles has the colour there: how bright that is belongs to our
+/// weight, which leaves grazing angles as they are. Glass has no weight.
+fn weighed_by_brightness(m: &mut PrincipledMaterial, clear: bool) {
+    let most = m.specular_color.max_element();
+    if clear {
+        m.specular_color = m.specular_color.min(Vec3::ONE);
+    } else if most > 0.0 {
+        m.specular_weight *= most;
+        m.specular_color /= most;
+    } else {
+        (m.specular_weight, m.specular_color) = (0.0, Vec3::ONE);
+    }
+}
+
+impl Model<'_> {
+    /// KHR_materials_diffuse_transmission: a share of the matte light comes out behind a sheet, in
+    /// a colour of its own.
+    fn let_through(&self, m: &mut PrincipledMaterial, e: &At) {
+        let through = share(e, "diffuseTransmissionFactor", 0.0);
+        if through == 0.0 || m.walls == Walls::Solid && m.transmission_weight > 0.0 {
+            return;
+        }
+        // What comes out behind is all that is scattered into the sheet; what stays in front is the
+        // matte base.
+        m.walls = Walls::Thin;
+        m.subsurface_weight = through;
+        m.subsurface_scatter_anisotropy = 1.0 - f32::EPSILON;
+        m.subsurface_color = e.get("diffuseTransmissionColorFactor").and_then(|x| color(&x)).unwrap_or(Vec3::ONE);
+        let picture = e.get("diffuseTransmissionColorTexture");
+        m.subsurface_color_texture = picture.and_then(|texture| self.texture(&texture, |_| ()));
+    }
+
+    /// A picture whose channel changes a number; its 0 and 1 stand for these.
+    fn number(&self, texture: &At, channel: Channel, range: [f32; 2]) -> Option<FileName> {
+        let change = |mapping: &mut Mapping| (mapping.channel, mapping.range) = (Some(channel), range);
+        // The same picture may change several numbers.
+        self.texture_as(texture, &format!(":{channel:?}"), change)
+    }
+}
+
+/// A factor from 0 to 1.
+fn share(at: &At, key: &str, or: f32) -> f32 {
+    at.get(key).and_then(|factor| factor.within(0.0..=1.0)).unwrap_or(or)
+}
+
+/// A colour without negative parts.
+fn color(at: &At) -> Option<Vec3> {
+    at.numbers::<3>().map(|rgb| Vec3::from_array(rgb).max(Vec3::ZERO))
+}

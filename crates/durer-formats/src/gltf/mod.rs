@@ -1,0 +1,341 @@
+//! glTF 2.0, as `.gltf` and `.glb`: scenes with nodes, meshes, materials, textures, cameras,
+//! lights, skins, animations.
+//!
+//! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
+//! they are read. Errors have the codes of the Khronos validator and name the JSON pointer.
+
+mod accessor;
+mod animation;
+mod buffers;
+mod camera;
+mod container;
+mod deform;
+mod draco;
+mod flat;
+mod json;
+mod material;
+mod meshopt;
+mod nodes;
+mod primitive;
+mod texture;
+mod variants;
+mod write;
+
+use super::model::{Input, SceneFormat};
+use super::report::Report;
+use accessor::Accessor;
+use buffers::{Buffer, View};
+use camera::{CameraData, LightData};
+use container::{Parts, open, recognise};
+use deform::Skin;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::scene::{Axis, Material, Picture, PictureBytes, Scene, Spanned};
+use durer_scene::texture::Mapping;
+use json::{At, Findings};
+use primitive::Primitives;
+use serde_json::Value;
+use std::cell::{Cell, RefCell};
+use std::collections::{BTreeMap, BTreeSet};
+use write::write;
+
+/// Extensions that a file may require: what is left out of them is warned of.
+const KNOWN: [&str; 24] = [
+    "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+    "KHR_xmp",
+    "KHR_xmp_json_ld",
+    "KHR_node_visibility",
+];
+
+/// A file on its way to a scene: what was read of it so far.
+struct Model<'a> {
+    input: &'a Input<'a>,
+    findings: &'a Findings<'a>,
+    parts: Parts,
+    /// Whether KHR_mesh_quantization allows attributes of whole numbers.
+    quantized: bool,
+    buffers: Vec<Option<Buffer>>,
+    views: Vec<Option<View>>,
+    accessors: Vec<Option<Accessor>>,
+    images: Vec<Option<PictureBytes>>,
+    /// With the place of each one's picture.
+    textures: Vec<Option<(PictureBytes, Mapping, Span)>>,
+    /// The pictures that materials show, by name.
+    pictures: RefCell<BTreeMap<String, Picture>>,
+    material_count: usize,
+    /// The look that is shown, where the file has several.
+    variant: Option<usize>,
+    /// Whether each material lets what is behind it be seen by its alpha.
+    blends: Vec<bool>,
+    /// Whether each material wants to know how its surface moves as u grows.
+    leans: Vec<bool>,
+    meshes: Vec<Primitives>,
+    /// Weights of each mesh's morph targets.
+    weights: Vec<Vec<f32>>,
+    skins: Vec<Option<Skin>>,
+    cameras: Vec<Option<CameraData>>,
+    lights: Vec<Option<LightData>>,
+    /// Bytes that may still be decoded.
+    left: Cell<u64>,
+    /// What was said already.
+    said: RefCell<BTreeSet<&'static str>>,
+}
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "glTF",
+    extensions: &["gltf", "glb"],
+    recognise,
+    read,
+    write: Some(write),
+    up: Axis::Y,
+    whole: false,
+    shines: None,
+};
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let mut report = Report::new(input.file, diagnostics);
+    let Some(parts) = open(input.bytes, input.name, &mut report) else {
+        report.finish(diagnostics, ());
+        return None;
+    };
+    let text = &input.bytes[parts.json.clone()];
+    let mut end = parts.json.end;
+    if parts.is_glb {
+        // Lines and columns in a binary file are those of its text.
+        report.finish(diagnostics, ());
+        let mut files = input.files.borrow_mut();
+        let name = files.name(input.file).unwrap_or(input.name).to_string();
+        report = Report::new(files.add(name, text.into()), diagnostics);
+        end = 0;
+    }
+    let value = match serde_json::from_slice::<Value>(text) {
+        Ok(value) => value,
+        Err(error) => {
+            let line: usize =
+                text.split_inclusive(|&b| b == b'\n').take(error.line().max(1) - 1).map(<[u8]>::len).sum();
+            let at = (line + error.column().saturating_sub(1)).min(text.len());
+            let message = error.to_string();
+            let message = message.split(" at line ").next().unwrap_or_default();
+            report.add(at..at, Diagnostic::error(format!("invalid JSON: {message}")).code("INVALID_JSON"));
+            report.finish(diagnostics, ());
+            return None;
+        }
+    };
+    let findings = Findings::new(text, report);
+    let scene = scene(input, parts, At::root(&value, &findings));
+    let scene = findings.finish().finish(diagnostics, scene)?;
+    input.files.borrow_mut().cut(input.file, end, diagnostics);
+    scene
+}
+
+fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
+    root.object()?;
+    check_version(&root)?;
+    let quantized = required(&root);
+    if root.findings.has_errors() {
+        return None;
+    }
+    let mut model = Model {
+        input,
+        findings: root.findings,
+        parts,
+        quantized,
+        buffers: Vec::new(),
+        views: Vec::new(),
+        accessors: Vec::new(),
+        images: Vec::new(),
+        textures: Vec::new(),
+        pictures: RefCell::default(),
+        material_count: 0,
+        variant: None,
+        blends: Vec::new(),
+        leans: Vec::new(),
+        meshes: Vec::new(),
+        weights: Vec::new(),
+        skins: Vec::new(),
+        cameras: Vec::new(),
+        lights: Vec::new(),
+        left: Cell::new(0),
+        said: RefCell::default(),
+    };
+    // Each step needs those before it.
+    model.buffers = model.buffers(&root);
+    let slices = model.buffers.iter().flatten().filter_map(|buffer| buffer.slice.as_ref());
+    let bytes: u64 = slices.map(|slice| slice.bytes().len() as u64).sum();
+    model.left.set((256 << 20) + 64 * bytes);
+    model.views = model.views(&root);
+    model.accessors = model.accessors(&root);
+    model.unpack_primitives(&root);
+    model.images = model.images(&root);
+    model.textures = model.textures(&root);
+    let materials = model.materials(&root);
+    model.material_count = materials.len();
+    model.variant = model.chosen_variant(&root);
+    let alpha = |at: &At| at.get("alphaMode").and_then(|mode| mode.value.as_str()).is_some_and(|mode| mode != "OPAQUE");
+    let of_materials = |what: &dyn Fn(&At) -> bool| match root.get("materials") {
+        Some(materials) => materials.items().map(|material| what(&material)).collect(),
+        None => Vec::new(),
+    };
+    model.blends = of_materials(&alpha);
+    model.leans = of_materials(&material::needs_tangents);
+    model.meshes = model.meshes(&root);
+    model.weights = match root.get("meshes") {
+        Some(meshes) => meshes.items().map(|mesh| mesh.list("weights", |w| w.number().unwrap_or(0.0))).collect(),
+        None => Vec::new(),
+    };
+    model.skins = model.read_skins(&root);
+    model.cameras = model.read_cameras(&root);
+    model.lights = model.read_lights(&root);
+    let mut nodes = model.read_nodes(&root);
+    if root.findings.has_errors() {
+        return None;
+    }
+    model.animate(&root, &mut nodes);
+    let (order, maps) = model.placed(&root, &nodes);
+    let camera = model.camera(&order, &nodes, &maps);
+    let camera_span = match camera {
+        Some((_, node)) => root.findings.node(node),
+        None => root.span(),
+    };
+    let mut scene = Scene { camera: camera.map(|(camera, _)| camera), camera_span, ..Scene::default() };
+    let spanned = |(i, m): (usize, PrincipledMaterial)| Spanned {
+        value: Material::Principled(Box::new(m)),
+        span: root.findings.span(&format!("/materials/{i}")),
+    };
+    scene.materials = materials.into_iter().enumerate().map(spanned).collect();
+    for &i in &order {
+        model.show(i, &nodes, &maps, &mut scene);
+        model.light(i, &nodes[i], maps[i], &mut scene);
+    }
+    scene.assets.pictures = model.pictures.take();
+    if scene.root.is_none() && !root.findings.has_errors() {
+        let number = root.get("scene").and_then(|number| number.value.as_u64()).unwrap_or(0);
+        let at = format!("/scenes/{number}");
+        root.findings.say(Diagnostic::warning, "no-objects", &at, "nothing is shown that has triangles");
+    }
+    Some(scene)
+}
+
+/// Refuses versions other than 2.
+fn check_version(root: &At) -> Option<()> {
+    let asset = root.need("asset")?;
+    asset.object()?;
+    let version = asset.need("version")?;
+    let number = |text: &str| text.split_once('.').and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
+    let Some((major, minor)): Option<(u32, u32)> = number(version.string()?) else {
+        version.error("PATTERN_MISMATCH", "a version is two numbers with a point between them");
+        return None;
+    };
+    if major != 2 {
+        let message = format!("unknown version {major}.{minor} of glTF: only 2 is read");
+        version.error("UNKNOWN_ASSET_MAJOR_VERSION", message);
+        return None;
+    }
+    if let Some(least) = asset.get("minVersion")
+        && let Some(wanted) = number(least.string()?)
+    {
+        if wanted > (major, minor) {
+            least.error("ASSET_MIN_VERSION_GREATER_THAN_VERSION", "`minVersion` is greater than `version`");
+        } else if wanted > (2, 0) {
+            least.warning("UNKNOWN_ASSET_MINOR_VERSION", "only version 2.0 of glTF is known");
+        }
+    }
+    Some(())
+}
+
+/// Refuses extensions that a file requires and that are not read; tells whether attributes may be
+/// quantized.
+fn required(root: &At) -> bool {
+    let mut quantized = false;
+    for key in ["extensionsUsed", "extensionsRequired"] {
+        let mut seen = BTreeSet::new();
+        root.list(key, |at| {
+            let name = at.string().unwrap_or_default().to_string();
+            quantized |= name == "KHR_mesh_quantization";
+            if key == "extensionsRequired" && !KNOWN.contains(&name.as_str()) {
+                let tool = match name.as_str() {
+                    "KHR_meshopt_compression" => {
+                        ": convert the file with `gltf-transform copy`, which takes the compression out"
+                    }
+                    "KHR_texture_basisu" => ": convert its pictures to PNG with `ktx extract`",
+                    _ => "",
+                };
+                at.error("UNSUPPORTED_EXTENSION", format!("the file requires {name}, which is not read{tool}"));
+            }
+            if !seen.insert(name) {
+                at.error("DUPLICATE_ELEMENTS", "this name stands twice in the list");
+            }
+        });
+    }
+    quantized
+}
+
+impl Model<'_> {
+    /// Says something once for the whole file.
+    fn once(&self, code: &'static str, message: &str) {
+        self.once_at(code, "", message);
+    }
+
+    /// Says something of the first place of which it holds.
+    fn once_at(&self, code: &'static str, pointer: &str, message: &str) {
+        if self.said.borrow_mut().insert(code) {
+            self.findings.say(Diagnostic::warning, code, pointer, message);
+        }
+    }
+
+    /// Takes memory and time from what is left: what is made stays in proportion to what is there.
+    fn charge(&self, count: usize, size: usize, at: &At) -> Option<()> {
+        self.charge_at(count, size, &|| at.pointer())
+    }
+
+    fn charge_at(&self, count: usize, size: usize, pointer: &dyn Fn() -> String) -> Option<()> {
+        let left = self.left.get().checked_sub((count as u64).saturating_mul(size as u64));
+        self.left.set(left.unwrap_or(0));
+        if left.is_none() {
+            let message = "the file uses the same numbers so often that they make more than fits into memory";
+            self.findings.say(Diagnostic::error, "too-large", &pointer(), message);
+        }
+        left.map(|_| ())
+    }
+
+    /// All rows of an accessor.
+    fn rows<const N: usize>(&self, accessor: &Accessor, at: &At) -> Option<Vec<[f32; N]>> {
+        self.rows_as(accessor, at, |row| row)
+    }
+
+    /// What is made of all rows of an accessor.
+    fn rows_as<const N: usize, T: Send>(
+        &self,
+        accessor: &Accessor,
+        at: &At,
+        of: impl Fn([f32; N]) -> T + Sync + Send,
+    ) -> Option<Vec<T>> {
+        self.charge(accessor.count, 4 * N, at)?;
+        Some(accessor.rows(of))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,292 @@
+//! Primitives of meshes: attributes and indices become triangles.
+
+use super::Model;
+use super::accessor::{Accessor, Component};
+use super::deform::{Pose, copy};
+use super::json::At;
+use crate::sticks::thickened;
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::shape::MeshData;
+use glam::DAffine3;
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// A mesh: what each of its primitives is.
+pub(super) type Primitives = Vec<Option<Primitive>>;
+
+/// Triangles with a material.
+#[derive(Clone)]
+pub(super) struct Primitive {
+    pub data: Arc<MeshData>,
+    pub material: Option<u32>,
+    /// By vertex: whether positions came with normals, and so are moved with them.
+    pub has_normals: bool,
+    /// What bones and morph targets move.
+    pub pose: Option<Arc<Pose>>,
+}
+
+impl Primitive {
+    /// Its mesh with the vertices moved.
+    pub fn posed(&self, pose: &Pose, weights: &[f32], bones: Option<&[DAffine3]>) -> MeshData {
+        let mut data = MeshData::clone(&self.data);
+        pose.apply(&mut data, weights, bones);
+        index(&mut data, self.has_normals);
+        data
+    }
+}
+
+/// Primitive modes of the specification, chapter 3.7.2.1.
+const POINTS: u64 = 0;
+const LINES: u64 = 1;
+const LINE_LOOP: u64 = 2;
+const LINE_STRIP: u64 = 3;
+const TRIANGLES: u64 = 4;
+const STRIP: u64 = 5;
+const FAN: u64 = 6;
+
+impl Model<'_> {
+    pub(super) fn meshes(&self, root: &At) -> Vec<Primitives> {
+        let Some(meshes) = root.get("meshes") else { return Vec::new() };
+        meshes.items().map(|mesh| self.mesh(&mesh)).collect()
+    }
+
+    fn mesh(&self, at: &At) -> Primitives {
+        let Some(primitives) = at.object().and_then(|_| at.need("primitives")) else { return Vec::new() };
+        if let Some(weights) = at.get("weights") {
+            let targets = primitives.items().next().map_or(0, |first| first.list("targets", |_| ()).len());
+            let count = weights.items().len();
+            if count != targets {
+                weights.error("MESH_INVALID_WEIGHTS_COUNT", format!("{count} weights for {targets} morph targets"));
+            }
+        }
+        let counts: Vec<usize> = primitives.items().map(|primitive| primitive.list("targets", |_| ()).len()).collect();
+        if counts.iter().any(|count| *count != counts[0]) {
+            primitives.error("MESH_PRIMITIVES_UNEQUAL_TARGETS_COUNT", "all primitives must have as many morph targets");
+        }
+        primitives.items().map(|primitive| self.primitive(&primitive)).collect()
+    }
+
+    /// The accessor that a property names.
+    pub(super) fn accessor(&self, at: &At) -> Option<&Accessor> {
+        self.accessors[at.index(self.accessors.len())?].as_ref()
+    }
+
+    /// The accessor of an attribute, if its type is one that the attribute may have.
+    fn attribute(&self, at: &At, name: &str, widths: &[usize], whole: &[Component]) -> Option<&Accessor> {
+        let accessor = self.accessor(at)?;
+        let quantized = self.quantized && !matches!(accessor.component, Component::U32);
+        let right = accessor.component == Component::F32
+            || quantized
+            || accessor.normalized && whole.contains(&accessor.component);
+        if right && widths.contains(&accessor.width) && !accessor.is_matrix {
+            return Some(accessor);
+        }
+        let message = format!("invalid accessor format for {name}: {:?} of {}", accessor.component, accessor.width);
+        at.error("MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT", message);
+        None
+    }
+
+    fn primitive(&self, at: &At) -> Option<Primitive> {
+        at.object()?;
+        let material = self.material_of(at)?;
+        let mode = at.get("mode").map_or(Some(TRIANGLES), |mode| mode.whole(0..=6))?;
+        let attributes = at.need("attributes")?;
+        if attributes.object()?.is_empty() {
+            attributes.error("EMPTY_ENTITY", "entity cannot be empty");
+        }
+        let Some(positions) = attributes.get("POSITION") else {
+            attributes.warning("MESH_PRIMITIVE_NO_POSITION", "no POSITION attribute: nothing of it is seen");
+            return None;
+        };
+        let place = self.attribute(&positions, "POSITION", &[3], &[])?;
+        if !place.has_bounds {
+            let message = "the accessor of POSITION must have `min` and `max`";
+            positions.error("MESH_PRIMITIVE_POSITION_ACCESSOR_WITHOUT_BOUNDS", message);
+        }
+        let count = place.count;
+        let positions = self.rows_as(place, &positions, Vec3::from_array)?;
+        let mut data = MeshData { positions, ..MeshData::default() };
+        for key in attributes.object()?.keys() {
+            let Some(attribute) = attributes.get(key) else { continue };
+            let equal = self.accessor(&attribute).is_none_or(|accessor| accessor.count == count);
+            if !equal {
+                let message = format!("all attributes must have {count} rows as POSITION has");
+                attribute.error("MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT", message);
+                continue;
+            }
+            self.fill(&mut data, key, &attribute);
+        }
+        let has_normals = data.normals.len() == count;
+        if material.is_none_or(|material| !self.blends[material as usize]) {
+            data.colors.iter_mut().for_each(|color| color[3] = 1.0);
+        }
+        let mut pose = self.pose(at, &attributes, count);
+        let order = self.order(at, count)?;
+        data.triangles = match mode {
+            TRIANGLES => order.as_chunks::<3>().0.par_iter().copied().collect(),
+            // Every other triangle of a strip turns the other way round.
+            STRIP => order.windows(3).enumerate().map(|(i, t)| [t[0], t[1 + i % 2], t[2 - i % 2]]).collect(),
+            FAN => order.windows(2).skip(1).map(|t| [order[0], t[0], t[1]]).collect(),
+            _ => return self.thickened(&data, mode, &order, material, at),
+        };
+        // Strips are joined by triangles without area.
+        let has_area = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        if !data.triangles.par_iter().all(has_area) {
+            data.triangles.retain(has_area);
+        }
+        compact(&mut data, pose.is_some());
+        index(&mut data, has_normals);
+        if data.tangents.is_empty() && material.is_some_and(|material| self.leans[material as usize]) {
+            let originals = data.make_tangents();
+            copy(&mut data.normals, &originals);
+            copy(&mut data.uvs, &originals);
+            index(&mut data, has_normals);
+            pose.iter_mut().for_each(|pose| pose.copy(&originals));
+        }
+        Some(Primitive { data: Arc::new(data), material, has_normals, pose: pose.map(Arc::new) })
+    }
+
+    /// Points and lines, which have no surface, as small balls and thin sticks.
+    fn thickened(
+        &self,
+        data: &MeshData,
+        mode: u64,
+        order: &[u32],
+        material: Option<u32>,
+        at: &At,
+    ) -> Option<Primitive> {
+        let name = at.name();
+        let message = format!("points and lines of mesh{name} have no surface: small balls and thin sticks are shown");
+        self.once_at("points-and-lines", &at.pointer(), &message);
+        // Each becomes a dozen vertices.
+        self.charge(order.len(), 12 * 64, at)?;
+        let strip = || order.windows(2).map(|pair| [pair[0], pair[1]]);
+        let lines: Vec<[u32; 2]> = match mode {
+            LINES => order.as_chunks::<2>().0.to_vec(),
+            LINE_STRIP => strip().collect(),
+            LINE_LOOP => strip().chain(order.last().zip(order.first()).map(|(last, first)| [*last, *first])).collect(),
+            _ => Vec::new(),
+        };
+        let points = if mode == POINTS { order } else { &[] };
+        let data = Arc::new(thickened(data, &lines, points));
+        Some(Primitive { data, material, has_normals: true, pose: None })
+    }
+
+    /// Reads an attribute beside the position.
+    fn fill(&self, data: &mut MeshData, key: &str, at: &At) {
+        const UNSIGNED: &[Component] = &[Component::U8, Component::U16];
+        match key {
+            "POSITION" | "JOINTS_0" | "WEIGHTS_0" => {}
+            "NORMAL" => {
+                let accessor = self.attribute(at, key, &[3], &[]);
+                let normals = accessor.and_then(|accessor| self.rows_as(accessor, at, Vec3::from_array));
+                data.normals = normals.unwrap_or_default();
+            }
+            "TANGENT" => {
+                let rows = self.attribute(at, key, &[4], &[]).and_then(|accessor| self.rows(accessor, at));
+                data.tangents = rows.unwrap_or_default();
+            }
+            "TEXCOORD_0" | "TEXCOORD_1" => {
+                let accessor = self.attribute(at, key, &[2], UNSIGNED);
+                // Here v grows upwards.
+                let uvs = accessor.and_then(|accessor| self.rows_as(accessor, at, |[u, v]| Vec2::new(u, 1.0 - v)));
+                let uvs = uvs.unwrap_or_default();
+                *(if key == "TEXCOORD_0" { &mut data.uvs } else { &mut data.second_uvs }) = uvs;
+            }
+            "COLOR_0" => {
+                let Some(accessor) = self.attribute(at, key, &[3, 4], UNSIGNED) else { return };
+                data.colors = self.rows(accessor, at).unwrap_or_default();
+                if accessor.width == 3 {
+                    data.colors.iter_mut().for_each(|color| color[3] = 1.0);
+                }
+            }
+            _ if key.starts_with('_') => {}
+            _ => {
+                let set = key.rsplit_once('_').filter(|(_, set)| set.parse::<u32>().is_ok());
+                match set.map(|(word, _)| word) {
+                    Some("TEXCOORD" | "COLOR" | "JOINTS" | "WEIGHTS") => {
+                        let message = format!("further sets of an attribute, here of mesh{}, are left out", at.name());
+                        self.once_at("further-attributes", &at.pointer(), &message);
+                    }
+                    _ => at.error("MESH_PRIMITIVE_INVALID_ATTRIBUTE", format!("invalid attribute name `{key}`")),
+                }
+            }
+        }
+    }
+
+    /// The numbers of vertices in the order of the primitive.
+    fn order(&self, at: &At, count: usize) -> Option<Vec<u32>> {
+        let Some(indices) = at.get("indices") else { return Some((0..count as u32).collect()) };
+        let accessor = self.accessor(&indices)?;
+        if accessor.width != 1 || !matches!(accessor.component, Component::U8 | Component::U16 | Component::U32) {
+            indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT", "indices are unsigned whole numbers");
+            return None;
+        }
+        if accessor.strided {
+            let message = "the view of indices must not have a stride";
+            indices.error("MESH_PRIMITIVE_INDICES_ACCESSOR_WITH_BYTESTRIDE", message);
+        }
+        self.charge(accessor.count, 4, &indices)?;
+        let order = accessor.wholes();
+        let most = u32::MAX >> (32 - 8 * accessor.component.size());
+        let greatest = order.par_iter().copied().max().unwrap_or(0);
+        if greatest == most {
+            let message = format!("index {most} would begin the primitive anew, and must not be used");
+            indices.error("ACCESSOR_INDEX_PRIMITIVE_RESTART", message);
+            return None;
+        }
+        if greatest as usize >= count {
+            let wrong = order.iter().find(|&&i| i as usize >= count).unwrap_or(&greatest);
+            indices.error("ACCESSOR_INDEX_OOB", format!("index {wrong} is out of range: there are {count} vertices"));
+            return None;
+        }
+        Some(order)
+    }
+}
+
+/// Leaves out vertices that no triangle uses: files share one list of vertices among many
+/// primitives.
+fn compact(data: &mut MeshData, keep: bool) {
+    const UNUSED: u32 = u32::MAX;
+    if keep {
+        return;
+    }
+    let is_used: Vec<AtomicBool> = data.positions.par_iter().map(|_| AtomicBool::new(false)).collect();
+    data.triangles
+        .par_iter()
+        .for_each(|corners| corners.iter().for_each(|&i| is_used[i as usize].store(true, Relaxed)));
+    if is_used.par_iter().all(|used| used.load(Relaxed)) {
+        return;
+    }
+    let mut numbers: Vec<u32> = is_used.into_iter().map(|used| if used.into_inner() { 0 } else { UNUSED }).collect();
+    let mut next = 0;
+    for number in numbers.iter_mut().filter(|number| **number != UNUSED) {
+        (*number, next) = (next, next + 1);
+    }
+    fn thin<T: Copy>(values: &mut Vec<T>, numbers: &[u32]) {
+        let used = values.iter().zip(numbers).filter(|(_, number)| **number != UNUSED);
+        *values = used.map(|(value, _)| *value).collect();
+    }
+    thin(&mut data.positions, &numbers);
+    thin(&mut data.normals, &numbers);
+    thin(&mut data.uvs, &numbers);
+    thin(&mut data.second_uvs, &numbers);
+    thin(&mut data.colors, &numbers);
+    thin(&mut data.tangents, &numbers);
+    data.triangles.iter_mut().flatten().for_each(|i| *i = numbers[*i as usize]);
+}
+
+/// Gives triangles the normals and coordinates of their vertices; where the file has no normals,
+/// triangles are flat.
+fn index(data: &mut MeshData, has_normals: bool) {
+    data.flat = !has_normals;
+    let own = || data.triangles.par_iter().copied().collect();
+    if has_normals {
+        data.triangle_normals = own();
+    }
+    if !data.uvs.is_empty() {
+        data.triangle_uvs = own();
+    }
+}

@@ -1,0 +1,136 @@
+//! Where findings are told, and how things are called.
+
+use super::{BOUNDS, document, mesh};
+use crate::testing::read_in;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Node;
+
+/// What is told of a file.
+fn told(name: &str, bytes: &[u8]) -> Vec<String> {
+    read_in(std::path::Path::new("."), name, bytes).1
+}
+
+/// A binary file of JSON alone, so long that its head has a byte that ends a line.
+fn glb(json: &str) -> Vec<u8> {
+    let json = format!("{json:<2560}");
+    let length = |bytes: usize| (bytes as u32).to_le_bytes();
+    [b"glTF", &length(2)[..], &length(json.len() + 20), &length(json.len()), b"JSON", json.as_bytes()].concat()
+}
+
+/// A document of four corners, without blanks at the ends of lines.
+fn corners(primitive: &str, nodes: &str) -> String {
+    let corners = [[0.0f32, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let faces = [0u8, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3];
+    let bytes: Vec<u8> = corners.iter().flatten().flat_map(|x| x.to_le_bytes()).chain(faces).collect();
+    let views = r#"{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":12}"#;
+    let accessors = format!(
+        r#"{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3",{BOUNDS}}},{{"bufferView":1,"componentType":5121,"count":12,"type":"SCALAR"}}"#
+    );
+    let primitive = format!(r#""attributes":{{"POSITION":0{primitive}"#);
+    document(views, &accessors, &primitive, &bytes).replace(r#""nodes":[{"mesh":0}]"#, nodes)
+}
+
+const PLAIN: &str = r#""nodes":[{"mesh":0}]"#;
+
+#[test]
+fn places_in_binary_files_are_those_of_their_text() {
+    let wrong = "{\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[{\"mesh\":3}]}";
+    for (name, bytes) in [("a.gltf", wrong.as_bytes().to_vec()), ("a.glb", glb(wrong))] {
+        assert_eq!(told(name, &bytes), [format!("{name}:2:18 error /nodes/0/mesh: unresolved reference: 3")]);
+    }
+    let broken = told("a.glb", &glb("{\"asset\":\n  }"));
+    assert!(broken.len() == 1 && broken[0].starts_with("a.glb:2:3 error invalid JSON"), "{broken:?}");
+    let empty = told("a.glb", &glb("{\"asset\":{\"version\":\"2.0\"},\n\"scene\":0,\"scenes\":[{\"name\":\"S\"}]}"));
+    assert_eq!(empty, ["a.glb:2:21 warning /scenes/0: nothing is shown that has triangles"]);
+}
+
+#[test]
+fn what_is_shown_otherwise_is_named() {
+    let line = |text: &str, what: &str| {
+        let at = text.find(what).unwrap();
+        let before = &text[..at];
+        let line = before.matches('\n').count() + 1;
+        format!("a.gltf:{line}:{}", at - before.rfind('\n').map_or(0, |end| end + 1) + 1)
+    };
+    let text = corners(r#"},"mode":0"#, PLAIN).replace(r#"{"primitives""#, r#"{"name":"Dots","primitives""#);
+    let expected = format!(
+        "{} warning /meshes/0/primitives/0: points and lines of mesh `Dots` have no surface: small balls and thin sticks are shown",
+        line(&text, r#"{"attributes""#)
+    );
+    assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
+
+    let text = corners(r#","COLOR_1":0},"indices":1"#, PLAIN);
+    let expected = "further sets of an attribute, here of mesh, are left out";
+    let place = line(&text, r#"0},"indices""#);
+    let expected = format!("{place} warning /meshes/0/primitives/0/attributes/COLOR_1: {expected}");
+    assert_eq!(told("a.gltf", text.as_bytes()), [expected]);
+
+    let nodes = r#""nodes":[{"children":[1],"scale":[1,0,1]},{"mesh":0,"name":"Gone","scale":[0,2,1]}]"#;
+    let text = corners(r#"},"indices":1"#, nodes);
+    let expected = "node `Gone` is scaled to a line or less, or beyond the range of numbers, and left out";
+    let found = told("a.gltf", text.as_bytes());
+    assert_eq!(found[0], format!("{} warning /nodes/1: {expected}", line(&text, r#"{"mesh":0,"name""#)));
+
+    let material = r#""images":[{"uri":"none.png"}],"textures":[{"source":0}],"materials":[{"name":"Wood","pbrMetallicRoughness":
+        {"baseColorTexture":{"index":0,"texCoord":2}}}],"nodes":[{"mesh":0}]"#;
+    let text = corners(r#"},"indices":1,"material":0"#, material);
+    let expected =
+        "this texture of material `Wood` asks for TEXCOORD_2, and only two sets are read: TEXCOORD_0 is taken";
+    let at = "/materials/0/pbrMetallicRoughness/baseColorTexture";
+    let found = told("a.gltf", text.as_bytes());
+    assert_eq!(found, [format!("{} warning {at}: {expected}", line(&text, r#"{"index":0,"texCoord""#))]);
+    // What is wrong with a picture is told where that is named.
+    let (scene, _) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
+    let durer_scene::scene::Material::Principled(layers) = &scene.unwrap().materials[0].value else { panic!() };
+    let span = layers.base_color_texture.as_ref().unwrap().span;
+    assert_eq!(&text[span.start as usize..span.end as usize], r#""none.png""#);
+}
+
+#[test]
+fn animations_that_are_not_shown_are_told() {
+    let animated = |names: &[&str]| {
+        let all: Vec<String> = names.iter().map(|name| format!(r#"{{"name":"{name}"}}"#)).collect();
+        let text = corners(r#"},"indices":1"#, &format!(r#""animations":[{}],{PLAIN}"#, all.join(",")));
+        told("a.gltf", text.as_bytes()).remove(0)
+    };
+    let expected = "the file has 1 animation and is shown at rest: `--at 0` shows its first moment";
+    assert!(animated(&["Walk"]).ends_with(&format!("note /animations: {expected}")), "{}", animated(&["Walk"]));
+    let expected =
+        "the file has 2 animations and is shown at rest: `--at 0` shows the first moment of the first, `Walk`";
+    assert!(animated(&["Walk", "Run"]).ends_with(expected));
+}
+
+#[test]
+fn what_is_flat_along_one_axis_is_a_sheet() {
+    let sheet = |node: &str| mesh(&corners(r#"},"indices":1"#, &format!(r#""nodes":[{{"mesh":0,{node}}}]"#)));
+    // Of the four faces of a tetrahedron, two stand on the sheet and are gone.
+    let flat = sheet(r#""scale":[2,1,0],"translation":[0,0,5]"#);
+    let at = |x: f32, y: f32| Vec3::new(x, y, 5.0);
+    assert_eq!(flat.positions, [at(0.0, 0.0), at(2.0, 0.0), at(0.0, 1.0), at(0.0, 0.0)]);
+    assert_eq!(flat.triangles, [[0, 2, 1], [1, 2, 3]]);
+    assert!(flat.flat && flat.normals.is_empty() && flat.triangle_normals.is_empty());
+    // Turned, nothing of it is exact.
+    let turn = r#""rotation":[0.1825742,0.3651484,0.5477226,0.7302967],"translation":[1000,2000,3000]"#;
+    let turned = sheet(&format!(r#""scale":[1,1,0],{turn}"#));
+    assert_eq!(turned.triangles, [[0, 2, 1], [1, 2, 3]]);
+    // A map that no rotation has brought about, flat along no axis of its own.
+    let leaning = sheet(r#""matrix":[1,0,0,0,0,1,0,0,1,1,0,0,0,0,0,1]"#);
+    assert_eq!(leaning.positions[3], Vec3::new(1.0, 1.0, 0.0));
+    assert_eq!(leaning.triangles.len(), 4);
+}
+
+#[test]
+fn each_place_of_a_flat_thing_has_its_own_sheet() {
+    let nodes = r#""nodes":[{"mesh":0,"scale":[1,1,0]},{"mesh":0,"scale":[0,1,1]},{"mesh":0}]"#;
+    let text = corners(r#"},"indices":1"#, nodes).replace(r#""nodes":[0]"#, r#""nodes":[0,1,2]"#);
+    let (scene, found) = read_in(std::path::Path::new("."), "a.gltf", text.as_bytes());
+    assert_eq!(found, [""; 0]);
+    let scene = scene.unwrap();
+    let objects = &scene.root.as_ref().unwrap().objects;
+    let counts = objects.iter().filter_map(|object| match &object.node {
+        Node::Mesh(mesh) => Some(scene.assets.meshes[&mesh.obj_file.path].triangles.len()),
+        _ => None,
+    });
+    // The last is the ground.
+    assert_eq!(counts.take(3).collect::<Vec<_>>(), [2, 2, 4]);
+}

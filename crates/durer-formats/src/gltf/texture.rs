@@ -1,0 +1,151 @@
+//! Textures: images with samplers and transforms of coordinates.
+
+use super::Model;
+use super::buffers::{Target, target};
+use super::json::At;
+use durer_diag::Span;
+use durer_scene::describe::FileName;
+use durer_scene::math::fp;
+use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::texture::{Mapping, Wrap};
+
+/// Words of the `wrapS` and `wrapT` of a sampler.
+fn wrap(at: &At) -> Option<Wrap> {
+    match at.whole(..)? {
+        10497 => Some(Wrap::Repeat),
+        33648 => Some(Wrap::Mirror),
+        33071 => Some(Wrap::Clamp),
+        other => {
+            at.error("VALUE_NOT_IN_LIST", format!("invalid value {other}: it is no wrapping mode"));
+            None
+        }
+    }
+}
+
+impl Model<'_> {
+    /// Where the bytes of each image are.
+    pub(super) fn images(&self, root: &At) -> Vec<Option<PictureBytes>> {
+        let Some(images) = root.get("images") else { return Vec::new() };
+        images.items().map(|image| self.image(&image)).collect()
+    }
+
+    fn image(&self, at: &At) -> Option<PictureBytes> {
+        at.object()?;
+        let name = format!("{}#{}", self.input.name, at.pointer());
+        let kind = at.get("mimeType").and_then(|kind| kind.string());
+        let found = match (at.get("uri"), at.get("bufferView")) {
+            (Some(_), Some(_)) | (None, None) => {
+                at.error("ONE_OF_MISMATCH", "exactly one of `uri` and `bufferView` must be defined");
+                return None;
+            }
+            (Some(uri), None) => match target(&uri)? {
+                Target::File(path) => PictureBytes::File(path),
+                Target::Data(kind, bytes) => {
+                    if !kind.starts_with("image/") {
+                        uri.error("IMAGE_MIME_TYPE_INVALID", format!("the data are called `{kind}`"));
+                    }
+                    PictureBytes::Here(name, bytes)
+                }
+            },
+            (None, Some(view)) => {
+                if kind.is_none() {
+                    at.error("UNSATISFIED_DEPENDENCY", "`bufferView` needs a `mimeType`");
+                }
+                let found = self.views[view.index(self.views.len())?].clone()?;
+                if found.stride.is_some() {
+                    view.error("IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE", "the view of an image must not have a stride");
+                }
+                self.charge(found.length, 1, at)?;
+                PictureBytes::Here(name, found.slice?.bytes().into())
+            }
+        };
+        Some(found)
+    }
+
+    /// Reads a `textureInfo`: gives the name of the asset that it becomes, with changes to its
+    /// mapping.
+    pub(super) fn texture(&self, at: &At, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
+        self.texture_as(at, "", change)
+    }
+
+    /// The same by a name of its own, where a texture is there for several things.
+    pub(super) fn texture_as(&self, at: &At, role: &str, change: impl FnOnce(&mut Mapping)) -> Option<FileName> {
+        at.object()?;
+        let number = at.need("index")?.index(self.textures.len())?;
+        let (image, mut mapping, span) = self.textures[number].clone()?;
+        let mut set = at.get("texCoord").map_or(Some(0), |set| set.whole(..))?;
+        if let Some(transform) = at.get("extensions").as_ref().and_then(|e| e.get("KHR_texture_transform")) {
+            set = transform.get("texCoord").and_then(|set| set.whole(..)).unwrap_or(set);
+            mapping.transform = transformed(&transform);
+        }
+        if set > 1 {
+            let name = at.name();
+            let message = format!(
+                "this texture of material{name} asks for TEXCOORD_{set}, and only two sets are read: TEXCOORD_0 is taken"
+            );
+            at.warning("MESH_PRIMITIVE_TOO_FEW_TEXCOORDS", message);
+        }
+        mapping.second = set == 1;
+        change(&mut mapping);
+        let path = format!("{}#{}{role}", self.input.name, at.pointer());
+        self.pictures.borrow_mut().insert(path.clone(), Picture { bytes: image, mapping });
+        Some(FileName { path, span })
+    }
+
+    pub(super) fn textures(&self, root: &At) -> Vec<Option<(PictureBytes, Mapping, Span)>> {
+        let samplers = match root.get("samplers") {
+            Some(samplers) => samplers.items().map(|sampler| self.sampler(&sampler)).collect(),
+            None => Vec::new(),
+        };
+        let Some(textures) = root.get("textures") else { return Vec::new() };
+        let one = |at: At| {
+            at.object()?;
+            let mapping = match at.get("sampler") {
+                Some(sampler) => samplers[sampler.index(samplers.len())?],
+                None => Mapping::default(),
+            };
+            let extensions = at.get("extensions");
+            let webp = extensions.as_ref().and_then(|e| e.get("EXT_texture_webp"));
+            let other = ["KHR_texture_basisu", "MSFT_texture_dds"];
+            let other = other.iter().find_map(|name| extensions.as_ref()?.get(name).map(|_| *name));
+            let webp = webp.as_ref().and_then(|webp| webp.get("source"));
+            let Some(source) = webp.or(at.get("source")) else {
+                match other {
+                    Some(name) => at.error(
+                        "UNSUPPORTED_EXTENSION",
+                        format!(
+                            "its picture is compressed ({name}), which is not read: convert it with `gltf-transform`"
+                        ),
+                    ),
+                    None => at.warning("TEXTURE_NO_SOURCE", "a texture without a picture is left out"),
+                }
+                return None;
+            };
+            let image = source.index(self.images.len())?;
+            // What is wrong with a picture is told where it is named.
+            let span = self.findings.span(&format!("/images/{image}/uri"));
+            Some((self.images[image].clone()?, mapping, span))
+        };
+        textures.items().map(one).collect()
+    }
+
+    fn sampler(&self, at: &At) -> Mapping {
+        let mode = |key| at.get(key).and_then(|mode| wrap(&mode)).unwrap_or_default();
+        let nearest = at.get("magFilter").and_then(|filter| filter.whole(9728..=9729)) == Some(9728);
+        // Those with smaller versions of the picture.
+        let mipmaps = at.get("minFilter").is_some_and(|filter| matches!(filter.whole(9728..=9987), Some(9984..)));
+        Mapping { wrap: [mode("wrapS"), mode("wrapT")], nearest, mipmaps, ..Mapping::default() }
+    }
+}
+
+/// The matrix of KHR_texture_transform: offset, rotation and scale.
+///
+/// Source: KHR_texture_transform: T R S with R = (cos r, sin r; -sin r, cos r).
+fn transformed(at: &At) -> [[f32; 3]; 2] {
+    let pair = |key, or| at.get(key).and_then(|pair| pair.numbers::<2>()).unwrap_or(or);
+    let ([x, y], [sx, sy]) = (pair("offset", [0.0; 2]), pair("scale", [1.0; 2]));
+    let angle = at.get("rotation").and_then(|angle| angle.number()).unwrap_or(0.0);
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(angle).to_degrees());
+    let (sin, cos) = (sin as f32, cos as f32);
+    [[cos * sx, sin * sy, x], [-sin * sx, cos * sy, y]]
+}

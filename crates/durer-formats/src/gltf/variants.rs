@@ -1,0 +1,60 @@
+//! KHR_materials_variants: several looks of one model.
+
+use super::Model;
+use super::json::At;
+use durer_diag::did_you_mean;
+
+const VARIANTS: &str = "KHR_materials_variants";
+
+impl Model<'_> {
+    /// The number of the look that is wanted.
+    pub(super) fn chosen_variant(&self, root: &At) -> Option<usize> {
+        let extensions = root.get("extensions");
+        let variants = extensions.as_ref().and_then(|extensions| extensions.get(VARIANTS));
+        let variants = variants.as_ref().and_then(|variants| variants.need("variants"));
+        let names: Vec<&str> = match &variants {
+            Some(variants) => variants.items().filter_map(|one| one.object()?.get("name")?.as_str()).collect(),
+            None => Vec::new(),
+        };
+        let known = format!("`{}`", names.join("`, `"));
+        let Some(wanted) = &self.input.staging.variant else {
+            if !names.is_empty() {
+                let message = format!("the model has other looks: {known}; `--variant NAME` shows one");
+                variants.as_ref().unwrap_or(root).note("variants", message);
+            }
+            return None;
+        };
+        let by_number = || wanted.parse().ok().filter(|number| *number < names.len());
+        let found = names.iter().position(|name| name == wanted).or_else(by_number);
+        if found.is_none() {
+            let help = match did_you_mean(wanted, names.iter().copied()) {
+                Some(meant) => format!("did you mean `{meant}`?"),
+                None if names.is_empty() => "the file has none".into(),
+                None => format!("there are {known}"),
+            };
+            root.error("no-variant", format!("there is no variant `{wanted}`: {help}"));
+        }
+        found
+    }
+
+    /// The material of a primitive: that of the look that is wanted, or its own.
+    pub(super) fn material_of(&self, at: &At) -> Option<Option<u32>> {
+        let number = |material: &At| material.index(self.material_count).map(|number| Some(number as u32));
+        if let Some(variant) = self.variant
+            && let Some(mappings) = at
+                .get("extensions")
+                .as_ref()
+                .and_then(|extensions| extensions.get(VARIANTS))
+                .as_ref()
+                .and_then(|variants| variants.need("mappings"))
+        {
+            for mapping in mappings.items() {
+                let shown = mapping.list("variants", |shown| shown.whole(..));
+                if shown.contains(&Some(variant as u64)) {
+                    return number(&mapping.need("material")?);
+                }
+            }
+        }
+        at.get("material").map_or(Some(None), |material| number(&material))
+    }
+}

@@ -1,0 +1,320 @@
+//! Materials: the words of OpenPBR as metallic-roughness and KHR extensions, the other way round
+//! than they are read.
+
+use super::Writer;
+use durer_scene::bsdf::lobe::hair::Fibre;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::describe::FileName;
+use durer_scene::material::parameters::TEXTURED;
+use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::material::{Pattern, PhongMaterial, PrincipledMaterial};
+use durer_scene::math::{Vec2, Vec3, fp};
+use durer_scene::scene::{Material, Picture};
+use durer_scene::texture::{Channel, Mapping};
+use serde_json::{Map, Value, json};
+use std::f32::consts::TAU;
+
+impl Writer<'_> {
+    /// The number of a material of the scene. `holes`: colours of vertices let through what is
+    /// behind them.
+    pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
+        if let Some(known) = self.materials.get(&number) {
+            return *known;
+        }
+        let scene = self.scene;
+        let made = match &scene.materials.get(number as usize)?.value {
+            Material::Principled(layers) => Some(self.layers(layers, holes)),
+            Material::Phong(phong, noise) => {
+                if noise.is_some() {
+                    self.left_out("glTF has no noise: the material's own colour is written");
+                }
+                Some(self.layers(&alike(phong), holes))
+            }
+            Material::Hair(hair) => {
+                self.left_out("glTF has no hair: a matte colour is written");
+                let base_color = Fibre::new(hair).color();
+                let matte = PrincipledMaterial { base_color, specular_roughness: 1.0, ..PrincipledMaterial::default() };
+                Some(self.layers(&matte, holes))
+            }
+            Material::Solid(solid, _) => {
+                self.left_out("glTF has no patterns of two materials: the first is written");
+                let first = solid.materials()[0];
+                // Patterns are made of earlier materials.
+                if first < number { self.material(first, holes) } else { None }
+                    .and_then(|at| self.lists.get("materials")?.get(at).cloned())
+            }
+        };
+        let made = made.map(|material| self.add("materials", material));
+        self.materials.insert(number, made);
+        made
+    }
+
+    fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
+        let solid = m.walls == Walls::Solid;
+        let clear = m.transmission_weight > 0.0;
+        // There both sides shine, or the other is not seen.
+        let dark_backs = solid && !clear && m.emission_luminance > 0.0;
+        let mut material = json!({ "doubleSided": m.backs == Backs::Shown && !dark_backs });
+        let mut extensions = Map::new();
+        let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
+        // What passes a surface has the base colour.
+        let tinted = clear && m.transmission_depth == 0.0;
+        let base = match (unlit, tinted) {
+            (true, _) => m.emission_color,
+            (false, true) if m.transmission_weight >= 0.5 => m.transmission_color,
+            _ => m.base_weight * m.base_color,
+        };
+        // There metals have neither weight nor tint.
+        let textured = m.metallic_roughness_texture.is_some() || m.base_metalness_texture.is_some();
+        let is_metal = m.base_metalness == 1.0 && !textured;
+        let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
+        let [r, g, b] = base.clamp(Vec3::ZERO, Vec3::ONE).to_array();
+        let (roughness, strength) = brushed(m);
+        let mut pbr = json!({
+            "baseColorFactor": [r, g, b, m.opacity], "metallicFactor": m.base_metalness, "roughnessFactor": roughness,
+        });
+        let mut blended = holes || m.opacity < 1.0;
+        if let Some((info, mapping)) = self.texture(m.base_color_texture.as_ref()) {
+            pbr["baseColorTexture"] = info;
+            match mapping.cutoff {
+                None => blended = true,
+                Some(cutoff) if cutoff > 0.0 => {
+                    material["alphaMode"] = "MASK".into();
+                    material["alphaCutoff"] = cutoff.into();
+                }
+                Some(_) => {}
+            }
+        }
+        if blended && material.get("alphaMode").is_none() {
+            material["alphaMode"] = "BLEND".into();
+        }
+        if let Some((info, _)) = self.texture(m.metallic_roughness_texture.as_ref()) {
+            pbr["metallicRoughnessTexture"] = info;
+        }
+        material["pbrMetallicRoughness"] = pbr;
+        if let Some((mut info, mapping)) = self.texture(m.normal_texture.as_ref()) {
+            info["scale"] = mapping.strength.into();
+            material["normalTexture"] = info;
+        }
+        let mut extend = |name: &'static str, value: Value| extensions.insert(name.into(), value);
+        if unlit {
+            extend("KHR_materials_unlit", json!({}));
+        } else if m.emission_luminance > 0.0 {
+            let most = m.emission_color.max_element().max(1.0);
+            let strength = m.emission_luminance * most;
+            material["emissiveFactor"] = json!((m.emission_color / most).max(Vec3::ZERO).to_array());
+            if strength != 1.0 {
+                extend("KHR_materials_emissive_strength", json!({ "emissiveStrength": strength }));
+            }
+        }
+        if m.specular_ior != 1.5 {
+            extend("KHR_materials_ior", json!({ "ior": m.specular_ior.max(1.0) }));
+        }
+        let pictured = m.specular_weight_texture.is_some() || m.specular_color_texture.is_some();
+        if !is_metal && (m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured) {
+            // A weight above 1 goes into the colour, which has no bound.
+            let weight = m.specular_weight.min(1.0);
+            let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
+            let value = json!({ "specularFactor": weight, "specularColorFactor": color.to_array() });
+            extend("KHR_materials_specular", value);
+        }
+        if clear {
+            extend("KHR_materials_transmission", json!({ "transmissionFactor": m.transmission_weight }));
+            if solid {
+                let mut volume = json!({ "thicknessFactor": 1.0 });
+                if m.transmission_depth > 0.0 {
+                    volume["attenuationDistance"] = m.transmission_depth.into();
+                    volume["attenuationColor"] = json!(m.transmission_color.to_array());
+                }
+                extend("KHR_materials_volume", volume);
+            }
+        }
+        if m.disperses() {
+            // Source: KHR_materials_dispersion: 20 over Abbe's number.
+            let dispersion = 20.0 * m.transmission_dispersion_scale / m.transmission_dispersion_abbe_number;
+            extend("KHR_materials_dispersion", json!({ "dispersion": dispersion }));
+        }
+        if m.coat_weight > 0.0 {
+            let coat = json!({ "clearcoatFactor": m.coat_weight, "clearcoatRoughnessFactor": m.coat_roughness });
+            extend("KHR_materials_clearcoat", coat);
+        }
+        if m.fuzz_weight > 0.0 {
+            let color = (m.fuzz_weight * m.fuzz_color).clamp(Vec3::ZERO, Vec3::ONE);
+            let fuzz = json!({ "sheenColorFactor": color.to_array(), "sheenRoughnessFactor": m.fuzz_roughness });
+            extend("KHR_materials_sheen", fuzz);
+        }
+        if m.specular_anisotropy > 0.0 {
+            let turn = m.specular_rotation * TAU;
+            let value = json!({ "anisotropyStrength": strength, "anisotropyRotation": turn });
+            extend("KHR_materials_anisotropy", value);
+        }
+        if m.thin_film_weight > 0.0 {
+            // In nanometres.
+            let thickness = 1000.0 * m.thin_film_thickness;
+            let film = json!({
+                "iridescenceFactor": m.thin_film_weight, "iridescenceIor": m.thin_film_ior,
+                "iridescenceThicknessMinimum": thickness, "iridescenceThicknessMaximum": thickness,
+            });
+            extend("KHR_materials_iridescence", film);
+        }
+        let sheet = !solid && m.subsurface_scatter_anisotropy > 0.999;
+        if m.subsurface_weight > 0.0 && sheet {
+            let value = json!({
+                "diffuseTransmissionFactor": m.subsurface_weight,
+                "diffuseTransmissionColorFactor": m.subsurface_color.to_array(),
+            });
+            extend("KHR_materials_diffuse_transmission", value);
+        }
+        for row in TEXTURED.iter().filter(|row| row.field != "base_color_texture") {
+            let Some(name) = (row.picture)(m) else { continue };
+            if !self.add_picture(m, row.field, name, &mut extensions) {
+                self.left_out(format!(
+                    "glTF has no place for a picture such as that of `{}`: it is left out",
+                    row.field
+                ));
+            }
+        }
+        if dark_backs && m.backs == Backs::Shown {
+            self.left_out("glTF has no surface that shines on one side alone: its back is left out");
+        }
+        if is_metal && m.specular_color != Vec3::ONE {
+            self.left_out("glTF's metals have no tint at their border: it is left out");
+        }
+        if m.bump_texture.is_some() || m.opacity_texture.is_some() {
+            self.left_out("glTF has no pictures of bumps and of opacity alone: they are left out");
+        }
+        if (m.subsurface_weight > 0.0 && !sheet) || (clear && m.transmission_scatter != Vec3::ZERO) {
+            self.left_out("glTF has no light that is scattered below the surface: it is left out");
+        }
+        if !unlit
+            && m.emission_luminance > 0.0
+            && let Some((info, _)) = self.texture(m.emission_texture.as_ref())
+        {
+            material["emissiveTexture"] = info;
+        }
+        if !extensions.is_empty() {
+            self.extensions.extend(EXTENSIONS.iter().filter(|name| extensions.contains_key(**name)));
+            material["extensions"] = extensions.into();
+        }
+        material
+    }
+
+    /// Puts a picture of a parameter into the extension that has a place for it; false where none
+    /// has one that means the same.
+    fn add_picture(
+        &mut self,
+        m: &PrincipledMaterial,
+        field: &str,
+        name: &FileName,
+        extensions: &mut Map<String, Value>,
+    ) -> bool {
+        match field {
+            // It is that of the base colour there.
+            "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
+            // It is in the same picture as the strength.
+            "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,
+            _ => {}
+        }
+        let Some((_, extension, key, channel)) = PICTURES.into_iter().find(|row| row.0 == field) else { return false };
+        let Some(value) = extensions.get_mut(extension) else { return false };
+        let Picture { bytes, mapping } = self.picture(name);
+        let fits = match field {
+            // Directions are in the same picture as the strength.
+            "specular_anisotropy_texture" => {
+                let turned = Picture { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
+                m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
+            }
+            "thin_film_thickness_texture" => mapping.range[1] == 1.0,
+            _ => mapping.range == [0.0, 1.0],
+        };
+        if !fits || channel != channel.map(|_| mapping.channel.unwrap_or(Channel::Red)) {
+            return false;
+        }
+        let Some((info, _)) = self.texture(Some(name)) else { return false };
+        value[key] = info;
+        if field == "thin_film_thickness_texture" {
+            value["iridescenceThicknessMinimum"] = (1000.0 * mapping.range[0] * m.thin_film_thickness).into();
+        }
+        true
+    }
+}
+
+/// The roughness and the strength of anisotropy that glTF has for a material's.
+fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
+    let pictured = m.metallic_roughness_texture.is_some()
+        || m.specular_roughness_texture.is_some()
+        || m.specular_anisotropy_texture.is_some();
+    if m.specular_anisotropy == 0.0 || pictured {
+        return (m.specular_roughness, m.specular_anisotropy);
+    }
+    // Across the highlight alpha is that of the roughness, and along it grows towards 1.
+    let Vec2 { x: along, y: across } = Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha;
+    if across >= 1.0 {
+        return (1.0, 0.0);
+    }
+    (across.sqrt(), ((along - across) / (1.0 - across)).max(0.0).sqrt())
+}
+
+/// Pictures of parameters: the extension, where in it they are, and the channel that counts.
+const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
+    ("specular_weight_texture", "KHR_materials_specular", "specularTexture", Some(Channel::Alpha)),
+    ("specular_color_texture", "KHR_materials_specular", "specularColorTexture", None),
+    ("specular_anisotropy_texture", "KHR_materials_anisotropy", "anisotropyTexture", Some(Channel::Blue)),
+    ("transmission_weight_texture", "KHR_materials_transmission", "transmissionTexture", Some(Channel::Red)),
+    ("subsurface_color_texture", "KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture", None),
+    ("coat_weight_texture", "KHR_materials_clearcoat", "clearcoatTexture", Some(Channel::Red)),
+    ("coat_roughness_texture", "KHR_materials_clearcoat", "clearcoatRoughnessTexture", Some(Channel::Green)),
+    ("fuzz_color_texture", "KHR_materials_sheen", "sheenColorTexture", None),
+    ("fuzz_roughness_texture", "KHR_materials_sheen", "sheenRoughnessTexture", Some(Channel::Alpha)),
+    ("thin_film_weight_texture", "KHR_materials_iridescence", "iridescenceTexture", Some(Channel::Red)),
+    ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
+];
+
+/// What is written of materials.
+const EXTENSIONS: [&str; 13] = [
+    "KHR_materials_anisotropy",
+    "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_iridescence",
+    "KHR_materials_sheen",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_volume",
+    "KHR_lights_punctual",
+];
+
+/// Layers that look like the course's material: a highlight's sharpness is a roughness, strong
+/// mirrors are metals, what lets light through is glass.
+fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
+    let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
+    let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);
+    // Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, 2007:
+    // alpha² = 2 / (n + 2).
+    let roughness = sharp.map_or(1.0, |sharp| fp::pow(2.0 / (sharp + 2.0), 0.25));
+    let mut m = PrincipledMaterial {
+        base_color: diffuse,
+        base_color_texture: phong.texture.clone(),
+        specular_roughness: roughness,
+        specular_weight: if sharp.is_some() || phong.reflective_color != Vec3::ZERO { 1.0 } else { 0.0 },
+        ..PrincipledMaterial::default()
+    };
+    let mirror = phong.reflective_color.max_element();
+    if mirror > 0.0 {
+        m.specular_roughness = 0.0;
+        if mirror > diffuse.max_element() {
+            (m.base_metalness, m.base_color) = (1.0, phong.reflective_color);
+        }
+    }
+    let glass = phong.refraction_index.filter(|index| *index > 0.0);
+    if glass.is_some() || phong.transparent_color != Vec3::ZERO {
+        m.specular_ior = glass.or(phong.index_of_refraction).unwrap_or(1.5);
+        let through = if glass.is_some() { Vec3::ONE } else { phong.transparent_color };
+        m.transmission_weight = through.max_element().min(1.0);
+        (m.transmission_color, m.base_metalness, m.specular_roughness) = (through, 0.0, 0.0);
+    }
+    m
+}

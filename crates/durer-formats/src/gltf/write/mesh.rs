@@ -1,0 +1,123 @@
+//! Meshes: one list of vertices for positions, normals and coordinates.
+
+use super::Writer;
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::shape::mesh::NO_INDEX;
+use durer_scene::shape::{Mesh, MeshData};
+use serde_json::{Value, json};
+use std::collections::HashMap;
+
+const FLOAT: u32 = 5126;
+const UNSIGNED: u32 = 5125;
+const VERTICES: u32 = 34962;
+const INDICES: u32 = 34963;
+
+impl Writer<'_> {
+    /// The number of a mesh of a name with a material.
+    pub(super) fn mesh(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
+        let key = (name, material);
+        if let Some(known) = self.meshes.get(&key) {
+            return Some(*known);
+        }
+        let geometry = match self.attributes.get(&key.0) {
+            Some(known) => known.clone(),
+            None => {
+                let made = self.geometry(data);
+                self.attributes.insert(key.0.clone(), made.clone());
+                made
+            }
+        };
+        let mut primitive = geometry?;
+        if let Some(number) = material.and_then(|number| self.material(number, has_holes(data))) {
+            primitive["material"] = number.into();
+        }
+        let number = self.add("meshes", json!({ "primitives": [primitive] }));
+        self.meshes.insert(key, number);
+        Some(number)
+    }
+
+    /// Attributes and indices of triangles; `None` where there are none.
+    fn geometry(&mut self, data: &MeshData) -> Option<Value> {
+        if data.triangles.is_empty() || data.positions.len() >= NO_INDEX as usize {
+            return None;
+        }
+        let smooth = Mesh::new(data.clone(), self.output.normals, true);
+        let (normals, triangle_normals) = smooth.normals();
+        let (order, vertices) = welded(data, &triangle_normals);
+        let mut attributes = json!({});
+        let list = |get: &dyn Fn(&[u32; 3]) -> Vec<f32>| -> Vec<f32> { vertices.iter().flat_map(get).collect() };
+        let positions = list(&|v| data.positions[v[0] as usize].to_array().into());
+        attributes["POSITION"] = self.floats(&positions, 3, true).into();
+        if !triangle_normals.is_empty() {
+            let normal = |v: &[u32; 3]| normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
+            // What is as good as of length 1 stays as it is, so that it is read again as it was.
+            let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
+            let normals = list(&|v| unit(normal(v)).to_array().into());
+            attributes["NORMAL"] = self.floats(&normals, 3, false).into();
+        }
+        if !data.triangle_uvs.is_empty() {
+            // glTF's v grows downwards.
+            let uv = |v: &[u32; 3]| data.uvs.get(v[1] as usize).copied().unwrap_or(Vec2::Y);
+            let uvs = list(&|v| vec![uv(v).x, 1.0 - uv(v).y]);
+            attributes["TEXCOORD_0"] = self.floats(&uvs, 2, false).into();
+        }
+        let at = |v: &[u32; 3]| v[0] as usize;
+        if data.second_uvs.len() == data.positions.len() {
+            let uvs = list(&|v| vec![data.second_uvs[at(v)].x, 1.0 - data.second_uvs[at(v)].y]);
+            attributes["TEXCOORD_1"] = self.floats(&uvs, 2, false).into();
+        }
+        if data.colors.len() == data.positions.len() {
+            let colors = list(&|v| data.colors[at(v)].to_vec());
+            attributes["COLOR_0"] = self.floats(&colors, 4, false).into();
+        }
+        if data.tangents.len() == data.positions.len() {
+            let tangents = list(&|v| data.tangents[at(v)].to_vec());
+            attributes["TANGENT"] = self.floats(&tangents, 4, false).into();
+        }
+        let bytes: Vec<u8> = order.iter().flat_map(|i| i.to_le_bytes()).collect();
+        let view = self.view(&bytes, Some(INDICES));
+        let indices = json!({ "bufferView": view, "componentType": UNSIGNED, "count": order.len(), "type": "SCALAR" });
+        let indices = self.add("accessors", indices);
+        Some(json!({ "attributes": attributes, "indices": indices }))
+    }
+
+    /// The accessor of rows of numbers.
+    fn floats(&mut self, values: &[f32], width: usize, bounds: bool) -> usize {
+        let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+        let view = self.view(&bytes, Some(VERTICES));
+        let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][width - 1];
+        let count = values.len() / width;
+        let mut accessor = json!({ "bufferView": view, "componentType": FLOAT, "count": count, "type": kind });
+        if bounds {
+            let over = |fold: fn(f32, f32) -> f32| -> Vec<f32> {
+                let column = |c: usize| values.iter().skip(c).step_by(width).copied().reduce(fold);
+                (0..width).filter_map(column).collect()
+            };
+            (accessor["min"], accessor["max"]) = (json!(over(f32::min)), json!(over(f32::max)));
+        }
+        self.add("accessors", accessor)
+    }
+}
+
+/// Whether colours of vertices let through what is behind them.
+fn has_holes(data: &MeshData) -> bool {
+    data.colors.iter().any(|color| color[3] < 1.0)
+}
+
+/// The corners of all triangles as numbers of vertices, each of which has a position, coordinates
+/// and a normal.
+fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
+    let (mut known, mut vertices) = (HashMap::new(), Vec::new());
+    let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);
+    let mut order = Vec::with_capacity(3 * data.triangles.len());
+    for (i, triangle) in data.triangles.iter().enumerate() {
+        for (k, corner) in triangle.iter().enumerate() {
+            let vertex = [*corner, own(&data.triangle_uvs, i, k), own(triangle_normals, i, k)];
+            order.push(*known.entry(vertex).or_insert_with(|| {
+                vertices.push(vertex);
+                vertices.len() as u32 - 1
+            }));
+        }
+    }
+    (order, vertices)
+}

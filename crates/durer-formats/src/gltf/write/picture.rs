@@ -1,0 +1,107 @@
+//! Pictures with their samplers and transforms.
+
+use super::Writer;
+use crate::pictures::{CHANGING, as_png};
+use durer_image::{self as image, Encoded, Transfer};
+use durer_scene::describe::FileName;
+use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::texture::{Mapping, Wrap};
+use serde_json::{Value, json};
+use std::sync::Arc;
+
+impl Writer<'_> {
+    /// A `textureInfo` of a picture that a material names; also how it lies.
+    pub(super) fn texture(&mut self, name: Option<&FileName>) -> Option<(Value, Mapping)> {
+        let name = name?;
+        let picture = self.picture(name);
+        let made = match self.textures.get(&name.path) {
+            Some(known) => known.clone(),
+            None => {
+                let made = self.info(&picture);
+                self.textures.insert(name.path.clone(), made.clone());
+                made
+            }
+        };
+        Some((made?, picture.mapping))
+    }
+
+    /// A picture that a material names.
+    pub(super) fn picture(&self, name: &FileName) -> Picture {
+        let file = || Picture { bytes: PictureBytes::File(name.path.clone()), mapping: Mapping::default() };
+        self.scene.assets.pictures.get(&name.path).cloned().unwrap_or_else(file)
+    }
+
+    fn info(&mut self, picture: &Picture) -> Option<Value> {
+        let source = self.image(&picture.bytes)?;
+        let mapping = &picture.mapping;
+        let wrap = |wrap: Wrap| match wrap {
+            Wrap::Repeat => 10497,
+            Wrap::Mirror => 33648,
+            Wrap::Clamp => 33071,
+        };
+        let filter = if mapping.nearest { 9728 } else { 9729 };
+        // Linear within levels and between them.
+        let smaller = if mapping.mipmaps { 9987 } else { filter };
+        let [s, t] = mapping.wrap.map(wrap);
+        let sampler = json!({ "wrapS": s, "wrapT": t, "magFilter": filter, "minFilter": smaller });
+        let known = self.lists.get("samplers").and_then(|list| list.iter().position(|known| *known == sampler));
+        let sampler = known.unwrap_or_else(|| self.add("samplers", sampler));
+        let index = self.add("textures", json!({ "source": source, "sampler": sampler }));
+        let mut info = json!({ "index": index });
+        if mapping.second {
+            info["texCoord"] = 1.into();
+        }
+        if mapping.transform != Mapping::default().transform {
+            self.extensions.insert("KHR_texture_transform");
+            info["extensions"] = json!({ "KHR_texture_transform": self.transform(mapping) });
+        }
+        Some(info)
+    }
+
+    /// Offset, rotation and scale. Source: KHR_texture_transform.
+    fn transform(&mut self, mapping: &Mapping) -> Value {
+        let [[a, b, x], [c, d, y]] = mapping.transform;
+        let sx = (a * a + c * c).sqrt();
+        let side = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
+        let sy = side * (b * b + d * d).sqrt();
+        if (a * b + c * d).abs() > 1e-4 * (sx * sy).abs() {
+            self.left_out("glTF's textures are turned and stretched, but not sheared");
+        }
+        let turn = durer_scene::math::fp::atan2(-c, a);
+        json!({ "offset": [x, y], "rotation": turn, "scale": [sx, sy] })
+    }
+
+    /// The number of an image.
+    fn image(&mut self, bytes: &PictureBytes) -> Option<usize> {
+        let (PictureBytes::File(name) | PictureBytes::Here(name, _)) = bytes;
+        if let Some(known) = self.images.get(name) {
+            return *known;
+        }
+        let found = match bytes {
+            PictureBytes::Here(_, bytes) => Some(bytes.clone()),
+            PictureBytes::File(name) => self.output.source.read(name).ok(),
+        };
+        let memory = self.output.memory;
+        let Some((bytes, kind)) = found.and_then(|bytes| known_to_gltf(bytes, name, memory)) else {
+            self.left_out(format!("the picture `{name}` cannot be read"));
+            self.images.insert(name.clone(), None);
+            return None;
+        };
+        let view = self.view(&bytes, None);
+        let number = self.add("images", json!({ "bufferView": view, "mimeType": kind }));
+        self.images.insert(name.clone(), Some(number));
+        Some(number)
+    }
+}
+
+/// PNG and JPEG as they are, others as PNG of eight bits.
+fn known_to_gltf(bytes: Arc<[u8]>, name: &str, memory: u64) -> Option<(Arc<[u8]>, &'static str)> {
+    if bytes.starts_with(b"\x89PNG") {
+        return Some((bytes, "image/png"));
+    }
+    if bytes.starts_with(&[0xff, 0xd8, 0xff]) {
+        return Some((bytes, "image/jpeg"));
+    }
+    let image = Encoded::open(&bytes, name).ok()?.read_for(CHANGING, memory, image::decode_srgb).ok()?;
+    Some((as_png(image, Transfer::Srgb)?, "image/png"))
+}

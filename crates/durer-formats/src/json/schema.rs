@@ -1,0 +1,255 @@
+//! What a scene as JSON is made of, as a JSON Schema (2020-12): made from the statements, as the
+//! reference of the language is.
+
+use super::DEEPEST;
+use durer_scene::camera::Camera;
+use durer_scene::describe::{DescribedList, Field, Kind, Rule};
+use durer_scene::dialect::Dialect;
+use durer_scene::light::Light;
+use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid, presets};
+use durer_scene::medium::Fog;
+use durer_scene::scene::{Background, MatrixOp, NamedTexture, Operation};
+use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
+use serde_json::{Map, Value, json};
+
+/// The words by which the things of a list are told apart.
+pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
+    T::kinds().iter().map(word).collect()
+}
+
+/// The word of a thing.
+pub(super) fn word<T: DescribedList>(thing: &T) -> &'static str {
+    thing.keyword(Dialect::Durer)
+}
+
+/// A thing with default values, by its word.
+pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
+    T::kinds().into_iter().find(|thing| word(thing) == keyword)
+}
+
+/// What a material may be.
+pub(super) fn materials() -> Vec<&'static str> {
+    let own = [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<HairMaterial>()].concat();
+    [own, keywords::<Solid>()].concat()
+}
+
+/// What an object may be.
+pub(super) fn objects() -> Vec<&'static str> {
+    let others = [keywords::<TriangleMesh>(), keywords::<HeightField>(), keywords::<VoxelGrid>()].concat();
+    let made = ["Group", "Transform"].into_iter().chain(Operation::ALL.map(|row| row.0));
+    keywords::<Primitive>().into_iter().chain(others).chain(made).collect()
+}
+
+/// The schema of a whole scene.
+pub fn schema() -> Value {
+    let list = |of: &str, about: &str| json!({"type": "array", "items": reference(of), "description": about});
+    let members = json!({
+        "type": {"const": "Scene"},
+        "$schema": {"type": "string", "description": "Where this schema is found, for editors."},
+        "dialect": {
+            "enum": Dialect::ALL.map(Dialect::name),
+            "description": "Whose meaning the words have, if not our own: `durer dialects` tells how they differ.",
+        },
+        "camera": reference("camera"),
+        "background": record::<Background>(json!({})),
+        "fog": record::<Fog>(json!({})),
+        "lights": list("light", "The lights. Where this is not given, ambient light counts as 1 1 1."),
+        "textures": {
+            "type": "array",
+            "items": record::<NamedTexture>(json!({})),
+            "description": "Pictures with names, which materials name in place of a file.",
+        },
+        "materials": list("material", "The materials, numbered from 0."),
+        "objects": list("object", "What is seen."),
+    });
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A scene of Dürer",
+        "description": format!(
+            "What the scene language says, as JSON. Written by `cargo xtask manual`. Beyond this schema, materials are mixed of \
+             earlier ones only, and objects are nested {DEEPEST} deep at most."
+        ),
+        "type": "object",
+        "properties": members,
+        "required": ["type"],
+        "additionalProperties": false,
+        "$defs": {
+            "number": {"type": "number", "minimum": number(f32::MIN), "maximum": number(f32::MAX)},
+            "vector": {"type": "array", "items": reference("number"), "minItems": 3, "maxItems": 3},
+            "path": {
+                "type": "string",
+                "pattern": r"^[^\s{}\u0000]+$",
+                "description": "A file, seen from the scene's folder.",
+            },
+            "camera": one_of(things::<Camera>()),
+            "light": one_of(things::<Light>()),
+            "material": one_of(material_things()),
+            "matrix": one_of(MatrixOp::KINDS.map(|(name, op)| matrix(name, op)).to_vec()),
+            "object": one_of(object_things()),
+        },
+    })
+}
+
+fn reference(name: &str) -> Value {
+    json!({ "$ref": format!("#/$defs/{name}") })
+}
+
+fn one_of(things: Vec<Value>) -> Value {
+    json!({ "oneOf": things })
+}
+
+/// A number of single precision, with the digits that it is written with.
+fn number(x: f32) -> Value {
+    x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
+}
+
+/// A doc comment in one line.
+fn about(doc: &str) -> String {
+    doc.lines().map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string()
+}
+
+/// What a field's value may be.
+fn field(field: &Field) -> Value {
+    let mut value = match field.kind {
+        Kind::Float => json!({"type": "number"}),
+        Kind::Int => json!({"type": "integer", "minimum": 0, "maximum": u32::MAX}),
+        Kind::Vec3 => reference("vector"),
+        Kind::Path => reference("path"),
+        Kind::Word(words) => json!({ "enum": words }),
+        Kind::Rows(width) => json!({
+            "type": "array",
+            "items": {"type": "array", "items": reference("number"), "minItems": width, "maxItems": width},
+        }),
+    };
+    match field.rule {
+        Rule::Any if field.kind == Kind::Float => value = reference("number"),
+        Rule::Any => {}
+        Rule::Positive => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
+        Rule::NonNegative => (value["minimum"], value["maximum"]) = (json!(0), number(f32::MAX)),
+        Rule::NonZero => value["not"] = json!({"const": [0, 0, 0]}),
+        Rule::Between(low, high) => {
+            (value["exclusiveMinimum"], value["exclusiveMaximum"]) = (number(low), number(high));
+        }
+        Rule::From(low, high) => (value["minimum"], value["maximum"]) = (number(low), number(high)),
+        Rule::UpTo(high) => (value["exclusiveMinimum"], value["maximum"]) = (json!(0), number(high)),
+        Rule::Share => (value["minimum"], value["maximum"]) = (json!(0), json!(1)),
+        Rule::AtMost(most) => value["maximum"] = json!(most),
+        Rule::Numbered(last) => (value["minimum"], value["maximum"]) = (json!(1), json!(last)),
+        Rule::Rows(least, most) => (value["minItems"], value["maxItems"]) = (json!(least), json!(most)),
+        Rule::Counts(most) => value["items"] = json!({"type": "integer", "minimum": 1, "maximum": most}),
+    }
+    value["description"] = about(field.doc).into();
+    value
+}
+
+/// An object with these members, some of which must be there.
+fn object(doc: &str, members: Value, required: &[&str]) -> Value {
+    json!({
+        "type": "object",
+        "description": about(doc),
+        "properties": members,
+        "required": required,
+        "additionalProperties": false,
+    })
+}
+
+/// A described thing by itself, with further members.
+fn described<T: DescribedList>(thing: &T, more: Value, also: &[&'static str]) -> Value {
+    let mut members = Map::new();
+    if let Value::Object(more) = more {
+        members.extend(more);
+    }
+    members.extend(thing.fields().iter().map(|f| (f.name.to_string(), field(f))));
+    let fields = thing.fields().iter().filter(|field| field.required).map(|field| field.name);
+    let required: Vec<&str> = also.iter().copied().chain(fields).collect();
+    object(thing.doc(), members.into(), &required)
+}
+
+/// One that needs no word to tell it from others.
+fn record<T: DescribedList + Default>(more: Value) -> Value {
+    described(&T::default(), more, &[])
+}
+
+/// One with its word.
+fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
+    described(thing, with(more, "type", json!({ "const": word(thing) })), &["type"])
+}
+
+/// The same members with one more.
+///
+/// A copy is changed. Closures here that changed a `Value` which they were given and returned it
+/// used memory after it was freed (rustc 1.95, opt-level 2, seen by valgrind; not in a small
+/// program of the same form): safe code, so probably compiled wrongly.
+fn with(members: &Value, name: &str, value: Value) -> Value {
+    let mut all = members.clone();
+    all[name] = value;
+    all
+}
+
+fn things<T: DescribedList>() -> Vec<Value> {
+    T::kinds().iter().map(|thing| named(thing, &json!({}))).collect()
+}
+
+fn material_things() -> Vec<Value> {
+    let noise = json!({ "noise": record::<ColorNoise>(json!({})) });
+    let presets: Vec<&str> = presets::PRESETS.iter().map(|row| row.0).collect();
+    let preset =
+        json!({"preset": {"enum": presets, "description": "A real material, which the other members change."}});
+    let transform = json!({"transform": matrices("From world to pattern space: the product of these matrices.")});
+    let mut all = vec![named(&PhongMaterial::default(), &noise), named(&PrincipledMaterial::default(), &preset)];
+    all.extend(things::<HairMaterial>());
+    all.extend(Solid::kinds().iter().map(|solid| named(solid, &transform)));
+    all
+}
+
+fn matrices(about: &str) -> Value {
+    json!({"type": "array", "items": reference("matrix"), "description": about})
+}
+
+fn matrix(name: &str, op: MatrixOp) -> Value {
+    let rows =
+        |count: usize, items: Value| json!({"type": "array", "items": items, "minItems": count, "maxItems": count});
+    let (value, about) = match op {
+        MatrixOp::Translate(_) => (reference("vector"), "Moves."),
+        MatrixOp::Scale(_) => (reference("vector"), "Stretches along the axes."),
+        MatrixOp::UniformScale(_) => (reference("number"), "Stretches evenly."),
+        MatrixOp::XRotate(_) => (reference("number"), "Turns about x, by degrees."),
+        MatrixOp::YRotate(_) => (reference("number"), "Turns about y, by degrees."),
+        MatrixOp::ZRotate(_) => (reference("number"), "Turns about z, by degrees."),
+        MatrixOp::Rotate(..) => {
+            (rows(4, reference("number")), "Turns about an axis x, y, z by degrees, the fourth number.")
+        }
+        MatrixOp::Matrix(_) => {
+            (rows(4, rows(4, reference("number"))), "Rows of an affine matrix; the last is 0, 0, 0, 1.")
+        }
+    };
+    object(about, json!({ name: value }), &[name])
+}
+
+fn object_things() -> Vec<Value> {
+    let material = json!({
+        "type": "integer",
+        "minimum": 0,
+        "maximum": u32::MAX,
+        "description": "Number of its material; that of the object before it where this is not given.",
+    });
+    let of_material = json!({ "material": &material });
+    let inside = json!({"type": "array", "items": reference("object")});
+    let made = |word: &str, about: &str, more: &Value, required: &[&str]| {
+        let more = with(&with(more, "type", json!({ "const": word })), "material", material.clone());
+        object(about, more, required)
+    };
+    let balls = json!({"balls": {"type": "array", "items": record::<Sphere>(json!({}))}});
+    let mut all: Vec<Value> = Primitive::kinds().iter().map(|shape| named(shape, &of_material)).collect();
+    all.push(named(&TriangleMesh::default(), &of_material));
+    all.push(named(&HeightField::default(), &of_material));
+    all.push(named(&VoxelGrid::default(), &with(&balls, "material", material.clone())));
+    all.push(made("Group", "Several objects.", &json!({"objects": inside}), &["type", "objects"]));
+    let moved = json!({"matrices": matrices("Their product moves the object; the first is applied last."), "object": reference("object")});
+    all.push(made("Transform", "An object that is moved.", &moved, &["type", "object"]));
+    all.extend(
+        Operation::ALL
+            .map(|(word, operation)| made(word, operation.doc(), &json!({"objects": inside}), &["type", "objects"])),
+    );
+    all
+}

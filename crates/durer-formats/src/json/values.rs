@@ -1,0 +1,294 @@
+//! Values of JSON as those of fields: kinds, rules, names.
+
+use super::schema;
+use super::tree::{Member, Node, Value};
+use crate::course::is_word;
+use crate::report::{Report, counted, shown};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_scene::describe::{self, DescribedList, FileName, Kind, Rule};
+use durer_scene::math::Vec3;
+use durer_scene::scene::Spanned;
+use std::ops::Range;
+
+/// A document being read.
+pub(super) struct Reader<'a> {
+    pub text: &'a [u8],
+    pub report: Report,
+    /// The material of the object that was read last, which the next has where it names none.
+    pub material: Option<u32>,
+    /// Every number of a material, to be checked when all are known.
+    pub uses: Vec<(u32, Range<usize>)>,
+    pub depth: usize,
+    /// What an object may be.
+    pub kinds: &'a [&'static str],
+}
+
+/// The members of an object that is being read.
+pub(super) struct Members<'n> {
+    /// What it is, for messages.
+    pub name: &'n str,
+    at: Range<usize>,
+    all: &'n [Member],
+    taken: Vec<bool>,
+    /// The names that it may have.
+    known: Vec<&'static str>,
+}
+
+impl<'n> Members<'n> {
+    /// The value of a name.
+    pub fn take(&mut self, name: &'static str) -> Option<&'n Node> {
+        self.known.push(name);
+        let index = self.all.iter().position(|member| member.name == name)?;
+        self.taken[index] = true;
+        Some(&self.all[index].node)
+    }
+}
+
+impl Reader<'_> {
+    pub fn error(&mut self, at: Range<usize>, code: &'static str, message: impl Into<String>, help: Option<String>) {
+        if !self.report.is_full() {
+            let error = self.report.error(at, message);
+            (error.code, error.help) = (code, help);
+        }
+    }
+
+    /// Says that something else stands where a value should.
+    pub fn expected(&mut self, node: &Node, what: &str, name: &str) {
+        let message = format!("`{name}` needs {what}, but found {}", node.kind());
+        self.error(node.head(), "bad-value", message, None);
+    }
+
+    pub fn span(&self, at: &Range<usize>) -> Span {
+        self.report.span(at.clone())
+    }
+
+    /// The members of an object.
+    pub fn members<'n>(&mut self, node: &'n Node, name: &'n str) -> Option<Members<'n>> {
+        let Value::Object(all) = &node.value else {
+            self.expected(node, "an object", name);
+            return None;
+        };
+        Some(Members { name, at: node.head(), all, taken: vec![false; all.len()], known: Vec::new() })
+    }
+
+    /// Complains of the members that nobody took.
+    pub fn finish(&mut self, members: Members) {
+        let Members { name, all, taken, known, .. } = members;
+        for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
+            // A list of seventy names is no help.
+            let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
+            let help = meant(&member.name, known.iter().copied()).or_else(few);
+            let message = format!("`{name}` has no member {}", shown(member.name.as_bytes()));
+            self.error(member.at.clone(), "unknown-word", message, help);
+        }
+    }
+
+    pub fn items<'n>(&mut self, node: &'n Node, name: &str) -> &'n [Node] {
+        match &node.value {
+            Value::Array(items) => items,
+            _ => {
+                self.expected(node, "a list", name);
+                &[]
+            }
+        }
+    }
+
+    pub fn string<'n>(&mut self, node: &'n Node, name: &str) -> Option<&'n str> {
+        match &node.value {
+            Value::String(text) => Some(text),
+            _ => {
+                self.expected(node, "a string", name);
+                None
+            }
+        }
+    }
+
+    /// One of some words.
+    pub fn one_of<'w>(&mut self, node: &Node, name: &str, words: &[&'w str]) -> Option<&'w str> {
+        let text = self.string(node, name)?;
+        let word = words.iter().copied().find(|word| *word == text);
+        if word.is_none() {
+            let help =
+                meant(text, words.iter().copied()).unwrap_or_else(|| format!("it is one of {}", words.join(", ")));
+            let message = format!("`{name}` cannot be {}", shown(text.as_bytes()));
+            self.error(node.at.clone(), "bad-value", message, Some(help));
+        }
+        word
+    }
+
+    pub fn number(&mut self, node: &Node, name: &str) -> Option<f32> {
+        if !matches!(node.value, Value::Number) {
+            self.expected(node, "a number", name);
+            return None;
+        }
+        let number = std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f32>().ok()?;
+        if !number.is_finite() {
+            let help = "numbers must be within about ±3.4e38".to_string();
+            let message = format!("{} is too large a number", shown(&self.text[node.at.clone()]));
+            self.error(node.at.clone(), "bad-value", message, Some(help));
+            return None;
+        }
+        Some(number)
+    }
+
+    pub fn numbers<const N: usize>(&mut self, node: &Node, name: &str) -> Option<[f32; N]> {
+        let items = match &node.value {
+            Value::Array(items) if items.len() == N => items,
+            Value::Array(items) => {
+                let has = counted(items.len(), "value", "values");
+                let message = format!("`{name}` needs a list of {N} numbers, but this one has {has}");
+                self.error(node.head(), "bad-value", message, None);
+                return None;
+            }
+            _ => {
+                self.expected(node, &format!("a list of {N} numbers"), name);
+                return None;
+            }
+        };
+        let mut numbers = [0.0; N];
+        for (number, item) in numbers.iter_mut().zip(items) {
+            *number = self.number(item, name)?;
+        }
+        Some(numbers)
+    }
+
+    pub fn whole(&mut self, node: &Node, name: &str) -> Option<u32> {
+        let number = match node.value {
+            Value::Number => std::str::from_utf8(&self.text[node.at.clone()]).ok()?.parse::<f64>().ok(),
+            _ => None,
+        };
+        // Some programs write whole numbers as 3.0.
+        let whole = number.filter(|n| n.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(n));
+        if whole.is_none() {
+            let message = format!(
+                "`{name}` needs a whole number, but found {}",
+                match node.value {
+                    Value::Number => shown(&self.text[node.at.clone()]),
+                    _ => node.kind().to_string(),
+                }
+            );
+            self.error(node.head(), "bad-value", message, None);
+        }
+        whole.map(|number| number as u32)
+    }
+
+    /// A value of a field's kind, which its rule allows.
+    fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Rule) -> Option<describe::Value> {
+        let value = match kind {
+            Kind::Float => describe::Value::Float(self.number(node, name)?),
+            Kind::Int => describe::Value::Int(self.whole(node, name)?),
+            Kind::Vec3 => describe::Value::Vec3(Vec3::from(self.numbers::<3>(node, name)?)),
+            Kind::Path => {
+                let path = self.string(node, name)?;
+                if !is_word(path) {
+                    let help = "a path has neither blanks nor braces, as in the scene language".to_string();
+                    let message = format!("`{name}` cannot be {}", shown(path.as_bytes()));
+                    self.error(node.at.clone(), "bad-value", message, Some(help));
+                    return None;
+                }
+                // Without its quotes, so that another path may be put in its place.
+                let span = self.span(&(node.at.start + 1..node.at.end - 1));
+                describe::Value::Path(FileName { path: path.to_string(), span })
+            }
+            Kind::Word(words) => describe::Value::Word(self.one_of(node, name, words)?.to_string()),
+            Kind::Rows(width) => describe::Value::Rows(self.rows(node, name, width)?),
+        };
+        if let Some(violation) = rule.violation(&value) {
+            self.error(node.head(), "bad-value", format!("`{name}` {violation}"), None);
+        }
+        Some(value)
+    }
+
+    /// Lists of so many numbers each.
+    pub fn rows(&mut self, node: &Node, name: &str, width: usize) -> Option<Vec<Vec<f32>>> {
+        if !matches!(node.value, Value::Array(_)) {
+            self.expected(node, "a list", name);
+            return None;
+        }
+        let mut rows = Vec::new();
+        for row in self.items(node, name) {
+            let items = self.items(row, name);
+            if items.len() != width {
+                let message = format!("each row of `{name}` is a list of {width} numbers");
+                self.error(row.head(), "bad-value", message, None);
+                return None;
+            }
+            rows.push(items.iter().map(|item| self.number(item, name)).collect::<Option<_>>()?);
+        }
+        Some(rows)
+    }
+
+    /// The fields of a described thing, out of members that may have more.
+    pub fn fields<T: DescribedList>(&mut self, thing: &mut T, members: &mut Members) {
+        for (i, field) in thing.fields().iter().enumerate() {
+            match members.take(field.name) {
+                Some(node) => {
+                    if let Some(value) = self.value(node, field.name, field.kind, field.rule) {
+                        thing.set(i, value);
+                    }
+                }
+                None if field.required => {
+                    let message = format!("`{}` has no `{}`", members.name, field.name);
+                    self.error(members.at.clone(), "missing-field", message, None);
+                }
+                None => {}
+            }
+        }
+    }
+
+    /// A thing that has nothing but its fields.
+    pub fn thing<T: DescribedList>(&mut self, mut thing: T, node: &Node, name: &str) -> T {
+        if let Some(mut members) = self.members(node, name) {
+            self.fields(&mut thing, &mut members);
+            self.finish(members);
+        }
+        thing
+    }
+
+    /// The members of a thing, and what it is by its `type`.
+    pub fn typed<'n>(&mut self, node: &'n Node, what: &'n str, known: &[&str]) -> Option<(&'n str, Members<'n>)> {
+        let mut members = self.members(node, what)?;
+        let Some(named) = members.take("type") else {
+            self.error(node.head(), "missing-field", format!("`{what}` has no `type`"), None);
+            return None;
+        };
+        let Value::String(word) = &named.value else {
+            self.expected(named, "a string", "type");
+            return None;
+        };
+        if !known.contains(&word.as_str()) {
+            let message = format!("{} is no `{what}`", shown(word.as_bytes()));
+            let near = meant(word, known.iter().copied());
+            let help = near.unwrap_or_else(|| format!("known are {}", known.join(", ")));
+            self.error(named.at.clone(), "unknown-word", message, Some(help));
+            return None;
+        }
+        members.name = word;
+        Some((word, members))
+    }
+
+    /// One of a list of things.
+    pub fn choice<T: DescribedList>(&mut self, node: &Node, what: &str) -> Option<T> {
+        let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
+        let mut thing = schema::of_keyword::<T>(word)?;
+        self.fields(&mut thing, &mut members);
+        self.finish(members);
+        Some(thing)
+    }
+
+    /// A thing with its place.
+    pub fn spanned<T>(&mut self, node: &Node, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<Spanned<T>> {
+        Some(Spanned { value: read(self)?, span: self.span(&node.head()) })
+    }
+
+    /// A member that must be there.
+    pub fn required<'n>(&mut self, members: &mut Members<'n>, name: &'static str) -> Option<&'n Node> {
+        let node = members.take(name);
+        if node.is_none() {
+            let message = format!("`{}` has no `{name}`", members.name);
+            self.error(members.at.clone(), "missing-field", message, None);
+        }
+        node
+    }
+}

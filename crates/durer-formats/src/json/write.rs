@@ -1,0 +1,203 @@
+//! Scenes as JSON text.
+
+use super::schema::word;
+use durer_scene::describe::{DescribedList, Value};
+use durer_scene::dialect::Dialect;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Material, MatrixOp, Node, Object, Scene};
+
+/// Lines are as long as this where what stands in them can be parted.
+const WIDTH: usize = 120;
+
+/// A value to be written.
+enum Json {
+    /// Numbers and strings, as they are written.
+    Plain(String),
+    List(Vec<Json>),
+    Object(Vec<(&'static str, Json)>),
+}
+
+/// Writes a scene. `dialect` is that of its words' meaning.
+pub fn write(scene: &Scene, dialect: Dialect) -> String {
+    let mut members = vec![("type", string("Scene"))];
+    if dialect != Dialect::Durer {
+        members.push(("dialect", string(dialect.name())));
+    }
+    members.extend(scene.camera.as_ref().map(|camera| ("camera", thing(camera))));
+    members.push(("background", Json::Object(fields(&scene.background))));
+    members.extend(scene.fog.as_ref().map(|fog| ("fog", Json::Object(fields(&fog.value)))));
+    let lights = |lights: &Vec<_>| {
+        Json::List(lights.iter().map(|light: &durer_scene::scene::Spanned<_>| thing(&light.value)).collect())
+    };
+    members.extend(scene.lights.as_ref().map(|list| ("lights", lights(list))));
+    let textures: Vec<Json> = scene.assets.textures().map(|texture| Json::Object(fields(&texture))).collect();
+    if !textures.is_empty() {
+        members.push(("textures", Json::List(textures)));
+    }
+    if !scene.materials.is_empty() {
+        members.push(("materials", Json::List(scene.materials.iter().map(|m| material(&m.value)).collect())));
+    }
+    members.extend(scene.root.as_ref().map(|root| ("objects", objects(&root.objects))));
+    let mut out = String::new();
+    Json::Object(members).write(&mut out, 0);
+    out.push('\n');
+    out
+}
+
+fn string(text: &str) -> Json {
+    // A string can always be written.
+    Json::Plain(serde_json::to_string(text).unwrap_or_default())
+}
+
+fn number(x: f32) -> Json {
+    Json::Plain(x.to_string())
+}
+
+fn numbers(list: &[f32]) -> Json {
+    Json::List(list.iter().copied().map(number).collect())
+}
+
+fn vector(v: Vec3) -> Json {
+    numbers(&v.to_array())
+}
+
+/// The fields of a thing that are given.
+fn fields<T: DescribedList>(thing: &T) -> Vec<(&'static str, Json)> {
+    let value = |value: Value| match value {
+        Value::Float(x) => number(x),
+        Value::Int(i) => Json::Plain(i.to_string()),
+        Value::Vec3(v) => vector(v),
+        Value::Path(file) => string(&file.path),
+        Value::Word(word) => string(&word),
+        Value::Rows(rows) => Json::List(rows.iter().map(|row| numbers(row)).collect()),
+    };
+    thing.fields().iter().enumerate().filter_map(|(i, f)| Some((f.name, value(thing.get(i)?)))).collect()
+}
+
+fn typed(word: &str, more: Vec<(&'static str, Json)>) -> Vec<(&'static str, Json)> {
+    [("type", string(word))].into_iter().chain(more).collect()
+}
+
+fn thing<T: DescribedList>(thing: &T) -> Json {
+    Json::Object(typed(word(thing), fields(thing)))
+}
+
+fn material(material: &Material) -> Json {
+    Json::Object(match material {
+        Material::Phong(phong, noise) => {
+            let noise = noise.as_ref().map(|noise| ("noise", Json::Object(fields(noise))));
+            typed(word(&**phong), fields(&**phong).into_iter().chain(noise).collect())
+        }
+        Material::Principled(principled) => typed(word(&**principled), fields(&**principled)),
+        Material::Hair(hair) => typed(word(hair), fields(hair)),
+        Material::Solid(solid, transform) => {
+            let transform = (!transform.is_empty()).then(|| ("transform", matrices(transform)));
+            typed(word(solid), transform.into_iter().chain(fields(solid)).collect())
+        }
+    })
+}
+
+fn matrices(ops: &[MatrixOp]) -> Json {
+    let matrix = |op: &MatrixOp| {
+        Json::Object(vec![match *op {
+            MatrixOp::Translate(v) => ("Translate", vector(v)),
+            MatrixOp::Scale(v) => ("Scale", vector(v)),
+            MatrixOp::UniformScale(s) => ("UniformScale", number(s)),
+            MatrixOp::XRotate(a) => ("XRotate", number(a)),
+            MatrixOp::YRotate(a) => ("YRotate", number(a)),
+            MatrixOp::ZRotate(a) => ("ZRotate", number(a)),
+            MatrixOp::Rotate(axis, a) => ("Rotate", numbers(&[axis.x, axis.y, axis.z, a])),
+            MatrixOp::Matrix(rows) => ("Matrix", Json::List(rows.chunks_exact(4).map(numbers).collect())),
+        }])
+    };
+    Json::List(ops.iter().map(matrix).collect())
+}
+
+fn objects(list: &[Object]) -> Json {
+    Json::List(list.iter().map(object).collect())
+}
+
+fn object(object: &Object) -> Json {
+    let (word, mut members) = match &object.node {
+        Node::Group(group) => ("Group", vec![("objects", objects(&group.objects))]),
+        Node::Solid(operation, parts) => (operation.keyword(), vec![("objects", objects(parts))]),
+        Node::Transform(ops, inner) => {
+            ("Transform", vec![("matrices", matrices(ops)), ("object", self::object(inner))])
+        }
+        Node::Primitive(shape) => (word(shape), fields(shape)),
+        Node::Mesh(mesh) => (word(mesh), fields(mesh)),
+        Node::HeightField(field) => (word(field), fields(field)),
+        Node::Voxels(grid, balls) => {
+            let balls = balls.iter().map(|ball| Json::Object(fields(ball))).collect();
+            (word(grid), fields(grid).into_iter().chain([("balls", Json::List(balls))]).collect())
+        }
+    };
+    if let Some(index) = object.material {
+        members.insert(0, ("material", Json::Plain(index.to_string())));
+    }
+    Json::Object(typed(word, members))
+}
+
+impl Json {
+    /// Writes it in one line where that is short, else an item a line.
+    fn write(&self, out: &mut String, depth: usize) {
+        let mut line = String::new();
+        if self.fits(&mut line, WIDTH.saturating_sub(4 * depth)) {
+            out.push_str(&line);
+            return;
+        }
+        let indent = |out: &mut String, depth: usize| out.push_str(&"    ".repeat(depth));
+        match self {
+            Json::Plain(text) => out.push_str(text),
+            Json::List(items) => {
+                out.push_str("[\n");
+                for (i, item) in items.iter().enumerate() {
+                    indent(out, depth + 1);
+                    item.write(out, depth + 1);
+                    out.push_str(if i + 1 < items.len() { ",\n" } else { "\n" });
+                }
+                indent(out, depth);
+                out.push(']');
+            }
+            Json::Object(members) => {
+                out.push_str("{\n");
+                for (i, (name, value)) in members.iter().enumerate() {
+                    indent(out, depth + 1);
+                    out.push_str(&format!("\"{name}\": "));
+                    value.write(out, depth + 1);
+                    out.push_str(if i + 1 < members.len() { ",\n" } else { "\n" });
+                }
+                indent(out, depth);
+                out.push('}');
+            }
+        }
+    }
+
+    /// Writes it in one line; gives up beyond a width.
+    fn fits(&self, line: &mut String, width: usize) -> bool {
+        match self {
+            Json::Plain(text) => line.push_str(text),
+            Json::List(items) => {
+                line.push('[');
+                for (i, item) in items.iter().enumerate() {
+                    line.push_str(if i > 0 { ", " } else { "" });
+                    if !item.fits(line, width) {
+                        return false;
+                    }
+                }
+                line.push(']');
+            }
+            Json::Object(members) => {
+                line.push('{');
+                for (i, (name, value)) in members.iter().enumerate() {
+                    line.push_str(&format!("{}\"{name}\": ", if i > 0 { ", " } else { "" }));
+                    if !value.fits(line, width) {
+                        return false;
+                    }
+                }
+                line.push('}');
+            }
+        }
+        line.len() <= width
+    }
+}

@@ -1,0 +1,274 @@
+//! Sensor, film, sampler and integrator: what the picture is.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "Sensors", "Films" and "Integrators". A
+//! camera looks along its z, y is up, and x points to the left.
+
+use super::plugin::Plugin;
+use super::state::Reader;
+use crate::said::meant;
+use durer_diag::Diagnostic;
+use durer_image::MAX_PIXELS;
+use durer_scene::camera::{Camera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera};
+use durer_scene::math::fp;
+use glam::{DAffine3, DVec2, DVec3};
+use std::rc::Rc;
+
+/// The size of a film that does not say it.
+const SIZE: [u32; 2] = [768, 576];
+/// Bounces of paths that have no end.
+const ENDLESS: u32 = 64;
+
+const KNOWN: [&str; 3] = ["perspective", "thinlens", "orthographic"];
+
+impl Reader<'_> {
+    /// The camera: the one that is asked for by id or number, or the first.
+    pub fn camera(&mut self, sensors: &[Rc<Plugin>]) {
+        let Some(sensor) = self.chosen(sensors) else { return };
+        let said = self.said;
+        let (width, height) = self.film(&sensor);
+        self.scene.wishes.size = Some((width, height));
+        self.sampler(&sensor);
+        for (property, medium) in self.parts(&sensor, Some("medium")) {
+            if let Some((medium, _)) = self.medium(&medium) {
+                self.scene.fog = medium.fog(property.at, said);
+            }
+        }
+        let to_world = sensor.map(said, "to_world");
+        let size = DVec2::new(f64::from(width), f64::from(height));
+        let camera = match sensor.kind.as_str() {
+            "perspective" | "thinlens" => Some(self.perspective(&sensor, to_world, size)),
+            "orthographic" => Some(orthographic(to_world, size)),
+            other => {
+                let what = format!("the sensor `{other}` has no counterpart: the scene is framed by a camera of ours");
+                let warning = Diagnostic::warning(what).code("NO_COUNTERPART").at(sensor.at);
+                said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                None
+            }
+        };
+        sensor.known(&["near_clip", "far_clip", "shutter_open", "shutter_close"]);
+        if camera.is_some() {
+            sensor.finish(said);
+        }
+        self.scene.camera = camera;
+        self.scene.camera_span = sensor.at;
+    }
+
+    fn chosen(&self, sensors: &[Rc<Plugin>]) -> Option<Rc<Plugin>> {
+        let Some(wanted) = &self.input.staging.camera else { return sensors.first().cloned() };
+        let ids = &self.loader.plugins;
+        let by_id = ids.get(wanted).filter(|plugin| plugin.class == "sensor").cloned();
+        let found = by_id.or_else(|| sensors.get(wanted.parse::<usize>().ok()?).cloned());
+        if found.is_none() {
+            let known = ids.iter().filter(|(_, plugin)| plugin.class == "sensor").map(|(id, _)| id.as_str());
+            let count = sensors.len();
+            let message = format!("there is no sensor `{wanted}`: there are {count}, counted from 0 on");
+            let help = meant(wanted, known);
+            self.said.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value") });
+        }
+        found
+    }
+
+    fn film(&mut self, sensor: &Plugin) -> (u32, u32) {
+        let said = self.said;
+        let films = self.parts(sensor, Some("film"));
+        let Some((_, film)) = films.first() else { return (SIZE[0], SIZE[1]) };
+        let side = |name, usual: u32| match film.number(said, name) {
+            Some(value) if (1.0..=1048576.0).contains(&value) && value.fract() == 0.0 => value as u32,
+            Some(_) => {
+                said.bad(film.place(name), format!("`{name}` must be a whole number from 1 to {}", 1 << 20));
+                usual
+            }
+            None => usual,
+        };
+        let (width, height) = (side("width", SIZE[0]), side("height", SIZE[1]));
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            said.bad(film.at, format!("{width} x {height} pixels are too many"));
+        }
+        let crop = ["crop_offset_x", "crop_offset_y", "crop_width", "crop_height"];
+        if crop.iter().any(|name| film.get(name).is_some()) {
+            let number = |name, usual: u32| film.number(said, name).unwrap_or(usual as f32);
+            let part = [number(crop[0], 0), number(crop[1], 0), number(crop[2], width), number(crop[3], height)];
+            let [left, top, columns, rows] = part.map(|value| value as u32);
+            let whole = part.iter().all(|value| *value >= 0.0 && value.fract() == 0.0);
+            let fits = |from: u32, count: u32, of: u32| count > 0 && from.saturating_add(count) <= of;
+            if whole && fits(left, columns, width) && fits(top, rows, height) {
+                self.scene.wishes.crop = Some((left, top, columns, rows));
+            } else {
+                let place = crop.iter().find_map(|name| film.get(name)).map_or(film.at, |property| property.at);
+                said.bad(place, format!("the crop does not lie in the picture of {width} x {height} pixels"));
+            }
+        }
+        if let Some(format) = film.text(said, "pixel_format").filter(|format| !format.to_lowercase().starts_with("rgb"))
+        {
+            let what = format!("the pixels `{format}` have no counterpart: red, green and blue are written");
+            said.once(film.place("pixel_format"), what);
+        }
+        // What is in the file that Mitsuba writes, and how pixels are weighed, is ours.
+        film.properties.iter().for_each(|property| property.used.set(true));
+        (width, height)
+    }
+
+    fn sampler(&mut self, sensor: &Plugin) {
+        let samplers = self.parts(sensor, Some("sampler"));
+        let Some((_, sampler)) = samplers.first() else { return };
+        match sampler.number(self.said, "sample_count") {
+            Some(count) if (1.0..=1048576.0).contains(&count) => self.scene.wishes.samples = Some(count as u32),
+            Some(_) => self.said.bad(sampler.place("sample_count"), "a pixel needs 1 to 1048576 samples"),
+            None => {}
+        }
+    }
+
+    fn perspective(&self, sensor: &Plugin, to_world: DAffine3, size: DVec2) -> Camera {
+        let said = self.said;
+        let half = self.half_view(sensor, size);
+        let (right, up, forward) = axes(to_world);
+        // What is larger across than along sees more; Mitsuba forbids scales here.
+        let (center, handedness) = (to_world.translation.as_vec3(), handedness(right, up, forward));
+        let angle = ((2.0 * fp::atan_f64(half.max_element())).to_degrees() as f32).clamp(1e-4, 179.99);
+        let [direction, up] = [forward, up].map(|v| v.normalize_or(DVec3::Y).as_vec3());
+        let offset = |name| f64::from(sensor.number(said, name).unwrap_or(0.0));
+        // In widths and heights of the film; the view moves to the right and down.
+        let offset = 2.0 * DVec2::new(offset("principal_point_offset_x"), offset("principal_point_offset_y"));
+        let shift = offset * half / half.max_element();
+        let aperture = match sensor.kind.as_str() {
+            "thinlens" => 2.0 * sensor.positive(said, "aperture_radius").unwrap_or(0.0),
+            _ => 0.0,
+        };
+        let focus = sensor.positive(said, "focus_distance").unwrap_or(1.0);
+        if sensor.kind == "thinlens" && aperture == 0.0 {
+            said.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
+        }
+        if aperture == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO {
+            return PerspectiveCamera { center, direction, up, angle }.into();
+        }
+        let (shift_right, shift_up) = (shift.x as f32, -shift.y as f32);
+        let lens = ThinLensCamera {
+            center,
+            direction,
+            up,
+            angle,
+            aperture,
+            focus_distance: focus,
+            handedness,
+            ..Default::default()
+        };
+        ThinLensCamera { shift_right, shift_up, ..lens }.into()
+    }
+
+    /// Half of what is seen at distance 1, to the side and upwards.
+    pub(super) fn half_view(&self, sensor: &Plugin, size: DVec2) -> DVec2 {
+        let said = self.said;
+        let aspect = size.x / size.y;
+        let tan = |degrees: f64| fp::tan_f64(0.5 * degrees.to_radians());
+        let (mut fov, mut axis) = (f64::from(sensor.number(said, "fov").unwrap_or(0.0)), "x".to_string());
+        if let Some(given) = sensor.text(said, "fov_axis") {
+            axis = given;
+        }
+        match (sensor.text(said, "focal_length"), sensor.get("fov")) {
+            (Some(_), Some(fov)) => said.bad(fov.at, "a camera has either `fov` or `focal_length`"),
+            (given, None) => {
+                let given = given.unwrap_or("50mm".into());
+                let length = given.trim().trim_end_matches("mm").trim().parse::<f64>().ok().filter(|x| *x > 0.0);
+                if length.is_none() {
+                    let message = format!("expected a length in millimetres, found `{given}`");
+                    said.bad(sensor.place("focal_length"), message);
+                }
+                // Across the diagonal of film of 36 x 24 mm.
+                let half = (36f64 * 36.0 + 24.0 * 24.0).sqrt() / 2.0;
+                fov = 2.0 * fp::atan_f64(half / length.unwrap_or(50.0)).to_degrees();
+                axis = "diagonal".into();
+            }
+            (None, Some(_)) => {}
+        }
+        if !(fov > 0.0 && fov < 180.0) {
+            said.bad(sensor.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+            fov = 45.0;
+        }
+        let tan = tan(fov);
+        let x = match axis.as_str() {
+            "x" => tan,
+            "y" => tan * aspect,
+            "diagonal" => tan * aspect / (1.0 + aspect * aspect).sqrt(),
+            "smaller" => tan * aspect.max(1.0),
+            "larger" => tan * aspect.min(1.0),
+            other => {
+                let help = meant(other, ["x", "y", "diagonal", "smaller", "larger"]);
+                said.bad_with(sensor.place("fov_axis"), format!("there is no axis `{other}`"), help);
+                tan
+            }
+        };
+        DVec2::new(x, x / aspect)
+    }
+
+    /// Light that is on its way `max_depth` times is scattered two times less after the first time.
+    pub fn integrator(&mut self, plugin: &Plugin, depth: u32) {
+        let said = self.said;
+        if self.too_deep(depth, plugin.at) {
+            return;
+        }
+        match plugin.kind.as_str() {
+            "path" | "volpath" | "volpathmis" | "prb" | "ptracer" | "bdpt" => {}
+            "direct" => {
+                self.scene.wishes.bounces = Some(0);
+                plugin.known(&["emitter_samples", "bsdf_samples", "shading_samples"]);
+            }
+            // They hold the one that makes the picture.
+            "aov" | "moment" => {
+                for (_, inner) in self.parts(plugin, Some("integrator")) {
+                    self.integrator(&inner, depth + 1);
+                }
+                plugin.known(&["aovs"]);
+            }
+            other => {
+                let what = format!("the integrator `{other}` has no counterpart: paths from the camera are followed");
+                let known = ["path", "volpath", "volpathmis", "direct", "aov", "moment", "ptracer", "bdpt"];
+                let note = Diagnostic::note(what).code("NO_COUNTERPART").at(plugin.at);
+                said.push(Diagnostic { help: meant(other, known), ..note });
+                plugin.properties.iter().for_each(|property| property.used.set(true));
+            }
+        }
+        match plugin.number(said, "max_depth") {
+            Some(-1.0) => self.scene.wishes.bounces = Some(ENDLESS),
+            Some(depth) if (0.0..=1e6).contains(&depth) => {
+                self.scene.wishes.bounces = Some((depth as u32).saturating_sub(2));
+                if depth < 2.0 {
+                    said.other(plugin.place("max_depth"), "light that is not scattered is no picture: 2 is taken");
+                }
+            }
+            Some(_) => said.bad(plugin.place("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
+            None if plugin.kind.contains("path") => self.scene.wishes.bounces = Some(ENDLESS),
+            None => {}
+        }
+        if plugin.truth(said, "hide_emitters") == Some(true) {
+            said.once(plugin.place("hide_emitters"), "lights that are not seen have no counterpart: they are seen");
+        }
+        plugin.known(&["rr_depth", "strict_normals", "samples_per_pass", "block_size", "timeout"]);
+        plugin.finish(said);
+    }
+}
+
+/// To the right, upwards and forwards, as long as a unit of the camera's own.
+fn axes(to_world: DAffine3) -> (DVec3, DVec3, DVec3) {
+    let m = to_world.matrix3;
+    (-m.x_axis, m.y_axis, m.z_axis)
+}
+
+/// Which side of the picture is right for somebody who looks along a direction.
+fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
+    if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
+}
+
+/// What is seen is 2 wide, by the camera's own unit.
+fn orthographic(to_world: DAffine3, size: DVec2) -> Camera {
+    let (right, up, forward) = axes(to_world);
+    let across = 2.0 * right.length();
+    OrthographicCamera {
+        center: to_world.translation.as_vec3(),
+        direction: forward.normalize_or(DVec3::NEG_Z).as_vec3(),
+        up: up.normalize_or(DVec3::Y).as_vec3(),
+        size: (across * (size.y / size.x).max(1.0)) as f32,
+        handedness: handedness(right, up, forward),
+        near: Some(0.0),
+    }
+    .into()
+}

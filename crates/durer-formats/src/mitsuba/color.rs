@@ -1,0 +1,104 @@
+//! Colours: of what reflects, of light, of indices.
+//!
+//! Source: Mitsuba's variants that render in RGB. A spectrum that reflects is seen by daylight; one
+//! that shines is seen as it is, so that 1 at all wavelengths is a little red; a number or a colour
+//! that shines is itself.
+
+use super::plugin::{Plugin, Property, Value};
+use super::state::Reader;
+use crate::pbrt::spectrum::{Spectrum, radiance};
+use durer_scene::math::{Color, Vec3, fp};
+
+impl Reader<'_> {
+    /// The colour of what reflects, lets through or absorbs; `None`: it is no colour.
+    pub fn reflectance(&self, property: &Property) -> Option<Color> {
+        match &property.value {
+            Value::Number(number) => Some(Vec3::splat(*number as f32)),
+            Value::Even(number) => Some(Vec3::splat(*number)),
+            Value::Rgb(color) => Some(*color),
+            Value::Curve(curve) => Some(Spectrum::Curve(curve.clone()).coefficient()),
+            _ => self.spectrum_plugin(property, false),
+        }
+    }
+
+    /// The colour of a light; `None`: it is no colour.
+    pub fn shining(&self, property: &Property) -> Option<Color> {
+        match &property.value {
+            Value::Number(number) => Some(Vec3::splat(*number as f32)),
+            Value::Even(number) => Some(*number * radiance(|_| 1.0)),
+            Value::Rgb(color) => Some(*color),
+            Value::Curve(curve) => {
+                let curve = Spectrum::Curve(curve.clone());
+                Some(radiance(|nm| curve.at(nm)))
+            }
+            _ => self.spectrum_plugin(property, true),
+        }
+    }
+
+    /// A spectrum that is written as a plugin.
+    fn spectrum_plugin(&self, property: &Property, shines: bool) -> Option<Color> {
+        let plugin = self.part(property)?;
+        let said = self.said;
+        let color = match plugin.kind.as_str() {
+            "uniform" => {
+                let value = plugin.number(said, "value").unwrap_or(1.0);
+                value * if shines { radiance(|_| 1.0) } else { Vec3::ONE }
+            }
+            "d65" => {
+                let scale = plugin.number(said, "scale").unwrap_or(1.0);
+                let color = plugin.get("color").and_then(|color| self.reflectance(color));
+                scale * color.unwrap_or(Vec3::ONE)
+            }
+            "srgb" => plugin.get("color").and_then(|color| self.reflectance(color)).unwrap_or(Vec3::ONE),
+            "blackbody" => {
+                let kelvin = plugin.positive(said, "temperature").unwrap_or(5000.0);
+                radiance(|nm| planck(nm, kelvin)) * plugin.number(said, "scale").unwrap_or(1.0)
+            }
+            "regular" | "irregular" => {
+                let curve = Spectrum::Curve(self.listed(&plugin)?);
+                if shines { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
+            }
+            _ => return None,
+        };
+        plugin.finish(said);
+        Some(color)
+    }
+
+    /// Wavelengths and values of the plugins `regular` and `irregular`.
+    fn listed(&self, plugin: &Plugin) -> Option<Vec<[f32; 2]>> {
+        let said = self.said;
+        let list = |name| {
+            let text = plugin.text(said, name)?;
+            super::load::numbers(&text)
+        };
+        let values = list("values")?;
+        let at = |i: usize| -> Option<f64> {
+            if plugin.kind == "irregular" {
+                return list("wavelengths")?.get(i).copied();
+            }
+            let [low, high] = ["wavelength_min", "wavelength_max"].map(|name| plugin.number(said, name));
+            let [low, high] = [f64::from(low?), f64::from(high?)];
+            Some(low + (high - low) * i as f64 / (values.len() - 1).max(1) as f64)
+        };
+        let curve: Option<Vec<[f32; 2]>> =
+            values.iter().enumerate().map(|(i, value)| Some([at(i)? as f32, *value as f32])).collect();
+        let curve = curve.filter(|curve| curve.len() > 1 && curve.is_sorted_by(|a, b| a[0] < b[0]));
+        if curve.is_none() {
+            let message = format!("a `{}` spectrum needs wavelengths that rise, and as many values", plugin.kind);
+            said.bad(plugin.at, message);
+        }
+        curve
+    }
+}
+
+/// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's
+/// law.
+fn planck(nm: f32, kelvin: f32) -> f32 {
+    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm
+    // K; both by CODATA 2018.
+    const FIRST: f32 = 1.191_043e5;
+    const SECOND: f32 = 1.438_777e7;
+    let um = nm * 1e-3;
+    let value = FIRST / (um * um * um * um * um * (fp::exp(SECOND / (nm * kelvin)) - 1.0));
+    if value.is_finite() { value } else { 0.0 }
+}

@@ -1,0 +1,129 @@
+//! Files of curves: each line is a point and the radius there, an empty one ends a curve.
+
+use crate::model::Input;
+use crate::number::parse_f32;
+use crate::pbrt::mesh::named_bytes;
+use crate::said::Said;
+use crate::tubes::{Piece, add_tube, of_spline, places, rounded, straight};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::shape::MeshData;
+use glam::DVec4;
+use std::ops::Range;
+
+/// Pieces of all curves at most, and from how many on they have fewer sides. Tests make them all.
+const MAX_PIECES: usize = if cfg!(test) { 1 << 12 } else { 1 << 19 };
+const MANY: usize = 1 << 12;
+
+/// The tubes around all curves of a file, whose points are those of splines or corners.
+pub(super) fn tubes(input: &Input, said: &Said, (path, at): (&str, Span), is_spline: bool) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, said, "the curves", path, at)?;
+    let wrong = |(at, message): Wrong| {
+        let span = Span { file, start: at.start as u32, end: at.end as u32 };
+        said.push(Diagnostic::error(message).code("bad-file").at(span));
+    };
+    let curves = parse(&bytes, is_spline).map_err(wrong).ok()?;
+    let count = curves.iter().map(Vec::len).sum();
+    if count > MAX_PIECES {
+        said.once(at, format!("curves of more than {MAX_PIECES} pieces are left out"));
+        return None;
+    }
+    let mut data = MeshData::default();
+    let is_round = !is_spline && count <= MANY;
+    for pieces in &curves {
+        for run in runs(pieces, is_round) {
+            let mut tube = places(&pieces[run.clone()], count);
+            for place in &mut tube {
+                place.share = (run.start as f64 + place.share * run.len() as f64) / pieces.len() as f64;
+            }
+            add_tube(&mut data, &if is_round { rounded(tube) } else { tube }, count > MANY);
+        }
+    }
+    Some(data)
+}
+
+/// The pieces of a curve that are one tube: all, or where joints are round those that go on in nearly
+/// the same direction.
+fn runs(pieces: &[Piece], is_round: bool) -> Vec<Range<usize>> {
+    let along = |i: usize| (pieces[i][3] - pieces[i][0]).truncate().normalize_or_zero();
+    let ends = (1..pieces.len()).filter(|&i| is_round && along(i - 1).dot(along(i)) < STRAIGHT).chain([pieces.len()]);
+    let mut start = 0;
+    ends.map(|end| std::mem::replace(&mut start, end)..end).collect()
+}
+
+/// The cosine of the angle of a joint that is seen.
+const STRAIGHT: f64 = 0.99;
+
+/// What is wrong, and where.
+type Wrong = (Range<usize>, String);
+
+/// The pieces of each curve.
+fn parse(bytes: &[u8], is_spline: bool) -> Result<Vec<Vec<Piece>>, Wrong> {
+    let (mut curves, mut points, mut start) = (Vec::new(), Vec::<DVec4>::new(), 0);
+    for line in bytes.split_inclusive(|byte| *byte == b'\n').chain([&b""[..]]) {
+        let place = start..start + line.trim_ascii_end().len();
+        start += line.len();
+        let words: Vec<&[u8]> = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect();
+        if !words.is_empty() {
+            let numbers: Vec<f32> = words.iter().map_while(|word| parse_f32(word).ok()).collect();
+            match (&numbers[..], words.len()) {
+                (&[x, y, z, radius], 4) if radius >= 0.0 => {
+                    points.push(DVec4::from([x, y, z, 2.0 * radius].map(f64::from)));
+                    continue;
+                }
+                _ => {
+                    let message = "a point of a curve is three numbers, and a radius of 0 or more";
+                    return Err((place, message.into()));
+                }
+            }
+        }
+        let pieces: Vec<Piece> = match is_spline {
+            true => points.windows(4).map(|p| of_spline(&[p[0], p[1], p[2], p[3]])).collect(),
+            false => points.windows(2).map(|p| straight([p[0], p[1]])).collect(),
+        };
+        if pieces.is_empty() && !points.is_empty() {
+            let least = if is_spline { 4 } else { 2 };
+            return Err((place, format!("this ends a curve of {}, which needs {least}", points.len())));
+        }
+        curves.push(pieces);
+        points.clear();
+    }
+    Ok(curves)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use durer_scene::math::random::Random;
+
+    #[test]
+    fn changed_bytes_are_refused_or_read() {
+        let text = b"0 0 0 .1\n1 0 0 .1\n2 0 1e0 0.1\n3 -1 0 .1\r\n\n\n0 1 0 0\n1 1 0 .2\n2 2 2 .2\n3 1 0 2e-1";
+        for is_spline in [true, false] {
+            assert_eq!(parse(text, is_spline).unwrap().iter().filter(|curve| !curve.is_empty()).count(), 2);
+        }
+        let mut random = Random(31);
+        let (mut read, mut refused) = (0, 0);
+        for _ in 0..4_000 {
+            let mut changed = text.to_vec();
+            for _ in 0..1 + random.below(3) {
+                let (at, from) = (random.below(changed.len()), random.below(changed.len()));
+                match random.below(3) {
+                    0 => changed[at] = changed[from],
+                    1 => changed[at] = random.below(256) as u8,
+                    _ => changed.truncate(at.max(1)),
+                }
+            }
+            match parse(&changed, random.below(2) == 0) {
+                Err((place, _)) => {
+                    assert!(place.end <= changed.len());
+                    refused += 1;
+                }
+                Ok(curves) => {
+                    assert!(curves.iter().flatten().flatten().all(|p| p.is_finite() && p.w >= 0.0));
+                    read += 1;
+                }
+            }
+        }
+        assert!(read > 200 && refused > 2_000, "{read} {refused}");
+    }
+}

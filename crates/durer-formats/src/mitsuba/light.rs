@@ -1,0 +1,267 @@
+//! Lights: of surfaces, at points, far away. Their units are those of radiance.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "Emitters".
+
+use super::made::{Infinite, Shine};
+use super::plugin::Plugin;
+use super::state::Reader;
+use super::texture::Texture;
+use crate::lamps::{Axes, Lamps, steps};
+use crate::panorama;
+use crate::pbrt::environment::between;
+use crate::pictures::unusable;
+use crate::said::meant;
+use durer_diag::Diagnostic;
+use durer_image::{self as image, Image};
+use durer_scene::describe::FileName;
+use durer_scene::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
+use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::scene::Spanned;
+use glam::{DAffine3, DVec2, DVec3};
+use std::f32::consts::PI;
+use std::rc::Rc;
+
+/// Rows of the picture of a clear sky.
+const SKY_ROWS: u32 = 512;
+
+/// Steps of both angles of what throws a picture.
+const STEPS: [u32; 2] = [360, 720];
+
+/// Rows of a picture of all directions that is turned.
+const MAX_ROWS: u32 = 2048;
+
+impl Reader<'_> {
+    /// The colour of a light.
+    fn strength(&self, plugin: &Plugin, name: &'static str) -> Color {
+        let Some(property) = plugin.get(name) else { return Vec3::ONE };
+        let color = self.shining(property).unwrap_or_else(|| self.color(plugin, name, Vec3::ONE));
+        if color.min_element() < 0.0 {
+            self.said.once(property.at, "light that is less than 0 has no counterpart: it is taken for 0");
+        }
+        color.max(Vec3::ZERO)
+    }
+
+    /// A light that is no surface.
+    pub fn emitter(&mut self, plugin: &Rc<Plugin>) {
+        let said = self.said;
+        let to_world = plugin.map(said, "to_world");
+        let place = |name| plugin.vector(said, name).unwrap_or(to_world.translation).as_vec3();
+        let along = |local: DVec3| to_world.transform_vector3(local).normalize_or(DVec3::Z).as_vec3();
+        // A light's colour is what a white matte surface shows: illuminance over pi.
+        let value: Light = match plugin.kind.as_str() {
+            "point" => {
+                let color = self.strength(plugin, "intensity") / PI;
+                PointLight { position: place("position"), color, attenuation: Some(Vec3::Z), ..PointLight::default() }
+                    .into()
+            }
+            "spot" => match self.spot(plugin, to_world) {
+                Some(spot) => spot.into(),
+                None => return,
+            },
+            "projector" => return self.projector(plugin, to_world),
+            "directional" => {
+                let direction = plugin.vector(said, "direction");
+                let direction = direction.map_or(along(DVec3::Z), |d| d.normalize_or_zero().as_vec3());
+                if direction == Vec3::ZERO {
+                    said.bad(plugin.place("direction"), "a direction must have a length");
+                }
+                let color = self.strength(plugin, "irradiance") / PI;
+                DirectionalLight { direction, color, ..DirectionalLight::default() }.into()
+            }
+            "constant" => {
+                let color = self.strength(plugin, "radiance");
+                plugin.known(&["sampling_weight"]);
+                plugin.finish(said);
+                return self.far(Infinite::Even(color, plugin.at));
+            }
+            "envmap" => {
+                let Some(name) = plugin.text(said, "filename") else {
+                    return said.bad(plugin.at, "an `envmap` needs a `filename`");
+                };
+                let (name, at) = (self.loader.path(&name), plugin.place("filename"));
+                let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+                plugin.known(&["sampling_weight", "mis_compensation"]);
+                plugin.finish(said);
+                return self.far(Infinite::Picture { name, at, scale, to_world });
+            }
+            "sky" | "sun" | "sunsky" => return self.daylight(plugin, to_world),
+            "area" => return said.bad(plugin.at, "an `area` light stands inside of a shape"),
+            other => {
+                let known = ["point", "spot", "projector", "directional", "constant", "envmap", "sunsky", "area"];
+                let message = format!("the light `{other}` has no counterpart: it is left out");
+                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
+                return said.push(Diagnostic { help: meant(other, known), ..warning });
+            }
+        };
+        plugin.known(&["sampling_weight", "position"]);
+        plugin.finish(said);
+        self.scene.lights.get_or_insert_default().push(Spanned { value, span: plugin.at });
+    }
+
+    /// A spot. One that fades, or throws a picture, is a lamp that shines as it does in each
+    /// direction.
+    fn spot(&mut self, plugin: &Plugin, to_world: DAffine3) -> Option<SpotLight> {
+        let said = self.said;
+        let angle = plugin.positive(said, "cutoff_angle").unwrap_or(20.0);
+        let inner_angle = plugin.number(said, "beam_width").unwrap_or(0.75 * angle).clamp(0.0, angle);
+        if angle >= 180.0 {
+            said.bad(plugin.place("cutoff_angle"), "`cutoff_angle` must be less than 180 degrees");
+            return None;
+        }
+        let intensity = self.strength(plugin, "intensity");
+        let image = self.named_part(plugin, "texture").and_then(|texture| self.thrown(&texture));
+        if image.is_none() && inner_angle == angle {
+            let direction = to_world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z).as_vec3();
+            let position = to_world.translation.as_vec3();
+            let (color, fade) = (intensity / PI, Fade::Smooth);
+            return Some(SpotLight { position, direction, color, angle, inner_angle, fade, ..SpotLight::default() });
+        }
+        plugin.known(&["sampling_weight"]);
+        plugin.finish(said);
+        // It fades evenly by the angle.
+        let shown = |dir: Vec3| {
+            let degrees = fp::atan2(dir.truncate().length(), dir.z).to_degrees();
+            ((angle - degrees) / (angle - inner_angle).max(1e-6)).clamp(0.0, 1.0)
+        };
+        let axes = Axes::about_z(&to_world);
+        let lamps = match image {
+            None => Lamps::new([vec![0.0, inner_angle, angle], vec![0.0]], &axes, |dir| Vec3::splat(shown(dir))),
+            Some(image) => {
+                // It covers a square as wide as the spot at distance 1.
+                let half = fp::tan_f64(f64::from(angle).to_radians()) as f32;
+                Lamps::new([steps(angle, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+                    let shown = shown(dir);
+                    if shown > 0.0 && dir.z > 0.0 {
+                        shown * between(&image, 0.5 + 0.5 * dir.truncate() / (dir.z * half))
+                    } else {
+                        Vec3::ZERO
+                    }
+                })
+            }
+        };
+        lamps.add(&mut self.scene, self.input.name, (to_world, axes), intensity, plugin.at);
+        None
+    }
+
+    /// A projector: a lamp that shines in each direction as its picture says on the plane at distance
+    /// 1.
+    fn projector(&mut self, plugin: &Plugin, to_world: DAffine3) {
+        let said = self.said;
+        let image = self.named_part(plugin, "irradiance").and_then(|texture| self.thrown(&texture));
+        let Some(image) = image else {
+            return said.once(plugin.at, "a projector without a picture is left out");
+        };
+        let size = DVec2::new(f64::from(image.width), f64::from(image.height));
+        let half = self.half_view(plugin, size).as_vec2();
+        let scale = plugin.number(said, "scale").unwrap_or(1.0).max(0.0);
+        plugin.known(&["sampling_weight"]);
+        plugin.finish(said);
+        let axes = Axes::about_z(&to_world);
+        let widest = fp::atan2(half.length(), 1.0).to_degrees();
+        let lamps = Lamps::new([steps(widest, STEPS[0]), steps(360.0, STEPS[1])], &axes, |dir| {
+            let place = dir.truncate() / (dir.z * half);
+            if dir.z <= 0.0 || place.abs().max_element() > 1.0 {
+                return Vec3::ZERO;
+            }
+            // As a camera sees it: x goes to the left, y up.
+            between(&image, 0.5 - 0.5 * place) / (dir.z * dir.z * dir.z)
+        });
+        lamps.add(&mut self.scene, self.input.name, (to_world, axes), Vec3::splat(PI * scale), plugin.at);
+    }
+
+    /// The picture that a light throws.
+    fn thrown(&self, texture: &Plugin) -> Option<Image> {
+        if texture.kind != "bitmap" {
+            self.said.once(texture.at, "only a `bitmap` is thrown here: this light shines evenly");
+            return None;
+        }
+        let name = texture.text(self.said, "filename")?;
+        let raw = texture.truth(self.said, "raw").unwrap_or(false);
+        texture.known(&["filter_type", "wrap_mode"]);
+        texture.finish(self.said);
+        let decode = if raw { image::decode_linear } else { image::decode_srgb };
+        self.pictures().decoded(&self.loader.path(&name), texture.place("filename"), decode)
+    }
+
+    pub(super) fn far(&mut self, light: Infinite) {
+        if let Some(first) = &self.infinite {
+            let error = Diagnostic::error("a scene has one light that is infinitely far away").code("bad-value");
+            return self.said.push(error.at(light.at()).related(first.at(), "the first is here"));
+        }
+        self.infinite = Some(light);
+    }
+
+    /// The light of a shape.
+    pub fn area_light(&mut self, plugin: &Plugin) -> Option<Shine> {
+        if plugin.kind != "area" {
+            self.said
+                .once(plugin.at, format!("the light `{}` of a shape has no counterpart: it is left out", plugin.kind));
+            return None;
+        }
+        let even = plugin.get("radiance").is_none_or(|property| self.shining(property).is_some());
+        let (color, picture) = match even {
+            true => (self.strength(plugin, "radiance"), None),
+            false => match self.bright_texture(plugin, "radiance", Vec3::ONE) {
+                Texture::Even(color) => (color, None),
+                Texture::Picture(picture, scale, raw) => {
+                    let picture = self.without_curve(picture, raw, plugin.place("radiance"));
+                    (scale, Some(picture))
+                }
+            },
+        };
+        plugin.known(&["sampling_weight"]);
+        plugin.finish(self.said);
+        if color == Vec3::ZERO {
+            self.said.push(Diagnostic::note("this light is black").code("black-light").at(plugin.at));
+        }
+        Some(Shine { color, picture, both: false, at: plugin.at, key: plugin.key() })
+    }
+
+    /// Puts what is infinitely far away behind the scene.
+    pub fn surround(&mut self) {
+        let background = &mut self.scene.background;
+        (background.color, background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
+        match self.infinite.take() {
+            None => {}
+            Some(Infinite::Even(color, _)) => background.color = color,
+            Some(Infinite::Sky { sky, at, scale, to_world }) => {
+                let to_sky = to_world.inverse();
+                let light = |dir: DVec3| {
+                    let dir = to_sky.transform_vector3(dir).normalize_or(DVec3::Y).as_vec3();
+                    // Below the horizon nothing shines.
+                    if dir.y < 0.0 { Vec3::ZERO } else { scale * sky.at(dir) }
+                };
+                let name = format!("{}#sky", self.input.name);
+                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), SKY_ROWS, self.input.memory, light)
+                {
+                    self.said.push(unusable(&name, &error).at(at));
+                }
+            }
+            Some(Infinite::Picture { name, at, scale, to_world }) => {
+                let Some(picture) = self.pictures().image(&name, at) else { return };
+                let rows = picture.height.min(MAX_ROWS);
+                let y = to_world.matrix3.y_axis;
+                // The middle of Mitsuba's pictures is where its z points, and of ours where -z
+                // does.
+                if y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
+                    let z = to_world.matrix3.z_axis.as_vec3();
+                    let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();
+                    let background = &mut self.scene.background;
+                    background.environment = Some(FileName { path: name, span: at });
+                    background.environment_rotation = (degrees != 0.0).then_some(degrees);
+                    background.environment_scale = (scale != 1.0).then_some(Vec3::splat(scale));
+                    return;
+                }
+                let to_light = to_world.inverse();
+                let light = |dir: DVec3| {
+                    let DVec3 { x, y, z } = to_light.transform_vector3(dir).normalize_or(DVec3::Y);
+                    scale * panorama::looked_up(&picture, DVec3::new(-x, y, -z))
+                };
+                let memory = panorama::beside([&picture], self.input.memory);
+                if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
+                    self.said.push(unusable(&name, &error).at(at));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,504 @@
+//! From XML to plugins: variables, files in files, and values.
+//!
+//! Source: *Mitsuba 3 documentation*, section "Scene XML file format", 2022 to 2025. Names of
+//! Mitsuba 0.6 (`toWorld`) are read as those of today (`to_world`).
+
+use super::plugin::{Plugin, Property, Value};
+use crate::model::Input;
+use crate::said::{Said, meant};
+use crate::xml::{Attribute, Piece, Tag, Xml};
+use durer_diag::{Diagnostic, Span};
+use durer_image::decode_srgb;
+use durer_scene::math::Vec3;
+use durer_scene::source::SourceError;
+use glam::DVec3;
+use std::cell::Cell;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Files in files, files in all, and elements in all.
+const DEEPEST: usize = 15;
+const MAX_FILES: usize = 4096;
+const MAX_ELEMENTS: usize = 1 << 22;
+
+/// Tags of plugins. The last ones are those of Mitsuba 0.6.
+const CLASSES: [&str; 14] = [
+    "scene",
+    "sensor",
+    "film",
+    "sampler",
+    "integrator",
+    "rfilter",
+    "shape",
+    "bsdf",
+    "texture",
+    "emitter",
+    "medium",
+    "phase",
+    "volume",
+    "camera",
+];
+/// Other tags.
+const OTHERS: [&str; 15] = [
+    "float",
+    "integer",
+    "boolean",
+    "string",
+    "vector",
+    "point",
+    "rgb",
+    "srgb",
+    "spectrum",
+    "transform",
+    "ref",
+    "default",
+    "include",
+    "alias",
+    "path",
+];
+
+/// What is known of a file and those that it includes.
+pub(super) struct Loader<'a> {
+    input: &'a Input<'a>,
+    said: &'a Said,
+    variables: BTreeMap<String, String>,
+    /// Plugins by their ids.
+    pub plugins: BTreeMap<String, Rc<Plugin>>,
+    /// Folders in which files are looked for too.
+    pub folders: Vec<String>,
+    /// Names of files that are being read.
+    open: Vec<String>,
+    files: usize,
+    elements: usize,
+    /// Whether the file is older than Mitsuba 2.
+    pub(super) is_old: bool,
+}
+
+/// An error was told, and there is no going on.
+pub(super) struct Broken;
+
+/// A name in words of lower case: `toWorld` is `to_world`, `intIOR` is `int_ior`.
+fn today(name: &str) -> String {
+    let mut words = String::new();
+    let mut small = false;
+    for c in name.chars() {
+        if c.is_ascii_uppercase() && small {
+            words.push('_');
+        }
+        small = c.is_ascii_lowercase() || c.is_ascii_digit();
+        words.push(c.to_ascii_lowercase());
+    }
+    words
+}
+
+/// Numbers between blanks and commas.
+pub(super) fn numbers(text: &str) -> Option<Vec<f64>> {
+    let words = text.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+    words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect()
+}
+
+impl<'a> Loader<'a> {
+    pub fn new(input: &'a Input<'a>, said: &'a Said) -> Self {
+        Loader {
+            input,
+            said,
+            variables: BTreeMap::new(),
+            plugins: BTreeMap::new(),
+            folders: Vec::new(),
+            open: Vec::new(),
+            files: 0,
+            elements: 0,
+            is_old: false,
+        }
+    }
+
+    /// The scene of the file; what is not a scene becomes the only thing of one.
+    pub fn scene(&mut self) -> Result<Plugin, Broken> {
+        let at = Span { file: self.input.file, start: 0, end: 0 };
+        let mut scene = Plugin::new("scene", String::new(), at);
+        let (bytes, name) = (self.input.bytes.clone(), self.input.name.to_string());
+        self.file(&bytes, self.input.file, name, &mut scene)?;
+        Ok(scene)
+    }
+
+    fn file(&mut self, bytes: &Arc<[u8]>, file: u32, name: String, scene: &mut Plugin) -> Result<(), Broken> {
+        self.open.push(name);
+        let said = self.said;
+        let broken = |error: Box<Diagnostic>| {
+            said.push(*error);
+            Broken
+        };
+        let mut xml = Xml::new(bytes, file).map_err(broken)?;
+        while let Piece::Open(tag) = xml.next().map_err(broken)? {
+            match tag.name {
+                "scene" => {
+                    self.is_old |= tag.get("version").is_some_and(|version| version.value.starts_with("0."));
+                    self.children(&mut xml, scene)?;
+                }
+                _ => self.child(&mut xml, &tag, scene)?,
+            }
+        }
+        self.open.pop();
+        Ok(())
+    }
+
+    /// The next element, or `None` at the end of the one that is open.
+    fn next<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
+        self.elements += 1;
+        match xml.next() {
+            Ok(Piece::Open(tag)) if self.elements <= MAX_ELEMENTS && !self.said.is_full() => Ok(Some(tag)),
+            Ok(Piece::Open(tag)) => {
+                if !self.said.is_full() {
+                    self.said.bad(tag.at, format!("more than {MAX_ELEMENTS} elements are too many"));
+                }
+                Err(Broken)
+            }
+            Ok(_) => Ok(None),
+            Err(error) => {
+                self.said.push(*error);
+                Err(Broken)
+            }
+        }
+    }
+
+    /// Passes over what is in an element that has no children; complains of any.
+    fn leaf(&mut self, xml: &mut Xml, of: &str) -> Result<(), Broken> {
+        while let Some(tag) = self.next(xml)? {
+            self.said.bad(tag.at, format!("a `{of}` holds no other elements"));
+            self.skip(xml)?;
+        }
+        Ok(())
+    }
+
+    fn skip(&mut self, xml: &mut Xml) -> Result<(), Broken> {
+        let mut depth = 1;
+        while depth > 0 {
+            match self.next(xml)? {
+                Some(_) => depth += 1,
+                None => depth -= 1,
+            }
+        }
+        Ok(())
+    }
+
+    fn children(&mut self, xml: &mut Xml, parent: &mut Plugin) -> Result<(), Broken> {
+        while let Some(tag) = self.next(xml)? {
+            self.child(xml, &tag, parent)?;
+        }
+        Ok(())
+    }
+
+    /// An element inside of a plugin.
+    fn child(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+        match tag.name {
+            "default" => self.default(tag),
+            "include" => self.include(tag, parent)?,
+            "path" => {
+                if let Some((folder, _)) = self.attribute(tag, "value") {
+                    self.folders.push(folder);
+                }
+            }
+            "alias" => self.alias(tag),
+            "transform" => {
+                let map = self.transform(xml)?;
+                if let Some(name) = self.name(tag) {
+                    self.give(parent, name, Value::Map(map), tag.at);
+                }
+                return Ok(());
+            }
+            "ref" => {
+                let name = tag.get("name").map(|name| today(&name.value)).unwrap_or_default();
+                if let Some((id, at)) = self.attribute(tag, "id") {
+                    self.give(parent, name, Value::Ref(id), at);
+                }
+            }
+            class if CLASSES.contains(&class) => return self.plugin(xml, tag, parent),
+            // A spectrum is a number, a list, or a plugin.
+            "spectrum" if tag.get("type").is_some() => return self.plugin(xml, tag, parent),
+            kind if OTHERS.contains(&kind) => {
+                if let (Some(name), Some((value, at))) = (self.name(tag), self.value(tag)) {
+                    self.give(parent, name, value, at);
+                }
+            }
+            other => {
+                let help = meant(other, CLASSES.into_iter().chain(OTHERS));
+                self.said.bad_with(tag.at, format!("Mitsuba knows no `<{other}>`"), help);
+                return self.skip(xml);
+            }
+        }
+        self.leaf(xml, tag.name)
+    }
+
+    fn plugin(&mut self, xml: &mut Xml, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+        let class = match tag.name {
+            "camera" => "sensor",
+            "spectrum" => "texture",
+            name => name,
+        };
+        let Some((kind, at)) = self.attribute(tag, "type") else { return self.skip(xml) };
+        let name = tag.get("name").map(|name| today(&name.value)).unwrap_or_default();
+        let id = tag.get("id").and_then(|id| Some((self.substituted(id)?, id.at)));
+        let mut plugin = Plugin::new(class, kind, at);
+        self.children(xml, &mut plugin)?;
+        let plugin = Rc::new(plugin);
+        if let Some((id, at)) = id {
+            self.register(id, at, plugin.clone());
+        }
+        parent.properties.push(Property { name, value: Value::Plugin(plugin), at, used: Cell::default() });
+        Ok(())
+    }
+
+    fn register(&mut self, id: String, at: Span, plugin: Rc<Plugin>) {
+        if let Some(other) = self.plugins.get(&id) {
+            let error = Diagnostic::error(format!("the id `{id}` is given twice")).code("bad-value").at(at);
+            return self.said.push(error.related(other.at, "the first is here"));
+        }
+        self.plugins.insert(id, plugin);
+    }
+
+    fn alias(&mut self, tag: &Tag) {
+        let (Some((id, at)), Some((other, other_at))) = (self.attribute(tag, "id"), self.attribute(tag, "as")) else {
+            return;
+        };
+        match self.plugins.get(&id).cloned() {
+            Some(plugin) => self.register(other, other_at, plugin),
+            None => {
+                let help = meant(&id, self.plugins.keys().map(String::as_str));
+                self.said.bad_with(at, format!("there is nothing with the id `{id}` before this"), help);
+            }
+        }
+    }
+
+    /// Adds a property, which must be the only one of its name.
+    fn give(&self, parent: &mut Plugin, name: String, value: Value, at: Span) {
+        if let Some(other) = parent.properties.iter().find(|other| !name.is_empty() && other.name == name) {
+            let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
+            return self.said.push(error.related(other.at, "the first is here"));
+        }
+        parent.properties.push(Property { name, value, at, used: Cell::default() });
+    }
+
+    fn default(&mut self, tag: &Tag) {
+        let (Some((name, _)), Some((value, _))) = (self.attribute(tag, "name"), self.attribute(tag, "value")) else {
+            return;
+        };
+        // The first counts: what includes a file may say more than the file.
+        self.variables.entry(name).or_insert(value);
+    }
+
+    fn include(&mut self, tag: &Tag, parent: &mut Plugin) -> Result<(), Broken> {
+        let Some((name, at)) = self.attribute(tag, "filename") else { return Ok(()) };
+        self.files += 1;
+        let refused = if self.open.contains(&name) {
+            Some(format!("`{name}` includes itself"))
+        } else if self.open.len() > DEEPEST {
+            Some(format!("files include each other more than {DEEPEST} deep"))
+        } else if self.files > MAX_FILES {
+            Some(format!("more than {MAX_FILES} files are too many"))
+        } else {
+            None
+        };
+        if let Some(message) = refused {
+            self.said.bad(at, message);
+            return Err(Broken);
+        }
+        let bytes = match self.input.source.read(&self.path(&name)) {
+            Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
+            Ok(_) => {
+                self.said.bad(at, format!("`{name}` is too large"));
+                return Ok(());
+            }
+            Err(error) => {
+                self.missing(&error, at);
+                return Ok(());
+            }
+        };
+        let file = self.input.files.borrow_mut().add(name.clone(), bytes.clone());
+        self.file(&bytes, file, name, parent)
+    }
+
+    /// Complains of a file that cannot be had.
+    fn missing(&self, error: &SourceError, at: Span) {
+        let help = error.help();
+        self.said.push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(at) });
+    }
+
+    /// The name of a file as it is found: in the scene's folder, or in one that `<path>` names.
+    pub fn path(&self, name: &str) -> String {
+        let source = self.input.source;
+        let others = self.folders.iter().map(|folder| format!("{folder}/{name}"));
+        others.into_iter().find(|path| !source.contains(name) && source.contains(path)).unwrap_or(name.into())
+    }
+
+    /// An attribute that must be there, with variables replaced.
+    pub fn attribute(&self, tag: &Tag, name: &str) -> Option<(String, Span)> {
+        match tag.get(name) {
+            Some(attribute) => Some((self.substituted(attribute)?, attribute.at)),
+            None => {
+                self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+                None
+            }
+        }
+    }
+
+    fn name(&self, tag: &Tag) -> Option<String> {
+        self.attribute(tag, "name").map(|(name, _)| today(&name))
+    }
+
+    /// A value with what its variables stand for: of names that begin alike the longest counts.
+    /// `None`, and an error, where one stands for nothing.
+    pub fn substituted(&self, attribute: &Attribute) -> Option<String> {
+        let mut made = String::new();
+        let mut rest: &str = &attribute.value;
+        while let Some(at) = rest.find('$') {
+            made.push_str(&rest[..at]);
+            rest = &rest[at + 1..];
+            let found = self.variables.iter().rev().find(|(name, _)| rest.starts_with(name.as_str()));
+            match found {
+                Some((name, value)) => {
+                    made.push_str(value);
+                    rest = &rest[name.len()..];
+                }
+                None => {
+                    let end = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+                    let word = &rest[..end];
+                    let help = meant(word, self.variables.keys().map(String::as_str));
+                    let help = help.or_else(|| Some(format!("write `<default name=\"{word}\" value=\"...\"/>`")));
+                    self.said.bad_with(attribute.at, format!("`${word}` stands for nothing"), help);
+                    return None;
+                }
+            }
+        }
+        Some(made + rest)
+    }
+
+    /// So many numbers of an attribute.
+    pub fn numbers<const N: usize>(&self, (text, at): &(String, Span)) -> Option<[f64; N]> {
+        let found = numbers(text).and_then(|all| <[f64; N]>::try_from(all).ok());
+        if found.is_none() {
+            let what = if N == 1 { "a number".into() } else { format!("{N} numbers") };
+            self.said.bad(*at, format!("expected {what}, found `{text}`"));
+        }
+        found
+    }
+
+    /// Coordinates by `x`, `y` and `z`, or by one attribute for all three.
+    pub fn triple(&self, tag: &Tag, usual: f64) -> Option<DVec3> {
+        if let Some(value) = tag.get("value") {
+            return self.numbers(&(self.substituted(value)?, value.at)).map(DVec3::from_array);
+        }
+        let mut triple = [usual; 3];
+        for (axis, name) in triple.iter_mut().zip(["x", "y", "z"]) {
+            if let Some(given) = tag.get(name) {
+                [*axis] = self.numbers(&(self.substituted(given)?, given.at))?;
+            }
+        }
+        Some(DVec3::from_array(triple))
+    }
+
+    fn value(&self, tag: &Tag) -> Option<(Value, Span)> {
+        if matches!(tag.name, "vector" | "point") {
+            return self.triple(tag, 0.0).map(|vector| (Value::Vector(vector), tag.at));
+        }
+        if let ("spectrum", Some(_)) = (tag.name, tag.get("filename")) {
+            let (name, at) = self.attribute(tag, "filename")?;
+            let bytes = self.input.source.read(&self.path(&name)).map_err(|error| self.missing(&error, at)).ok()?;
+            let text = String::from_utf8_lossy(&bytes);
+            let lines: Vec<&str> = text.lines().map(|line| line.split('#').next().unwrap_or("")).collect();
+            let all = numbers(&lines.join(" ")).filter(|all| all.len() > 1 && all.len() % 2 == 0);
+            let Some(all) = all else {
+                self.said.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+                return None;
+            };
+            return self.curve(all, at).map(|curve| (curve, at));
+        }
+        let given = self.attribute(tag, "value")?;
+        let at = given.1;
+        let value = match tag.name {
+            "float" => self.numbers(&given).map(|[number]| Value::Number(number)),
+            "integer" => {
+                let number = given.0.trim().parse::<i64>().ok();
+                if number.is_none() {
+                    self.said.bad(at, format!("expected a whole number, found `{}`", given.0));
+                }
+                number.map(|number| Value::Number(number as f64))
+            }
+            "boolean" => match given.0.trim().to_lowercase().as_str() {
+                "true" => Some(Value::Truth(true)),
+                "false" => Some(Value::Truth(false)),
+                _ => {
+                    self.said.bad(at, format!("expected `true` or `false`, found `{}`", given.0));
+                    None
+                }
+            },
+            "string" => Some(Value::Text(given.0)),
+            "rgb" | "srgb" => self.rgb(&given, tag.name == "srgb").map(Value::Rgb),
+            _ => self.spectrum(&given),
+        };
+        value.map(|value| (value, at))
+    }
+
+    /// Three numbers, one for all three, or `#rrggbb`, which is sRGB.
+    fn rgb(&self, given: &(String, Span), curved: bool) -> Option<Vec3> {
+        let text = given.0.trim();
+        if let Some(digits) = text.strip_prefix('#').filter(|digits| digits.len() == 6 && digits.is_ascii()) {
+            let byte = |i: usize| u8::from_str_radix(&digits[2 * i..2 * i + 2], 16).ok();
+            if let (Some(r), Some(g), Some(b)) = (byte(0), byte(1), byte(2)) {
+                return Some(Vec3::from([r, g, b].map(decode_srgb)));
+            }
+        }
+        let color = match numbers(text).as_deref() {
+            Some([one]) => Vec3::splat(*one as f32),
+            Some(&[r, g, b]) => DVec3::new(r, g, b).as_vec3(),
+            _ => {
+                self.said.bad(given.1, format!("expected three numbers, found `{}`", given.0));
+                return None;
+            }
+        };
+        Some(if curved { color.map(|share| decode_srgb((255.0 * share).round() as u8)) } else { color })
+    }
+
+    /// A number, or pairs of wavelength and value: `400:0.1, 500:0.2`.
+    fn spectrum(&self, given: &(String, Span)) -> Option<Value> {
+        if !given.0.contains(':') {
+            return match numbers(&given.0).as_deref() {
+                // Mitsuba 0.6 has colours too.
+                Some(&[r, g, b]) => Some(Value::Rgb(DVec3::new(r, g, b).as_vec3())),
+                _ => self.numbers(given).map(|[number]| Value::Even(number as f32)),
+            };
+        }
+        let all = numbers(&given.0.replace(':', " ")).filter(|all| all.len() % 2 == 0);
+        let Some(all) = all else {
+            self.said.bad(given.1, format!("expected pairs `wavelength:value`, found `{}`", given.0));
+            return None;
+        };
+        self.curve(all, given.1)
+    }
+
+    fn curve(&self, all: Vec<f64>, at: Span) -> Option<Value> {
+        let curve: Vec<[f32; 2]> = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
+        if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+            let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
+            self.said.bad(at, message);
+            return None;
+        }
+        Some(Value::Curve(curve))
+    }
+
+    /// Complains of an element.
+    pub fn bad(&self, at: Span, message: impl Into<String>, help: Option<String>) {
+        self.said.bad_with(at, message, help);
+    }
+
+    pub fn warn(&self, at: Span, message: &str) {
+        self.said.once(at, message);
+    }
+
+    /// The next element of a transform, and after it the end of that element.
+    pub fn next_leaf<'x>(&mut self, xml: &mut Xml<'x>) -> Result<Option<Tag<'x>>, Broken> {
+        let Some(tag) = self.next(xml)? else { return Ok(None) };
+        self.leaf(xml, tag.name)?;
+        Ok(Some(tag))
+    }
+}

@@ -1,0 +1,84 @@
+//! What plugins become: materials, what shines, what is infinitely far away.
+
+use super::plugin::Key;
+use durer_diag::Span;
+use durer_scene::describe::FileName;
+use durer_scene::material::{HairMaterial, PrincipledMaterial};
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Picture;
+use durer_scene::texture::Sky;
+use glam::DAffine3;
+use std::rc::Rc;
+
+/// A material as written.
+pub(super) enum Made {
+    Layers(Box<PrincipledMaterial>),
+    Hair(HairMaterial),
+    /// Two others, the share of the first, and a picture that multiplies it.
+    Mix(Rc<Made>, Rc<Made>, f32, Option<FileName>),
+    /// What is not there at all.
+    Nothing,
+}
+
+impl Made {
+    /// Matte grey: of 0.5 what shapes have that nothing is said of.
+    pub fn matte(grey: f32) -> Made {
+        Made::Layers(Box::new(matte(Vec3::splat(grey))))
+    }
+
+    /// The same with all layers changed.
+    pub fn changed(&self, change: &impl Fn(&mut PrincipledMaterial)) -> Made {
+        match self {
+            Made::Layers(layers) => {
+                let mut layers = layers.clone();
+                change(&mut layers);
+                Made::Layers(layers)
+            }
+            Made::Mix(a, b, share, picture) => {
+                Made::Mix(a.changed(change).into(), b.changed(change).into(), *share, picture.clone())
+            }
+            Made::Hair(hair) => Made::Hair(hair.clone()),
+            Made::Nothing => Made::Nothing,
+        }
+    }
+}
+
+/// Matte, without a boundary.
+pub(super) fn matte(base_color: Color) -> PrincipledMaterial {
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// What shines: its radiance, and a picture that multiplies it.
+pub(super) struct Shine {
+    pub color: Color,
+    pub picture: Option<Picture>,
+    /// Whether it shines to both sides.
+    pub both: bool,
+    pub at: Span,
+    pub key: Key,
+}
+
+/// What is infinitely far away: Mitsuba has one such light.
+pub(super) enum Infinite {
+    Even(Color, Span),
+    Picture {
+        name: String,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
+    /// A clear sky with y upwards, and how it lies in the world.
+    Sky {
+        sky: Sky,
+        at: Span,
+        scale: f32,
+        to_world: DAffine3,
+    },
+}
+
+impl Infinite {
+    pub fn at(&self) -> Span {
+        let (Infinite::Even(_, at) | Infinite::Picture { at, .. } | Infinite::Sky { at, .. }) = self;
+        *at
+    }
+}

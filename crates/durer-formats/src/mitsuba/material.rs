@@ -1,0 +1,409 @@
+//! Materials, in the words of OpenPBR.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "BSDFs". GGX's alpha is the square of our
+//! roughness.
+
+use super::made::{Made, Shine, matte};
+use super::metals;
+use super::plugin::{Key, Plugin, Value};
+use super::rough::Boundary;
+use super::state::Reader;
+use super::texture::Texture;
+use crate::pbrt::made::Medium;
+use crate::pbrt::spectrum::{Spectrum, metal};
+use crate::pictures::asset;
+use crate::said::meant;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::bsdf::fresnel::schlick_82;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::material::mix::Mix;
+use durer_scene::material::principled::Walls;
+use durer_scene::material::{HairMaterial, PrincipledMaterial, Solid};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Material, Spanned};
+use std::rc::Rc;
+
+const KNOWN: [&str; 18] = [
+    "diffuse",
+    "dielectric",
+    "thindielectric",
+    "roughdielectric",
+    "conductor",
+    "roughconductor",
+    "plastic",
+    "roughplastic",
+    "principled",
+    "principledthin",
+    "twosided",
+    "mask",
+    "null",
+    "blendbsdf",
+    "bumpmap",
+    "normalmap",
+    "mixturebsdf",
+    "hair",
+];
+
+/// The index of refraction of air.
+const AIR: f32 = 1.000277;
+
+impl Reader<'_> {
+    /// The material of a plugin.
+    pub fn material(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+        let key = (plugin.key(), self.inside_out);
+        if let Some(known) = self.materials.get(&key) {
+            return known.clone();
+        }
+        if self.too_deep(depth, plugin.at) {
+            return Rc::new(Made::matte(0.5));
+        }
+        let made = self.made(plugin, depth);
+        plugin.finish(self.said);
+        self.materials.insert(key, made.clone());
+        made
+    }
+
+    fn made(&mut self, plugin: &Rc<Plugin>, depth: u32) -> Rc<Made> {
+        let mut m = PrincipledMaterial::default();
+        match plugin.kind.as_str() {
+            "diffuse" | "roughdiffuse" => {
+                let (color, picture) = self.colored(plugin, "reflectance", 0.5);
+                m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
+                plugin.left_out(self.said, &["alpha", "use_fast_approx"], "the surface is Lambert's");
+            }
+            "dielectric" | "roughdielectric" | "thindielectric" => self.glass(plugin, &mut m),
+            "conductor" | "roughconductor" => self.conductor(plugin, &mut m),
+            "plastic" | "roughplastic" => self.plastic(plugin, &mut m),
+            "principled" | "principledthin" => m = self.principled(plugin),
+            "hair" => return Rc::new(self.hair(plugin)),
+            "null" => return Rc::new(Made::Nothing),
+            "twosided" => {
+                let parts = self.parts(plugin, Some("bsdf"));
+                if let Some((other, _)) = parts.get(1) {
+                    self.said.once(other.at, "another material on the back has no counterpart: both sides are alike");
+                }
+                return self.inner(plugin, depth);
+            }
+            "mask" => {
+                let (opacity, picture) = self.pictured(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
+                return Rc::new(self.inner(plugin, depth).changed(&|m| {
+                    m.opacity *= opacity;
+                    if picture.is_some() {
+                        m.opacity_texture = picture.clone();
+                    }
+                }));
+            }
+            "bumpmap" => return self.bump_map(plugin, depth),
+            "normalmap" => return self.normal_map(plugin, depth),
+            "blendbsdf" => {
+                let (share, picture) = self.pictured(plugin, "weight", 0.5, |weight| 1.0 - weight.clamp(0.0, 1.0));
+                let parts = self.parts(plugin, Some("bsdf"));
+                let [(_, a), (_, b)] = parts.as_slice() else {
+                    self.said.bad(plugin.at, format!("a `blendbsdf` is of two materials, not of {}", parts.len()));
+                    return Rc::new(Made::matte(0.5));
+                };
+                let (a, b) = (self.material(a, depth + 1), self.material(b, depth + 1));
+                return Rc::new(Made::Mix(a, b, share, picture));
+            }
+            other => {
+                let message = format!("the material `{other}` has no counterpart: matte grey is taken");
+                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(plugin.at);
+                self.said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+                // What it holds was not looked at.
+                plugin.properties.iter().for_each(|property| property.used.set(true));
+                return Rc::new(Made::matte(0.5));
+            }
+        }
+        Rc::new(Made::Layers(Box::new(m)))
+    }
+
+    /// Hair by what it absorbs, or by its melanins.
+    fn hair(&self, plugin: &Plugin) -> Made {
+        let usual = HairMaterial::default();
+        let number = |name| plugin.number(self.said, name);
+        let share = |name, usual: f32| number(name).unwrap_or(usual).clamp(0.0, 1.0);
+        let scale = number("scale").unwrap_or(1.0);
+        let absorbed = || scale * self.color(plugin, "sigma_a", Vec3::ZERO).max(Vec3::ZERO);
+        let absorption = plugin.get("sigma_a").is_some().then(absorbed);
+        Made::Hair(HairMaterial {
+            eumelanin: number("eumelanin").unwrap_or(1.3).max(0.0),
+            pheomelanin: number("pheomelanin").unwrap_or(0.2).max(0.0),
+            color: None,
+            absorption,
+            longitudinal_roughness: share("longitudinal_roughness", usual.longitudinal_roughness),
+            azimuthal_roughness: share("azimuthal_roughness", usual.azimuthal_roughness),
+            scale_tilt: number("scale_tilt").unwrap_or(usual.scale_tilt).clamp(-45.0, 45.0),
+            ior: self.relative_index(plugin, usual.ior).clamp(1.0, 4.0),
+        })
+    }
+
+    /// The material that another holds.
+    fn inner(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        match self.parts(plugin, Some("bsdf")).first() {
+            Some((_, part)) => self.material(part, depth + 1),
+            None => {
+                self.said.bad(plugin.at, format!("a `{}` needs a material inside", plugin.kind));
+                Rc::new(Made::matte(0.5))
+            }
+        }
+    }
+
+    /// A material whose surface rises where a picture is bright, by so much as `scale` says.
+    fn bump_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        let inner = self.inner(plugin, depth);
+        let height = plugin.number(self.said, "scale").unwrap_or(1.0);
+        let Some((property, _)) = self.parts(plugin, Some("texture")).into_iter().next() else {
+            self.said.once(plugin.at, "a `bumpmap` needs a texture: the surface stays smooth");
+            return inner;
+        };
+        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let picture = self.numbers(property, |x| x);
+        if picture.is_none() {
+            self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
+        }
+        Rc::new(inner.changed(&|m| (m.bump_texture, m.bump_height) = (picture.clone(), height)))
+    }
+
+    fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
+        let inner = self.inner(plugin, depth);
+        let texture = self.parts(plugin, Some("texture")).into_iter().next();
+        let Some((property, texture)) = texture.filter(|(_, texture)| texture.kind == "bitmap") else {
+            self.said.once(plugin.at, "a `normalmap` needs a `bitmap`: the surface stays smooth");
+            return inner;
+        };
+        plugin.known(&["use_shadowing_function", "flip_invalid_normals"]);
+        let picture = self.bitmap(&texture);
+        texture.finish(self.said);
+        let Some(picture) = picture else { return inner };
+        let name = asset(&mut self.scene, picture, property.at);
+        Rc::new(inner.changed(&|m| m.normal_texture = Some(name.clone())))
+    }
+
+    /// An index of refraction: a number or a name.
+    fn index(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
+        let Some(property) = plugin.get(name) else { return usual };
+        if let Value::Text(text) = &property.value {
+            return metals::clear(text).unwrap_or_else(|| {
+                let help = meant(text, metals::clear_names());
+                self.said.bad_with(property.at, format!("there is no material `{text}` with an index"), help);
+                usual
+            });
+        }
+        plugin.positive(self.said, name).unwrap_or(usual)
+    }
+
+    /// The index inside over the index outside.
+    fn relative_index(&self, plugin: &Plugin, usual: f32) -> f32 {
+        self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
+    }
+
+    /// The index of a body over that of air. What has the index of another body outside is inside
+    /// of that, and rays know what they are in.
+    fn index_of_body(&self, plugin: &Plugin, usual: f32) -> f32 {
+        let (mut inside, mut outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
+        if self.inside_out && plugin.kind != "thindielectric" {
+            std::mem::swap(&mut inside, &mut outside);
+        }
+        let nested = (outside - AIR).abs() > 1e-3 && self.clear.iter().any(|index| (index - outside).abs() < 1e-3);
+        inside / if nested { AIR } else { outside }
+    }
+
+    /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
+    fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        if !plugin.kind.starts_with("rough") {
+            m.specular_roughness = 0.0;
+            return;
+        }
+        let apart = ["alpha_u", "alpha_v"].iter().any(|name| plugin.get(name).is_some());
+        if apart {
+            let alphas = ["alpha_u", "alpha_v"].map(|name| self.value(plugin, name, 0.1));
+            [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+        } else {
+            let root = |alpha: f32| alpha.clamp(0.0, 1.0).sqrt();
+            (m.specular_roughness, m.specular_roughness_texture) = self.pictured(plugin, "alpha", 0.1, root);
+        }
+        match plugin.text(self.said, "distribution").as_deref() {
+            Some("ggx") => {}
+            Some(distribution @ ("beckmann" | "phong" | "as")) => {
+                let what =
+                    format!("the distribution `{distribution}` has no counterpart: GGX of the same alpha is taken");
+                self.said.once(plugin.place("distribution"), what);
+            }
+            None => {
+                let what = "without `distribution` Mitsuba means `beckmann`, which has no counterpart: GGX of the same \
+                            alpha is taken";
+                self.said.once(plugin.at, what);
+            }
+            Some(other) => {
+                let help = meant(other, ["beckmann", "ggx"]);
+                self.said.bad_with(plugin.place("distribution"), format!("there is no distribution `{other}`"), help);
+            }
+        }
+        plugin.known(&["sample_visible"]);
+    }
+
+    /// What a reflection is multiplied by.
+    fn tint(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        (m.specular_color, m.specular_color_texture) = self.colored(plugin, "specular_reflectance", 1.0);
+        m.specular_color = m.specular_color.min(Vec3::ONE);
+    }
+
+    fn glass(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        m.transmission_weight = 1.0;
+        m.specular_ior = self.index_of_body(plugin, 1.5046);
+        self.tint(plugin, m);
+        (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
+        m.transmission_color = m.transmission_color.min(Vec3::ONE);
+        m.walls = if plugin.kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
+        self.roughness(plugin, m);
+    }
+
+    fn conductor(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        let name = plugin.text(self.said, "material").unwrap_or("none".into());
+        let by_numbers = ["eta", "k"].iter().any(|name| plugin.get(name).is_some());
+        if by_numbers && plugin.get("material").is_some() {
+            self.said.bad(plugin.place("material"), "a metal has either `material` or `eta` and `k`");
+        }
+        let [f0, f82] = if !by_numbers && name == "none" {
+            [Vec3::ONE; 2]
+        } else {
+            let named = metals::metal(&name).unwrap_or_else(|| {
+                if !by_numbers {
+                    let help = meant(&name, metals::metal_names());
+                    self.said.bad_with(plugin.place("material"), format!("there is no metal `{name}`"), help);
+                }
+                [[0.0; 3], [1.0; 3]]
+            });
+            let [eta, k] = [("eta", named[0]), ("k", named[1])]
+                .map(|(name, usual)| Spectrum::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
+            metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
+        };
+        // A tint counts at all angles: it is in what is reflected at 82 degrees too, over Schlick's.
+        let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));
+        let (tint, picture) = self.colored(plugin, "specular_reflectance", 1.0);
+        let at = plugin.place("specular_reflectance");
+        if let Some(picture) = picture.as_ref().and_then(|name| self.scene.assets.pictures.get(&name.path).cloned()) {
+            let made = self.pictures().remade([&picture, &picture], at, |texel, _| over(tint * texel));
+            if let Some((picture, scale)) = made {
+                m.specular_color_texture = Some(asset(&mut self.scene, picture, at));
+                m.specular_color = Vec3::splat(scale);
+            }
+        } else {
+            m.specular_color = over(tint);
+        }
+        (m.base_metalness, m.base_color, m.base_color_texture) = (1.0, f0 * tint, picture);
+        self.roughness(plugin, m);
+    }
+
+    fn plastic(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        (m.base_color, m.base_color_texture) = self.colored(plugin, "diffuse_reflectance", 0.5);
+        let index = self.relative_index(plugin, 1.49);
+        self.tint(plugin, m);
+        self.roughness(plugin, m);
+        let nonlinear = plugin.truth(self.said, "nonlinear").unwrap_or(false);
+        if m.specular_roughness > 0.0 && m.specular_roughness_texture.is_none() {
+            let beckmann = plugin.text(self.said, "distribution").is_none_or(|distribution| distribution != "ggx");
+            let boundary = Boundary::new(index, m.specular_roughness, beckmann);
+            m.base_color = match m.base_color_texture.is_some() {
+                // Of a picture, as of a middle grey.
+                true => m.base_color * boundary.below(nonlinear.then_some(0.5)),
+                false => m.base_color.map(|color| boundary.base(color, nonlinear)),
+            };
+        }
+        if nonlinear {
+            // Light that goes to and fro below the skin is a coat's darkening.
+            (m.coat_weight, m.coat_ior, m.coat_roughness) = (1.0, index, m.specular_roughness);
+            m.coat_roughness_texture = m.specular_roughness_texture.take();
+            m.specular_weight = 0.0;
+            if m.specular_color != Vec3::ONE || m.specular_color_texture.take().is_some() {
+                self.said
+                    .once(plugin.place("specular_reflectance"), "what a coat reflects has no colour: white is taken");
+            }
+        } else {
+            m.specular_ior = index;
+        }
+        if let Texture::Even(color) = self.texture(plugin, "specular_transmittance", Vec3::ONE) {
+            m.base_color *= color;
+        }
+    }
+
+    /// The number in the scene of a material with a light and something inside; `None` for what is
+    /// not there.
+    pub fn number(
+        &mut self,
+        bsdf: Option<&Rc<Plugin>>,
+        shine: Option<&Shine>,
+        inside: Option<(Medium, Key)>,
+        at: Span,
+    ) -> Option<u32> {
+        let key = [bsdf.map(|bsdf| bsdf.key()), shine.map(|shine| shine.key), inside.as_ref().map(|inside| inside.1)];
+        let key = (key, self.inside_out);
+        if let Some(known) = self.numbers.get(&key) {
+            return *known;
+        }
+        // A lamp of which no more is said scatters nothing.
+        let grey = if shine.is_some() { 0.0 } else { 0.5 };
+        let mut made = bsdf.map_or_else(|| Rc::new(Made::matte(grey)), |bsdf| self.material(bsdf, 0));
+        if let Some((medium, _)) = inside {
+            made = Rc::new(filled(&made, &medium));
+        }
+        let number = self.numbered(&made, shine, bsdf.map_or(at, |bsdf| bsdf.at));
+        self.numbers.insert(key, number);
+        number
+    }
+
+    fn numbered(&mut self, made: &Made, shine: Option<&Shine>, at: Span) -> Option<u32> {
+        let material = match made {
+            Made::Nothing => return None,
+            Made::Layers(layers) => {
+                let mut layers = layers.clone();
+                let most = shine.map_or(0.0, |shine| shine.color.max_element());
+                if let Some(shine) = shine.filter(|_| most > 0.0) {
+                    (layers.emission_luminance, layers.emission_color) = (most, shine.color / most);
+                    layers.walls = if shine.both { Walls::Thin } else { layers.walls };
+                    if let Some(picture) = &shine.picture {
+                        layers.emission_texture = Some(asset(&mut self.scene, picture.clone(), shine.at));
+                    }
+                }
+                Material::Principled(layers)
+            }
+            Made::Hair(hair) => {
+                if shine.is_some() {
+                    self.said.once(at, "hair does not shine");
+                }
+                Material::Hair(hair.clone())
+            }
+            Made::Mix(a, b, share, picture) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
+                (Some(material1), Some(material2)) => {
+                    let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };
+                    Material::Solid(Solid::from(mix), Vec::new())
+                }
+                (Some(only), None) | (None, Some(only)) => {
+                    self.said.once(at, "a blend with what is not there has no counterpart: the other counts alone");
+                    return Some(only);
+                }
+                (None, None) => return None,
+            },
+        };
+        self.scene.materials.push(Spanned { value: material, span: at });
+        Some((self.scene.materials.len() - 1) as u32)
+    }
+}
+
+/// A material with something inside.
+fn filled(made: &Made, medium: &Medium) -> Made {
+    match made {
+        Made::Nothing => {
+            let mut m =
+                PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
+            medium.fill(&mut m);
+            Made::Layers(Box::new(m))
+        }
+        // Nothing gets into what is not clear.
+        _ => made.changed(&|m| {
+            if m.transmission_weight > 0.0 && m.walls == Walls::Solid {
+                medium.fill(m);
+            }
+        }),
+    }
+}

@@ -1,0 +1,72 @@
+//! Scenes of Mitsuba 3, in XML; those of Mitsuba 0.6 as far as they use the same plugins.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "Plugin reference", 2022 to 2025. A scene
+//! holds plugins (a shape, a material, a light), which hold properties and other plugins. A pixel
+//! of value 1 shows radiance 1.
+
+mod camera;
+mod color;
+mod curve;
+mod light;
+mod load;
+mod made;
+mod material;
+mod medium;
+mod metals;
+mod plugin;
+mod principled;
+mod rough;
+mod serialized;
+mod shape;
+mod sky;
+mod solid;
+mod state;
+mod texture;
+mod transform;
+
+#[cfg(test)]
+mod tests;
+
+use super::model::{Input, SceneFormat};
+use super::said::Said;
+use super::{too_large, xml};
+use durer_diag::{Diagnostic, Diagnostics};
+use durer_scene::scene::{Axis, Scene};
+use load::Loader;
+use state::Reader;
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "Mitsuba",
+    extensions: &["xml"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Y,
+    whole: true,
+    shines: Some(
+        "write `<emitter type=\"area\"/>` in a shape, or `<emitter type=\"constant\"/>` in the scene: what is all around is light too",
+    ),
+};
+
+/// Whether a file begins as Mitsuba's do.
+fn recognise(bytes: &[u8]) -> bool {
+    xml::begins_with(bytes, &["scene"])
+}
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
+        return None;
+    }
+    let said = Said::default();
+    let mut loader = Loader::new(input, &said);
+    let scene = match loader.scene() {
+        Ok(all) => Some(Reader::new(input, &said, loader).read(&all)),
+        Err(_) => None,
+    };
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    scene.filter(|_| sound)
+}

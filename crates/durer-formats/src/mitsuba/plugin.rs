@@ -1,0 +1,179 @@
+//! A plugin as it is written: its kind, and its properties by name.
+
+use crate::said::{Said, meant};
+use durer_diag::Span;
+use durer_scene::math::Vec3;
+use glam::{DAffine3, DVec3};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+/// Where a plugin is written.
+pub(super) type Key = (u32, u32);
+
+/// What has a tag and a `type`: `<shape type="sphere">`.
+pub(super) struct Plugin {
+    /// Its tag.
+    pub class: String,
+    /// Its `type`; empty for the scene.
+    pub kind: String,
+    /// Its type in the file, or its tag.
+    pub at: Span,
+    pub properties: Vec<Property>,
+    /// Names of properties that were asked for.
+    asked: RefCell<Vec<&'static str>>,
+}
+
+/// A property with its name, which nested plugins may lack.
+pub(super) struct Property {
+    pub name: String,
+    pub value: Value,
+    /// Its value in the file.
+    pub at: Span,
+    pub used: Cell<bool>,
+}
+
+/// The value of a property.
+#[derive(Clone)]
+pub(super) enum Value {
+    Number(f64),
+    Truth(bool),
+    Text(String),
+    Vector(DVec3),
+    Rgb(Vec3),
+    /// The same number at all wavelengths.
+    Even(f32),
+    /// Wavelengths in nanometres, rising, and values.
+    Curve(Vec<[f32; 2]>),
+    Map(DAffine3),
+    Plugin(Rc<Plugin>),
+    /// The `id` of a plugin.
+    Ref(String),
+}
+
+impl Value {
+    fn kind(&self) -> &'static str {
+        match self {
+            Value::Number(_) => "a number",
+            Value::Truth(_) => "`true` or `false`",
+            Value::Text(_) => "a string",
+            Value::Vector(_) => "a vector",
+            Value::Rgb(_) => "a colour",
+            Value::Even(_) | Value::Curve(_) => "a spectrum",
+            Value::Map(_) => "a transform",
+            Value::Plugin(_) | Value::Ref(_) => "a plugin",
+        }
+    }
+}
+
+impl Plugin {
+    pub fn new(class: &str, kind: String, at: Span) -> Plugin {
+        let asked = RefCell::default();
+        Plugin { class: class.into(), kind, at, properties: Vec::new(), asked }
+    }
+
+    /// What no other plugin shares with it.
+    pub fn key(&self) -> Key {
+        (self.at.file, self.at.start)
+    }
+
+    /// Says that properties are known, whatever they say.
+    pub fn known(&self, names: &[&'static str]) {
+        self.asked.borrow_mut().extend(names);
+    }
+
+    /// A property by name.
+    pub fn get(&self, name: &'static str) -> Option<&Property> {
+        self.known(&[name]);
+        let found = self.properties.iter().find(|property| property.name == name);
+        found.inspect(|property| property.used.set(true))
+    }
+
+    /// Where a property's value is, or failing that the plugin.
+    pub fn place(&self, name: &'static str) -> Span {
+        self.get(name).map_or(self.at, |property| property.at)
+    }
+
+    /// A property of some type.
+    fn typed<T>(&self, said: &Said, name: &'static str, what: &str, get: impl Fn(&Value) -> Option<T>) -> Option<T> {
+        let property = self.get(name)?;
+        let value = get(&property.value);
+        if value.is_none() {
+            said.bad(property.at, format!("`{name}` must be {what}, and this is {}", property.value.kind()));
+        }
+        value
+    }
+
+    pub fn number(&self, said: &Said, name: &'static str) -> Option<f32> {
+        self.typed(said, name, "a number", |value| match value {
+            Value::Number(number) => Some(*number as f32),
+            Value::Even(number) => Some(*number),
+            _ => None,
+        })
+    }
+
+    /// A number that must be more than 0.
+    pub fn positive(&self, said: &Said, name: &'static str) -> Option<f32> {
+        let number = self.number(said, name)?;
+        if number <= 0.0 {
+            said.bad(self.place(name), format!("`{name}` must be more than 0"));
+        }
+        Some(number).filter(|number| *number > 0.0)
+    }
+
+    pub fn truth(&self, said: &Said, name: &'static str) -> Option<bool> {
+        self.typed(said, name, "`true` or `false`", |value| match value {
+            Value::Truth(truth) => Some(*truth),
+            _ => None,
+        })
+    }
+
+    pub fn text(&self, said: &Said, name: &'static str) -> Option<String> {
+        self.typed(said, name, "a string", |value| match value {
+            Value::Text(text) => Some(text.clone()),
+            _ => None,
+        })
+    }
+
+    pub fn vector(&self, said: &Said, name: &'static str) -> Option<DVec3> {
+        self.typed(said, name, "a vector or point", |value| match value {
+            Value::Vector(vector) => Some(*vector),
+            _ => None,
+        })
+    }
+
+    /// A transform; none where nothing is said.
+    pub fn map(&self, said: &Said, name: &'static str) -> DAffine3 {
+        let map = self.typed(said, name, "a transform", |value| match value {
+            Value::Map(map) => Some(*map),
+            _ => None,
+        });
+        map.unwrap_or(DAffine3::IDENTITY)
+    }
+
+    /// Warns of properties without counterpart, if they are there.
+    pub fn left_out(&self, said: &Said, names: &[&'static str], instead: &str) {
+        for name in names {
+            if let Some(property) = self.get(name) {
+                said.once(property.at, format!("`{name}` has no counterpart: {instead}"));
+            }
+        }
+    }
+
+    /// Warns of properties that nobody asked for.
+    pub fn finish(&self, said: &Said) {
+        let asked = self.asked.borrow();
+        for property in &self.properties {
+            let nested = matches!(property.value, Value::Plugin(_) | Value::Ref(_));
+            if property.used.get() || asked.contains(&property.name.as_str()) {
+                continue;
+            }
+            let message = match (nested, property.name.as_str()) {
+                (true, "") => format!("the {} `{}` has no use for this: it is left out", self.class, self.kind),
+                (_, name) => format!("the {} `{}` has no `{name}`: it is left out", self.class, self.kind),
+            };
+            let help = meant(&property.name, asked.iter().copied());
+            let warning = durer_diag::Diagnostic::warning(message).code("unknown-property").at(property.at);
+            said.push(durer_diag::Diagnostic { help, ..warning });
+        }
+    }
+}

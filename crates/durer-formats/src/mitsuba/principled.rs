@@ -1,0 +1,108 @@
+//! Disney's material, which Mitsuba calls `principled`.
+//!
+//! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
+//! BRDF to a BSDF*, 2015, as *Mitsuba 3 documentation* has their parameters.
+
+use super::plugin::Plugin;
+use super::state::Reader;
+use crate::disney::{self, Matte};
+use durer_scene::bsdf::fresnel::ior_of_reflectance;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::{LUMINANCE, Vec3};
+
+impl Reader<'_> {
+    /// The layers of `principled` and `principledthin`.
+    pub fn principled(&mut self, plugin: &Plugin) -> PrincipledMaterial {
+        let thin = plugin.kind == "principledthin";
+        let (base_color, base_color_texture) = self.colored(plugin, "base_color", 0.5);
+        let whole = |x: f32| x.clamp(0.0, 1.0);
+        let (roughness, roughness_texture) = self.pictured(plugin, "roughness", 0.5, whole);
+        let (metalness, metalness_texture) = self.pictured(plugin, "metallic", 0.0, whole);
+        let share = |name, usual: f32| self.value(plugin, name, usual).clamp(0.0, 1.0);
+        // Disney's alpha is the square of the roughness, stretched by the aspect.
+        let aspect = (1.0 - 0.9 * share("anisotropic", 0.0)).sqrt();
+        let [u, v] = [roughness * roughness / aspect, roughness * roughness * aspect];
+        let luminance = base_color.dot(LUMINANCE).max(1e-6);
+        let tinted = |tint: f32| Vec3::ONE.lerp(base_color / luminance, tint).clamp(Vec3::ZERO, Vec3::ONE);
+        let ior = match plugin.get("eta") {
+            Some(_) => self.value(plugin, "eta", 1.5).max(1e-3),
+            // The reflectance at right angles is 0.08 times `specular`.
+            None => {
+                let root = (0.08 * share("specular", 0.5)).sqrt();
+                (1.0 + root) / (1.0 - root)
+            }
+        };
+        let clear = share("spec_trans", 0.0);
+        let metallic = if thin { 0.0 } else { metalness };
+        // Of pictures something between.
+        let rough = if roughness_texture.is_some() { 0.5 } else { roughness };
+        let matte = match (thin, &metalness_texture) {
+            (true, _) => disney::matte_mean(rough) * base_color,
+            (false, Some(_)) => base_color,
+            (false, None) => {
+                let matte = Matte::new(ior, rough);
+                let lost = if base_color_texture.is_some() { 0.0 } else { matte.lost };
+                base_color.lerp(matte.base(base_color, Vec3::splat(lost)), 1.0 - metallic)
+            }
+        };
+        let sheen = share("sheen", 0.0);
+        let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
+        // From 0, all on the lit side, to 2, all on the other.
+        let through = if thin { self.value(plugin, "diff_trans", 0.0).clamp(0.0, 2.0) } else { 0.0 };
+        let m = PrincipledMaterial {
+            base_color: matte,
+            base_color_texture: base_color_texture.clone(),
+            subsurface_weight: through.min(1.0),
+            subsurface_color: matte,
+            subsurface_color_texture: base_color_texture.filter(|_| through > 0.0),
+            subsurface_scatter_anisotropy: (through - 1.0).max(0.0),
+            base_metalness: metallic,
+            base_metalness_texture: metalness_texture.filter(|_| !thin),
+            // A thin sheet mirrors only where it is clear.
+            specular_weight: if thin { 0.0 } else { 1.0 },
+            specular_ior: if thin { one_sided(ior) } else { ior },
+            specular_color: tinted(share("spec_tint", 0.0)),
+            specular_roughness: (0.5 * (u * u + v * v)).sqrt().min(1.0).sqrt(),
+            specular_roughness_texture: roughness_texture,
+            specular_anisotropy: 1.0 - v / u.max(1e-12),
+            transmission_weight: clear,
+            // Disney's glass takes the root of the colour at each of two surfaces.
+            transmission_color: if thin { base_color } else { base_color.map(f32::sqrt) }.clamp(Vec3::ZERO, Vec3::ONE),
+            // The coat has a quarter of the weight, and an index of 1.5.
+            coat_weight: if thin { 0.0 } else { 0.25 * share("clearcoat", 0.0) },
+            coat_ior: 1.5,
+            coat_darkening: 0.0,
+            coat_roughness: (0.1 + share("clearcoat_gloss", 0.0) * (0.001 - 0.1)).sqrt(),
+            fuzz_weight,
+            fuzz_roughness: disney::FUZZ_ROUGHNESS,
+            fuzz_color: tinted(share("sheen_tint", 0.0)),
+            walls: if thin { Walls::Thin } else { Walls::Solid },
+            ..PrincipledMaterial::default()
+        };
+        let none = "the surface is Lambert's below its boundary";
+        plugin.left_out(self.said, &["flatness"], none);
+        plugin.known(&["diffuse_reflectance_sampling_rate", "main_specular_sampling_rate", "clearcoat_sampling_rate"]);
+        m
+    }
+}
+
+/// The index of a pane that reflects at right angles what one surface of another index does: theirs
+/// has no second one.
+fn one_sided(ior: f32) -> f32 {
+    let root = (ior - 1.0) / (ior + 1.0);
+    let r0 = root * root;
+    ior_of_reflectance(r0 / (2.0 - r0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pane_reflects_what_one_surface_does() {
+        let root = (one_sided(1.5) - 1.0) / (one_sided(1.5) + 1.0);
+        let r = root * root;
+        assert!((2.0 * r / (1.0 + r) - 0.04).abs() < 1e-5, "{r}");
+    }
+}

@@ -1,0 +1,127 @@
+//! What rough boundaries let through in Mitsuba, which does not give back what goes from facet to
+//! facet.
+
+use crate::disney::{kept, passing};
+use durer_scene::bsdf::albedo::single_means;
+use durer_scene::bsdf::fresnel;
+use durer_scene::math::{Vec3, fp};
+
+/// A rough boundary.
+pub(super) struct Boundary {
+    index: f32,
+    /// What goes through from outside and is kept inside, and the same of a smooth one.
+    rough: [f32; 2],
+    smooth: [f32; 2],
+    /// What ours lets through to the base and out again.
+    passing: f32,
+    /// What theirs loses between facets and ours mirrors.
+    lost: f32,
+}
+
+impl Boundary {
+    /// `roughness` is the root of alpha, and not 0.
+    pub fn new(index: f32, roughness: f32, beckmann: bool) -> Boundary {
+        let theirs = |index: f32| means(index, roughness * roughness, beckmann);
+        let ([reflected, all], [inside, _]) = (theirs(index), theirs(1.0 / index));
+        // Mitsuba sums it over 64 cosines from 0 to 1, both ends as much as the others.
+        let straight = (index - 1.0) / (index + 1.0);
+        let inside = (63.0 * inside + straight * straight) / 64.0;
+        let ([mirrored, sum], [within, _]) = (single_means(index, 0.0), single_means(1.0 / index, 0.0));
+        let ours = single_means(index, roughness);
+        Boundary {
+            index,
+            rough: [all - reflected, inside],
+            smooth: [sum - mirrored, within],
+            passing: passing(ours),
+            lost: kept(ours) - reflected,
+        }
+    }
+
+    /// The colour of a matte base that shows below it what one does in Mitsuba. `fades`: light that
+    /// goes to and fro below takes on more of the colour each time.
+    pub fn base(&self, color: f32, fades: bool) -> f32 {
+        let below = color * self.below(fades.then_some(color));
+        if fades { below } else { (below - self.lost / self.passing).max(0.0) }
+    }
+
+    /// What a matte base shows through it in Mitsuba, over what it does here, on the mean over all
+    /// directions: theirs loses on the way in and on the way out. `left`, where light that goes to and
+    /// fro below changes its colour, is the share that is left each time.
+    pub fn below(&self, left: Option<f32>) -> f32 {
+        let shown = |[through, inside]: [f32; 2]| {
+            let through = through / self.index;
+            through * through / (1.0 - inside * left.unwrap_or(1.0))
+        };
+        // A coat's darkening is as theirs where it is smooth.
+        shown(self.rough) / if left.is_some() { shown(self.smooth) } else { self.passing }
+    }
+}
+
+/// What [`single_means`] is of ours, with Mitsuba's masking: of each direction by itself, so that it
+/// hides more than both together do.
+///
+/// Source: Walter, Marschner, Li and Torrance, *Microfacet Models for Refraction through Rough
+/// Surfaces*, EGSR 2007, with their fit of the masking by Beckmann's facets.
+fn means(eta: f32, alpha: f32, beckmann: bool) -> [f32; 2] {
+    const STEPS: usize = 16;
+    let step = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let seen = |w: Vec3| {
+        let a = w.z.abs() / (alpha * (1.0 - w.z * w.z).max(1e-12).sqrt());
+        if !beckmann {
+            return 2.0 / (1.0 + (1.0 + 1.0 / (a * a)).sqrt());
+        }
+        if a >= 1.6 { 1.0 } else { (3.535 * a + 2.181 * a * a) / (1.0 + 2.276 * a + 2.577 * a * a) }
+    };
+    let mut sums = [0.0_f32; 2];
+    for (i, j, k) in (0..STEPS.pow(3)).map(|n| (n % STEPS, n / STEPS % STEPS, n / (STEPS * STEPS))) {
+        let z = step(i).sqrt();
+        let wo = Vec3::new((1.0 - z * z).sqrt(), 0.0, z);
+        // Facets by their number; half a turn is like the other.
+        let u = step(j);
+        let slope = alpha * alpha * if beckmann { -fp::ln(1.0 - u) } else { u / (1.0 - u) };
+        let cosine = 1.0 / (1.0 + slope).sqrt();
+        let (sin, cos) = fp::sin_cos_turn(0.5 * step(k));
+        let across = (1.0 - cosine * cosine).max(0.0).sqrt();
+        let h = Vec3::new(across * cos, across * sin, cosine);
+        let facing = wo.dot(h);
+        if facing <= 0.0 {
+            continue;
+        }
+        let weight = seen(wo) * facing / (wo.z * cosine);
+        let reflected = fresnel::dielectric(facing, eta);
+        let up = 2.0 * facing * h - wo;
+        if up.z > 0.0 {
+            sums[0] += weight * seen(up) * reflected;
+        }
+        let behind = 1.0 - (1.0 - facing * facing) / (eta * eta);
+        let down = (facing / eta - behind.max(0.0).sqrt()) * h - wo / eta;
+        if behind > 0.0 && down.z < 0.0 {
+            sums[1] += weight * seen(down) * (1.0 - reflected);
+        }
+    }
+    let [reflected, through] = sums.map(|sum| sum / STEPS.pow(3) as f32);
+    [reflected, reflected + through]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rough_boundaries_lose_more_the_rougher_they_are() {
+        // Nearly smooth, all is there.
+        let [reflected, all] = means(1.5, 0.02, true);
+        let [smooth, _] = single_means(1.5, 0.0);
+        assert!((reflected - smooth).abs() < 0.01 && (all - 1.0).abs() < 0.01, "{reflected} {smooth} {all}");
+        let below = |roughness: f32, beckmann: bool, left| Boundary::new(1.49, roughness, beckmann).below(left);
+        assert!((below(0.1, false, None) - 1.0).abs() < 0.02);
+        for left in [None, Some(0.5)] {
+            for beckmann in [false, true] {
+                let of = |roughness: f32| below(roughness, beckmann, left);
+                assert!(of(0.3) > of(0.5) && of(0.5) > of(0.8) && of(0.8) > 0.2, "{beckmann} {left:?}");
+            }
+            // Beckmann's facets lean less far.
+            assert!(below(0.6, true, left) > below(0.6, false, left));
+        }
+    }
+}

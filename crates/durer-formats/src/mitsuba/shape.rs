@@ -1,0 +1,326 @@
+//! Shapes.
+//!
+//! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
+
+use super::curve;
+use super::plugin::{Key, Plugin};
+use super::serialized;
+use super::solid;
+use super::state::Reader;
+use super::transform::frame;
+use crate::pbrt::made::Medium;
+use crate::pbrt::mesh::{oriented, written_in_file};
+use crate::pbrt::shape::placed;
+use crate::said::{Said, meant};
+use crate::smooth::smoothed;
+use durer_diag::{Diagnostic, Span};
+use durer_image::Transfer;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Group, Node, Object};
+use durer_scene::shape::{Disc, MeshData, Sphere};
+use glam::{DAffine3, DMat3, DVec3};
+use std::rc::Rc;
+use std::sync::Arc;
+
+const KNOWN: [&str; 13] = [
+    "sphere",
+    "disk",
+    "rectangle",
+    "cube",
+    "cylinder",
+    "obj",
+    "ply",
+    "serialized",
+    "shapegroup",
+    "instance",
+    "merge",
+    "bsplinecurve",
+    "linearcurve",
+];
+
+impl Reader<'_> {
+    /// Adds what a plugin shows.
+    pub fn shape(&mut self, plugin: &Rc<Plugin>, objects: &mut Vec<Object>, depth: u32) {
+        if self.too_deep(depth, plugin.at) {
+            return;
+        }
+        let (said, at) = (self.said, plugin.at);
+        let map = plugin.map(said, "to_world");
+        let found = match plugin.kind.as_str() {
+            // What a group holds is shown by instances.
+            "shapegroup" => return,
+            "instance" => self.instance(plugin, map, objects, depth),
+            "merge" => {
+                for (_, part) in self.parts(plugin, Some("shape")) {
+                    self.shape(&part, objects, depth + 1);
+                }
+                None
+            }
+            "sphere" => self.sphere(plugin, map),
+            "disk" => self.disk(plugin, map),
+            "rectangle" => self.mesh(plugin, "rectangle", map, || Some(solid::with_tangents(solid::rectangle()))),
+            "cube" => self.mesh(plugin, "cube", map, || Some(solid::with_tangents(solid::cube()))),
+            "cylinder" => self.cylinder(plugin, map),
+            "obj" | "ply" | "serialized" => self.file(plugin, map),
+            "bsplinecurve" | "linearcurve" => self.curves(plugin, map),
+            other => {
+                let message = format!("the shape `{other}` has no counterpart: it is left out");
+                let warning = Diagnostic::warning(message).code("NO_COUNTERPART").at(at);
+                return said.push(Diagnostic { help: meant(other, KNOWN), ..warning });
+            }
+        };
+        if let Some((node, map)) = found {
+            let inside = self.inside(plugin);
+            let shine = self.parts(plugin, Some("emitter")).into_iter().next();
+            let mut shine = shine.and_then(|(_, emitter)| self.area_light(&emitter));
+            self.inside_out = is_inside_out(plugin, said);
+            if let Some(shine) = shine.as_mut().filter(|_| self.inside_out) {
+                (shine.both, shine.key) = (true, plugin.key());
+            }
+            let material = self.parts(plugin, Some("bsdf")).into_iter().next().map(|(_, bsdf)| bsdf);
+            match self.number(material.as_ref(), shine.as_ref(), inside, at) {
+                Some(number) => {
+                    let inner = Object { node, material: Some(number), span: at };
+                    self.add(objects, placed(map, inner));
+                }
+                None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
+                None => {}
+            }
+        } else if !matches!(plugin.kind.as_str(), "instance" | "merge") {
+            // Why there is no shape was said, and what lies on it is not to blame.
+            for class in ["bsdf", "emitter", "medium"] {
+                self.parts(plugin, Some(class));
+            }
+        }
+        plugin.known(&["flip_normals"]);
+        plugin.finish(said);
+    }
+
+    fn instance(
+        &mut self,
+        plugin: &Rc<Plugin>,
+        map: DAffine3,
+        objects: &mut Vec<Object>,
+        depth: u32,
+    ) -> Option<(Node, DAffine3)> {
+        let groups = self.parts(plugin, Some("shape"));
+        let Some((property, group)) = groups.into_iter().find(|(_, group)| group.kind == "shapegroup") else {
+            self.said.bad(plugin.at, "an `instance` needs a `shapegroup`");
+            return None;
+        };
+        let (group, count) = match self.groups.get(&group.key()) {
+            Some(known) => known.clone(),
+            None => {
+                let (mut inner, before) = (Vec::new(), self.count);
+                for (_, part) in self.parts(&group, Some("shape")) {
+                    self.shape(&part, &mut inner, depth + 1);
+                }
+                let made = (Rc::new(Group { objects: inner }), self.count - before);
+                self.groups.insert(group.key(), made.clone());
+                made
+            }
+        };
+        if self.room_for(count, property.at) {
+            let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
+            objects.push(placed(map, inner));
+        }
+        None
+    }
+
+    /// What is inside of a shape.
+    fn inside(&mut self, plugin: &Plugin) -> Option<(Medium, Key)> {
+        let media = self.parts(plugin, Some("medium"));
+        // What is outside of a shape is inside of another, or around the camera.
+        let (_, medium) = media.into_iter().find(|(property, _)| property.name == "interior")?;
+        self.medium(&medium)
+    }
+
+    /// Whether a picture lies on a shape.
+    fn is_pictured(&self, plugin: &Plugin) -> bool {
+        self.has_texture(plugin, &["bitmap", "checkerboard"])
+    }
+
+    /// Whether a shape has a texture of some kinds.
+    fn has_texture(&self, plugin: &Plugin, kinds: &[&str]) -> bool {
+        let parts = self.reachable(plugin, &["texture", "bsdf", "emitter"]);
+        parts.iter().any(|part| part.class == "texture" && kinds.contains(&part.kind.as_str()))
+    }
+
+    /// Whether highlights on a shape are longer than wide, so that it matters where u grows.
+    fn is_brushed(&self, plugin: &Plugin) -> bool {
+        let words = ["alpha_u", "alpha_v", "anisotropic"];
+        let parts = self.reachable(plugin, &["bsdf"]);
+        parts.iter().flat_map(|part| &part.properties).any(|property| words.contains(&property.name.as_str()))
+    }
+
+    /// Whether the material of a shape leans its normals.
+    fn is_leaning(&self, plugin: &Plugin) -> bool {
+        self.reachable(plugin, &["bsdf"]).iter().any(|part| part.kind == "normalmap")
+    }
+
+    fn is_flipped(&self, plugin: &Plugin) -> bool {
+        plugin.truth(self.said, "flip_normals").unwrap_or(false)
+    }
+
+    fn sphere(&self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let radius = plugin.positive(self.said, "radius").unwrap_or(1.0);
+        let center = plugin.vector(self.said, "center").unwrap_or(DVec3::ZERO);
+        if is_inside_out(plugin, self.said) && !self.parts(plugin, Some("emitter")).is_empty() {
+            let what = "a sphere turned inside out has no counterpart: it shines outwards as well";
+            self.said.once(plugin.place("flip_normals"), what);
+        }
+        let map = map * DAffine3::from_translation(center);
+        let (center, map) = match self.is_pictured(plugin) || self.is_brushed(plugin) {
+            // Mitsuba's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            true => {
+                let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
+                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+            }
+            false if map.matrix3 == DMat3::IDENTITY => (map.translation.as_vec3(), DAffine3::IDENTITY),
+            false => (Vec3::ZERO, map),
+        };
+        Some((Node::Primitive(Sphere { center, radius }.into()), map))
+    }
+
+    fn disk(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        // Our discs have other coordinates.
+        if self.is_pictured(plugin) || self.is_brushed(plugin) || self.is_leaning(plugin) {
+            return self.mesh(plugin, "disk", map, || Some(solid::with_tangents(solid::disk())));
+        }
+        let normal = if self.is_flipped(plugin) { Vec3::NEG_Z } else { Vec3::Z };
+        let disc = Disc { center: Vec3::ZERO, normal, radius: 1.0, inner_radius: 0.0 };
+        Some((Node::Primitive(disc.into()), map))
+    }
+
+    fn cylinder(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let end = |name, usual| plugin.vector(said, name).unwrap_or(usual);
+        let ends = [end("p0", DVec3::ZERO), end("p1", DVec3::Z)];
+        let radius = plugin.positive(said, "radius").unwrap_or(1.0);
+        let along = ends[1] - ends[0];
+        if along == DVec3::ZERO {
+            said.bad(plugin.place("p1"), "the ends of a cylinder must not be the same point");
+            return None;
+        }
+        let axes = frame(along.normalize()) * DMat3::from_diagonal(DVec3::new(1.0, 1.0, along.length()));
+        let map = map * DAffine3 { matrix3: axes, translation: ends[0] };
+        self.mesh(plugin, &format!("cylinder-{radius}"), map, || Some(solid::with_tangents(solid::cylinder(radius))))
+    }
+
+    /// The file that a shape is in, and where it is named.
+    fn path(&self, plugin: &Plugin) -> Option<(String, Span)> {
+        let Some(name) = plugin.text(self.said, "filename") else {
+            self.said.bad(plugin.at, format!("the shape `{}` needs a `filename`", plugin.kind));
+            return None;
+        };
+        Some((self.loader.path(&name), plugin.place("filename")))
+    }
+
+    /// Which mesh of a file a shape is.
+    fn shape_index(&self, plugin: &Plugin) -> Option<u32> {
+        let number = plugin.number(self.said, "shape_index").unwrap_or(0.0);
+        if !(0.0..=16_777_216.0).contains(&number) || number.fract() != 0.0 {
+            self.said.bad(plugin.place("shape_index"), "`shape_index` must be a whole number from 0 on");
+            return None;
+        }
+        Some(number as u32)
+    }
+
+    fn file(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let (path, at) = self.path(plugin)?;
+        let number = match plugin.kind.as_str() {
+            "serialized" => Some(self.shape_index(plugin)?),
+            _ => None,
+        };
+        let flat = plugin.truth(said, "face_normals").unwrap_or(false);
+        let is_obj = plugin.kind == "obj";
+        // Mitsuba turns the coordinates of OBJ over, which have v upwards as ours, and leaves those
+        // of PLY.
+        let over = plugin.truth(said, "flip_tex_coords").unwrap_or(is_obj);
+        let mirrored = map.matrix3.determinant() < 0.0;
+        let input = self.input;
+        let colored = self.has_texture(plugin, &["mesh_attribute"]);
+        let leaning = !is_obj && self.is_leaning(plugin);
+        let turns = [
+            (flat, "#flat"),
+            (mirrored, "#mirrored"),
+            (over != is_obj, "#turned"),
+            (colored, "#colored"),
+            (leaning, "#leaning"),
+        ];
+        let whole = number.map_or(path.clone(), |number| format!("{path}#{number}"));
+        let key = turns.iter().filter(|turn| turn.0).fold(whole, |key, turn| key + turn.1);
+        self.mesh(plugin, &key, map, || {
+            let mut data = match number {
+                Some(number) => serialized::mesh(input, said, (&path, at), number)?,
+                None => written_in_file(input, said, &path, at)?,
+            };
+            if flat {
+                (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
+            }
+            // The sides of faces without normals are told by their corners in the world.
+            if mirrored && data.triangle_normals.is_empty() {
+                data = oriented(data, true);
+            }
+            if !flat && data.triangle_normals.is_empty() {
+                // Vertices at one place with other texture coordinates are others.
+                let uvs = std::mem::take(&mut data.triangle_uvs);
+                smoothed(&mut data, |i, k| Some(uvs.get(i).map_or(0, |uvs| uvs[k])));
+                data.triangle_uvs = uvs;
+            }
+            // Vertices have colours where a texture asks for them; those of PLY have no curve here.
+            let number = |x: f32| f32::from(Transfer::Srgb.encode(x)) / 255.0;
+            data.colors
+                .iter_mut()
+                .for_each(|[r, g, b, a]| (*r, *g, *b, *a) = (number(*r), number(*g), number(*b), 1.0));
+            if !colored {
+                data.colors.clear();
+            }
+            data.flat = flat;
+            if leaning && data.triangle_uvs.len() == data.triangles.len() {
+                data = solid::with_tangents(data);
+            }
+            Some(if over { solid::turned_over(data) } else { data })
+        })
+    }
+
+    /// Curves of a file, as tubes.
+    fn curves(&mut self, plugin: &Plugin, map: DAffine3) -> Option<(Node, DAffine3)> {
+        let said = self.said;
+        let (path, at) = self.path(plugin)?;
+        let (input, is_spline) = (self.input, plugin.kind == "bsplinecurve");
+        let key = if is_spline { path.clone() } else { format!("{path}#linear") };
+        self.mesh(plugin, &key, map, || curve::tubes(input, said, (&path, at), is_spline))
+    }
+
+    /// A mesh with v downwards, in its place.
+    fn mesh(
+        &mut self,
+        plugin: &Plugin,
+        name: &str,
+        map: DAffine3,
+        make: impl FnOnce() -> Option<MeshData>,
+    ) -> Option<(Node, DAffine3)> {
+        let flipped = self.is_flipped(plugin);
+        let name = format!("{name}{}", if flipped { "#flipped" } else { "" });
+        let data = match self.meshes.get(&name) {
+            Some(known) => known.clone(),
+            None => {
+                let data = make().filter(|data| !data.triangles.is_empty()).map(|data| {
+                    let flat = data.flat;
+                    Arc::new(MeshData { flat, ..oriented(solid::turned_over(data), flipped) })
+                });
+                self.meshes.insert(name.clone(), data.clone());
+                data
+            }
+        };
+        Some((self.scene.add_mesh(&name, data?, plugin.at), map))
+    }
+}
+
+/// Whether a shape is a sphere whose normals point inwards: those of one that is mirrored do too.
+pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
+    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
+}

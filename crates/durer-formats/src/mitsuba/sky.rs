@@ -1,0 +1,113 @@
+//! Daylight: `sunsky`, and `sky` and `sun` of Mitsuba 0.6.
+//!
+//! Mitsuba's sky is that of Hosek and Wilkie, *An Analytic Model for Full Spectral Sky-Dome Radiance*,
+//! SIGGRAPH 2012. Ours is Preetham's, made as bright; the sun is Preetham's.
+
+use super::made::Infinite;
+use super::plugin::Plugin;
+use super::state::Reader;
+use durer_scene::light::DirectionalLight;
+use durer_scene::math::{LUMINANCE, Vec3, fp};
+use durer_scene::scene::Spanned;
+use durer_scene::texture::Sky;
+use durer_scene::texture::almanac::{self, Moment};
+use durer_scene::texture::sky::SUN_RADIUS;
+use glam::{DAffine3, DMat3, DVec3};
+use std::f32::consts::PI;
+
+/// Lumens of a watt of each nanometre of visible light together: Mitsuba's unit is the watt of one
+/// nanometre on the mean. 683 lm/W times the integral of the CIE's y over wavelengths.
+const LUMENS: f32 = 683.0 * 106.856_9;
+
+/// What the sky of Hosek and Wilkie brings to level ground in lux, over a ground that gives back a
+/// fifth: for each turbidity a row, for each height of the sun a column. Sums over 1,152 directions
+/// of `sunsky` of Mitsuba 3.9.1, times [`LUMENS`].
+const TURBIDITIES: [f32; 4] = [2.0, 3.0, 5.0, 8.0];
+const HEIGHTS: [f32; 5] = [5.0, 20.0, 40.0, 60.0, 85.0];
+const LEVEL: [[f32; 5]; 4] = [
+    [6175.0, 11238.0, 14080.0, 15241.0, 16662.0],
+    [6596.0, 12653.0, 16295.0, 17668.0, 19031.0],
+    [7638.0, 16822.0, 23228.0, 25665.0, 27006.0],
+    [8416.0, 21362.0, 34504.0, 40648.0, 38652.0],
+];
+
+/// The illuminance of the table, linear between its entries.
+fn level(turbidity: f32, height: f32) -> f32 {
+    let ((i, a), (j, b)) = (place(&TURBIDITIES, turbidity), place(&HEIGHTS, height));
+    let row = |i: usize| LEVEL[i][j] + b * (LEVEL[i][j + 1] - LEVEL[i][j]);
+    row(i) + a * (row(i + 1) - row(i))
+}
+
+/// The step of a row of growing numbers that a number is in, and how far.
+fn place(steps: &[f32], x: f32) -> (usize, f32) {
+    let x = x.clamp(steps[0], steps[steps.len() - 1]);
+    let i = steps[1..steps.len() - 1].iter().take_while(|step| **step < x).count();
+    (i, (x - steps[i]) / (steps[i + 1] - steps[i]))
+}
+
+impl Reader<'_> {
+    /// A clear sky, the sun, or both.
+    pub(super) fn daylight(&mut self, plugin: &Plugin, to_world: DAffine3) {
+        let said = self.said;
+        let number = |name, usual: f32| plugin.number(said, name).unwrap_or(usual);
+        let turbidity = number("turbidity", 3.0);
+        let all = number("scale", 1.0);
+        let [sky_scale, sun_scale] = ["sky_scale", "sun_scale"].map(|name| (all * number(name, 1.0)).max(0.0));
+        // To a space with y upwards, x east and z south: theirs has x south, y west and z upwards.
+        let up = match self.loader.is_old {
+            true => DMat3::IDENTITY,
+            false => DMat3::from_cols(DVec3::Z, DVec3::NEG_X, DVec3::Y),
+        };
+        let way = match plugin.vector(said, "sun_direction") {
+            Some(way) => up * to_world.matrix3.inverse() * way,
+            None => self.way_by_time(plugin).as_dvec3(),
+        };
+        plugin.known(&["sun_aperture", "sun_radius_scale", "resolution", "stretch", "sampling_weight", "complex_sun"]);
+        plugin.left_out(said, &["albedo"], "the sky is as bright as over a ground that gives back a fifth");
+        plugin.finish(said);
+        said.once(plugin.at, "the sky is Preetham's here, made as bright as that of Hosek and Wilkie");
+        let Some(way) = way.try_normalize().filter(|way| way.y > 0.0) else {
+            return said.once(plugin.at, "the sun is below the horizon: nothing shines");
+        };
+        let sky = Sky::new(way.as_vec3(), turbidity);
+        let to_world = to_world * DAffine3::from_mat3(up.transpose());
+        if plugin.kind != "sun" && sky_scale > 0.0 {
+            let found = PI * sky.on_level_ground().dot(LUMINANCE);
+            let height = fp::asin_f64(way.y).to_degrees() as f32;
+            let scale = sky_scale * level(turbidity, height) / found.max(1.0) / LUMENS;
+            self.far(Infinite::Sky { sky, at: plugin.at, scale, to_world });
+        }
+        if plugin.kind != "sky" && sun_scale > 0.0 {
+            let direction = -to_world.transform_vector3(way).normalize_or(DVec3::Y).as_vec3();
+            // A light's colour is illuminance over pi.
+            let color = sky.sun() * (sun_scale / LUMENS / PI);
+            let sun = DirectionalLight { direction, color, spread: Some(SUN_RADIUS), ..DirectionalLight::default() };
+            self.scene.lights.get_or_insert_default().push(Spanned { value: sun.into(), span: plugin.at });
+        }
+    }
+
+    /// The way to the sun by place, date and time.
+    fn way_by_time(&self, plugin: &Plugin) -> Vec3 {
+        let number = |name, usual: f32| f64::from(plugin.number(self.said, name).unwrap_or(usual));
+        let date = [number("year", 2010.0), number("month", 7.0), number("day", 10.0)].map(|x| x as i32);
+        let hours = number("hour", 15.0) + number("minute", 0.0) / 60.0 + number("second", 0.0) / 3600.0;
+        let moment = Moment { date, hours, zone: number("timezone", 9.0) };
+        if !(moment.exists() && (-9999..=9999).contains(&date[0])) {
+            self.said.bad(plugin.at, "there is no such day");
+            return Vec3::Y;
+        }
+        almanac::way(almanac::sun([number("latitude", 35.689), number("longitude", 139.6917)], &moment))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_table_is_linear_between_its_entries() {
+        assert_eq!((level(3.0, 20.0), level(1.0, 0.0), level(10.0, 90.0)), (12653.0, 6175.0, 38652.0));
+        assert_eq!(level(4.0, 40.0), 0.5 * (16295.0 + 23228.0));
+        assert_eq!(level(2.0, 50.0), 0.5 * (14080.0 + 15241.0));
+    }
+}

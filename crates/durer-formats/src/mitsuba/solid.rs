@@ -1,0 +1,100 @@
+//! Shapes that are meshes here.
+
+use crate::pbrt::mesh::tube;
+use durer_scene::math::{Vec2, Vec3, fp};
+use durer_scene::shape::MeshData;
+use durer_scene::shape::mesh::NO_INDEX;
+
+/// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in
+/// the order of [`AROUND`].
+const FACES: [([[f32; 3]; 4], [f32; 3]); 6] = [
+    ([[1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, -1.0, -1.0]], [0.0, -1.0, 0.0]),
+    ([[1.0, 1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, 1.0, 1.0], [1.0, 1.0, 1.0]], [0.0, 1.0, 0.0]),
+    ([[1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0], [1.0, -1.0, 1.0]], [1.0, 0.0, 0.0]),
+    ([[1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, -1.0, 1.0]], [0.0, 0.0, 1.0]),
+    ([[-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, -1.0]], [-1.0, 0.0, 0.0]),
+    ([[1.0, 1.0, -1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0]], [0.0, 0.0, -1.0]),
+];
+/// Sides of a disc that is a mesh.
+const SIDES: u32 = 128;
+const AROUND: [[f32; 2]; 4] = [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 0.0]];
+
+/// A cube from -1 to 1, with v downwards.
+pub(super) fn cube() -> MeshData {
+    let mut data = MeshData { flat: true, ..MeshData::default() };
+    for (corners, normal) in FACES {
+        let p = data.positions.len() as u32;
+        data.positions.extend(corners.map(Vec3::from_array));
+        data.normals.extend([Vec3::from_array(normal); 4]);
+        data.uvs.extend(AROUND.map(Vec2::from_array));
+        data.triangles.extend([[p, p + 1, p + 2], [p, p + 2, p + 3]]);
+    }
+    (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
+    data
+}
+
+/// A square from -1 to 1 that faces z, with v downwards.
+pub(super) fn rectangle() -> MeshData {
+    let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(Vec2::from_array);
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    MeshData {
+        positions: corners.map(|p| p.extend(0.0)).to_vec(),
+        uvs: corners.map(|p| 0.5 * (p + 1.0)).to_vec(),
+        normals: vec![Vec3::Z; 4],
+        triangle_uvs: triangles.clone(),
+        triangle_normals: triangles.clone(),
+        triangles,
+        flat: true,
+        ..MeshData::default()
+    }
+}
+
+/// A disc of radius 1 that faces z, as many triangles: u grows from its middle outwards, v around it,
+/// beginning at x.
+pub(super) fn disk() -> MeshData {
+    let rim = |i: f32| {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(360.0 * i / SIDES as f32));
+        Vec3::new(cos as f32, sin as f32, 0.0)
+    };
+    let mut data = MeshData { flat: true, ..MeshData::default() };
+    for i in 0..=SIDES {
+        let around = |i: f32| i / SIDES as f32;
+        data.positions.push(rim(i as f32));
+        data.uvs.push(Vec2::new(1.0, around(i as f32)));
+        if i < SIDES {
+            // Each triangle has its own middle, whose v is half way between its corners'.
+            data.positions.push(Vec3::ZERO);
+            data.uvs.push(Vec2::new(0.0, around(i as f32 + 0.5)));
+            data.triangles.push([2 * i + 1, 2 * i, 2 * i + 2]);
+        }
+    }
+    data.normals = vec![Vec3::Z; data.positions.len()];
+    (data.triangle_uvs, data.triangle_normals) = (data.triangles.clone(), data.triangles.clone());
+    data
+}
+
+/// A tube about z of length 1, with v downwards.
+pub(super) fn cylinder(radius: f32) -> MeshData {
+    tube(radius, [0.0, 1.0], 360.0)
+}
+
+/// The same with tangents: across the normal from where u grows lies the other, whatever way v
+/// grows.
+pub(super) fn with_tangents(mut data: MeshData) -> MeshData {
+    let mut tangents = vec![Vec3::ZERO; data.positions.len()];
+    for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs).filter(|(_, uvs)| !uvs.contains(&NO_INDEX)) {
+        let [p, q, r] = corners.map(|i| data.positions[i as usize]);
+        let [a, b, c] = uvs.map(|i| data.uvs[i as usize]);
+        let (along, across) = (b - a, c - a);
+        let u = ((q - p) * across.y - (r - p) * along.y) / along.perp_dot(across);
+        corners.iter().filter(|_| u.is_finite()).for_each(|&i| tangents[i as usize] += u);
+    }
+    data.tangents = tangents.into_iter().map(|u| u.extend(1.0).to_array()).collect();
+    data
+}
+
+/// The same with v upwards, as ours has it.
+pub(super) fn turned_over(mut data: MeshData) -> MeshData {
+    data.uvs.iter_mut().chain(&mut data.second_uvs).for_each(|uv| uv.y = 1.0 - uv.y);
+    data
+}

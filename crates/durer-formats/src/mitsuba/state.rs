@@ -1,0 +1,201 @@
+//! From plugins to a scene.
+
+use super::load::Loader;
+use super::made::{Infinite, Made};
+use super::metals;
+use super::plugin::{Key, Plugin, Property, Value};
+use super::shape;
+use crate::bodies::join_bodies;
+use crate::model::Input;
+use crate::pictures::Pictures;
+use crate::said::{Said, meant};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::scene::{Group, Object, Scene};
+use durer_scene::shape::MeshData;
+use std::collections::{BTreeMap, HashSet};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Objects of a scene, those of instances counted each time.
+const MAX_OBJECTS: usize = 1 << 20;
+/// Plugins in plugins, those counted to which others refer.
+pub(super) const DEEPEST: u32 = 32;
+
+/// A file on its way to a scene.
+pub(super) struct Reader<'a> {
+    pub input: &'a Input<'a>,
+    pub said: &'a Said,
+    pub loader: Loader<'a>,
+    /// Materials by their plugins, and whether they are turned inside out.
+    pub materials: BTreeMap<(Key, bool), Rc<Made>>,
+    /// Numbers in the scene of materials with a light, with something inside, turned inside out.
+    pub numbers: BTreeMap<([Option<Key>; 3], bool), Option<u32>>,
+    /// Meshes of files, by name and how they are turned.
+    pub meshes: BTreeMap<String, Option<Arc<MeshData>>>,
+    /// What shape groups hold, and how many objects that is.
+    pub groups: BTreeMap<Key, (Rc<Group>, usize)>,
+    pub count: usize,
+    /// Whether the shape at hand is turned inside out: the index inside of its glass is outside.
+    pub inside_out: bool,
+    pub infinite: Option<Infinite>,
+    /// Indices of refraction inside of what is clear.
+    pub clear: Vec<f32>,
+    pub scene: Scene,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(input: &'a Input<'a>, said: &'a Said, loader: Loader<'a>) -> Self {
+        Reader {
+            input,
+            said,
+            loader,
+            materials: BTreeMap::new(),
+            numbers: BTreeMap::new(),
+            meshes: BTreeMap::new(),
+            groups: BTreeMap::new(),
+            count: 0,
+            inside_out: false,
+            infinite: None,
+            clear: Vec::new(),
+            scene: Scene::default(),
+        }
+    }
+
+    /// The scene of its plugins.
+    pub fn read(mut self, all: &Plugin) -> Scene {
+        self.clear = self.clear_inside(all);
+        let mut sensors = Vec::new();
+        for (property, plugin) in self.parts(all, None) {
+            if self.said.is_full() {
+                break;
+            }
+            property.used.set(true);
+            match plugin.class.as_str() {
+                "shape" => {
+                    let mut objects = Vec::new();
+                    self.shape(&plugin, &mut objects, 0);
+                    self.scene.root.get_or_insert_default().objects.extend(objects);
+                }
+                "emitter" => self.emitter(&plugin),
+                "sensor" => sensors.push(plugin),
+                "integrator" => self.integrator(&plugin, 0),
+                // What nothing refers to has no place: it is not looked at.
+                _ => {}
+            }
+        }
+        self.camera(&sensors);
+        self.surround();
+        join_bodies(&mut self.scene, self.input.name);
+        if self.scene.root.is_none() && !self.said.has_errors() {
+            let at = Span { end: all.at.start, ..all.at };
+            let warning = Diagnostic::warning("the file has no shapes that can be shown");
+            self.said.push(warning.code("no-objects").at(at));
+        }
+        self.scene
+    }
+
+    /// The indices of refraction inside of all that is clear.
+    fn clear_inside(&self, all: &Plugin) -> Vec<f32> {
+        let clear = |part: &Plugin, inside_out: bool| match part.get(if inside_out { "ext_ior" } else { "int_ior" }) {
+            Some(property) => metals::written(&property.value),
+            None if inside_out => None,
+            None => metals::clear("bk7"),
+        };
+        // What is wrong with a shape is said where it is read.
+        let unsaid = Said::default();
+        let mut indices = Vec::new();
+        for shape in self.reachable(all, &["shape"]) {
+            let inside_out = shape::is_inside_out(&shape, &unsaid);
+            let inner = self.reachable(&shape, &["bsdf"]);
+            let glass = inner.iter().filter(|part| part.kind.ends_with("dielectric"));
+            indices.extend(glass.filter_map(|part| clear(part, inside_out)));
+        }
+        indices.sort_by(f32::total_cmp);
+        indices.dedup();
+        indices
+    }
+
+    /// All plugins inside of one, of some tags and through such, each once. Nothing is told, and
+    /// nothing counts as used.
+    pub fn reachable(&self, plugin: &Plugin, classes: &[&str]) -> Vec<Rc<Plugin>> {
+        let part = |property: &Property| match &property.value {
+            Value::Plugin(part) => Some(part.clone()),
+            Value::Ref(id) => self.loader.plugins.get(id).cloned(),
+            _ => None,
+        };
+        let parts = |plugin: &Plugin| -> Vec<Rc<Plugin>> {
+            let parts = plugin.properties.iter().filter_map(part);
+            parts.filter(|part| classes.contains(&part.class.as_str())).collect()
+        };
+        let (mut seen, mut found, mut left) = (HashSet::new(), Vec::new(), parts(plugin));
+        while let Some(part) = left.pop() {
+            if seen.insert(part.key()) {
+                left.extend(parts(&part));
+                found.push(part);
+            }
+        }
+        found
+    }
+
+    pub fn pictures(&self) -> Pictures<'a> {
+        Pictures { input: self.input, said: self.said }
+    }
+
+    /// The plugins inside another, of a class or of all, in their order.
+    pub fn parts<'p>(&self, plugin: &'p Plugin, class: Option<&str>) -> Vec<(&'p Property, Rc<Plugin>)> {
+        let found = plugin.properties.iter().filter_map(|property| {
+            let part = self.part(property)?;
+            class.is_none_or(|class| part.class == class).then_some((property, part))
+        });
+        found.inspect(|(property, _)| property.used.set(true)).collect()
+    }
+
+    /// The plugin of the property of a name.
+    pub fn named_part(&self, plugin: &Plugin, name: &'static str) -> Option<Rc<Plugin>> {
+        plugin.get(name).and_then(|property| self.part(property))
+    }
+
+    /// The plugin of a property.
+    pub fn part(&self, property: &Property) -> Option<Rc<Plugin>> {
+        match &property.value {
+            Value::Plugin(plugin) => Some(plugin.clone()),
+            Value::Ref(id) => {
+                let found = self.loader.plugins.get(id).cloned();
+                if found.is_none() {
+                    let help = meant(id, self.loader.plugins.keys().map(String::as_str));
+                    let message = format!("there is nothing with the id `{id}`");
+                    if !property.used.replace(true) {
+                        self.said.bad_with(property.at, message, help);
+                    }
+                }
+                found
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether this is too deep: plugins may refer to each other in a circle.
+    pub fn too_deep(&self, depth: u32, at: Span) -> bool {
+        if depth > DEEPEST {
+            self.said.bad(at, format!("plugins are nested more than {DEEPEST} deep: does one refer to itself?"));
+        }
+        depth > DEEPEST
+    }
+
+    /// Whether so many objects more are allowed.
+    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
+        let before = self.count;
+        self.count = self.count.saturating_add(more);
+        if before <= MAX_OBJECTS && self.count > MAX_OBJECTS {
+            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
+        }
+        self.count <= MAX_OBJECTS
+    }
+
+    /// Adds an object to others.
+    pub fn add(&mut self, objects: &mut Vec<Object>, object: Object) {
+        if self.room_for(1, object.span) {
+            objects.push(object);
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! Mitsuba's files: what is read of them, conventions in closed form, and errors with their places.
+
+mod bright;
+mod conventions;
+mod shapes;
+
+use crate::testing::{folder, read_in};
+use durer_scene::math::random::Random;
+use durer_scene::scene::{Material, Node, Object, Scene};
+use durer_scene::shape::Primitive;
+use std::path::Path;
+
+fn read(text: &str) -> (Option<Scene>, Vec<String>) {
+    read_in(&std::env::temp_dir(), "scene.xml", text)
+}
+
+/// Elements inside of a scene, of which nothing is to be said.
+fn clean(inner: &str) -> Scene {
+    let (scene, told) = read(&format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(told, [""; 0], "{inner}");
+    scene.unwrap()
+}
+
+/// All objects with a node of their own, in their order.
+fn objects(scene: &Scene) -> Vec<&Object> {
+    fn gather<'a>(object: &'a Object, all: &mut Vec<&'a Object>) {
+        match &object.node {
+            Node::Group(group) => group.objects.iter().for_each(|object| gather(object, all)),
+            Node::Transform(_, inner) => gather(inner, all),
+            // The ground of the studio.
+            Node::Primitive(Primitive::Plane(_)) => {}
+            _ => all.push(object),
+        }
+    }
+    let mut all = Vec::new();
+    scene.root.iter().flat_map(|root| &root.objects).for_each(|object| gather(object, &mut all));
+    all
+}
+
+/// The material of the first object.
+fn material(scene: &Scene) -> &Material {
+    &scene.materials[objects(scene)[0].material.unwrap() as usize].value
+}
+
+#[test]
+fn variables_includes_and_names_of_old() {
+    let folder = folder(&[
+        ("a.xml", b"<scene version='3.0.0'><default name='r' value='3'/><default name='rr' value='5'/><include filename='sub/b.xml'/></scene>"),
+        ("sub/b.xml", b"<scene><default name='r' value='7'/><shape type='sphere'><float name='radius' value='$r'/></shape>\
+            <shape type='sphere'><float name='radius' value='1$rr'/></shape></scene>"),
+        ("c.xml", b"<scene version='0.6.0'><bsdf type='plastic' id='m'><spectrum name='diffuseReflectance' value='.1,.2,.3'/>\
+            <float name='intIOR' value='1.6'/><float name='extIOR' value='1'/></bsdf><shape type='sphere'><transform name='toWorld'>\
+            <translate x='1'/></transform><ref id='m'/></shape></scene>"),
+    ]);
+    let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+    let (scene, told) = read_in(folder.path(), "a.xml", &text("a.xml"));
+    assert_eq!(told, [""; 0]);
+    let spheres = objects(scene.as_ref().unwrap()).into_iter().map(|object| format!("{:?}", object.node));
+    let spheres: Vec<String> = spheres.collect();
+    assert!(spheres[0].contains("radius: 3.0") && spheres[1].contains("radius: 15.0"), "{spheres:?}");
+    let (scene, told) = read_in(folder.path(), "c.xml", &text("c.xml"));
+    assert_eq!(told, [""; 0]);
+    let scene = scene.unwrap();
+    let Material::Principled(layers) = material(&scene) else { panic!() };
+    assert_eq!((layers.base_color.z, layers.specular_ior), (0.3, 1.6));
+    assert!(format!("{:?}", objects(&scene)[0].node).contains("Vec3(1.0, 0.0, 0.0)"));
+}
+
+#[test]
+fn what_is_wrong_is_told_at_its_place() {
+    // What stands at the place, in the last of its occurrences, and what is told there.
+    for (inner, there, expected) in [
+        ("<shape type='sphere'><float name='radius' value='x'/></shape>", "x'/>", "error expected a number, found `x`"),
+        ("<shape type='sphere'><float name='radius' value='-1'/></shape>", "-1", "error `radius` must be more than 0"),
+        (
+            "<shape type='sphere'><float name='radius' value='$a'/></shape>",
+            "$a",
+            "error `$a` stands for nothing (write",
+        ),
+        (
+            "<shape type='spher'/>",
+            "spher",
+            "warning the shape `spher` has no counterpart: it is left out (did you mean `sphere`?)",
+        ),
+        ("<shape/>", "shape", "error `<shape>` needs `type=\"...\"`"),
+        ("<shap type='sphere'/>", "shap", "error Mitsuba knows no `<shap>` (did you mean `shape`?)"),
+        ("<shape type='sphere'><ref id='m'/></shape>", "m'/>", "error there is nothing with the id `m`"),
+        (
+            "<shape type='sphere'><float name='radus' value='2'/></shape>",
+            "2'/>",
+            "warning the shape `sphere` has no `radus`: it is left out (did you mean `radius`?)",
+        ),
+        (
+            "<shape type='sphere'><bsdf type='measured'/></shape>",
+            "measured",
+            "warning the material `measured` has no counterpart: matte grey is taken",
+        ),
+        (
+            "<shape type='sphere'><float name='a' value='1'/><float name='a' value='2'/></shape>",
+            "2'/>",
+            "error `a` is given twice",
+        ),
+        ("<bsdf type='diffuse' id='a'/><bsdf type='diffuse' id='a'/>", "a'/>", "error the id `a` is given twice"),
+        ("<shape type='serialized'/>", "serialized", "error the shape `serialized` needs a `filename`"),
+        (
+            "<shape type='serialized'><string name='filename' value='none.serialized'/><integer name='shape_index' value='-1'/></shape>",
+            "-1",
+            "error `shape_index` must be a whole number from 0 on",
+        ),
+        (
+            "<shape type='ply'><string name='filename' value='none.ply'/></shape>",
+            "none.ply",
+            "error the mesh cannot be had",
+        ),
+        (
+            "<shape type='ply'><string name='filename' value='../x.ply'/></shape>",
+            "../x.ply",
+            "error the mesh cannot be had",
+        ),
+        ("<include filename='scene.xml'/>", "scene.xml", "error `scene.xml` includes itself"),
+        (
+            "<sensor type='perspective'><float name='fov' value='200'/></sensor>",
+            "200",
+            "error a field of view must be more than 0",
+        ),
+        (
+            "<sensor type='perspective'><film type='hdrfilm'><string name='pixel_format' value='luminance'/></film></sensor>",
+            "luminance",
+            "warning the pixels `luminance` have no counterpart: red, green and blue are written",
+        ),
+        ("<sensor type='fisheye'/>", "fisheye", "warning the sensor `fisheye` has no counterpart"),
+        (
+            "<emitter type='constant'/><emitter type='constant'/>",
+            "constant",
+            "error a scene has one light that is infinitely far away",
+        ),
+        (
+            "<shape type='sphere'><transform name='to_world'><scale value='0'/></transform></shape>",
+            "scale",
+            "error after this the transform is not invertible",
+        ),
+        (
+            "<shape type='sphere'><transform name='to_world'><turn/></transform></shape>",
+            "turn",
+            "error a transform has no `<turn>`",
+        ),
+        (
+            "<shape type='sphere'><bsdf type='conductor'><string name='material' value='Gold'/></bsdf></shape>",
+            "Gold",
+            "error there is no metal `Gold`",
+        ),
+        (
+            "<shape type='sphere'><bsdf type='roughplastic'><string name='distribution' value='beckmann'/></bsdf></shape>",
+            "beckmann",
+            "warning the distribution `beckmann` has no counterpart",
+        ),
+        (
+            "<shape type='sphere'><bsdf type='roughplastic'/></shape>",
+            "roughplastic",
+            "warning without `distribution` Mitsuba means `beckmann`",
+        ),
+    ] {
+        let text = format!("<scene>{inner}</scene>");
+        let (_, told) = read(&text);
+        let expected = format!("scene.xml:1:{} {expected}", 1 + text.rfind(there).unwrap());
+        assert!(told.iter().any(|line| line.starts_with(&expected)), "{expected}: {told:#?}");
+    }
+}
+
+#[test]
+fn what_is_wrong_is_told_once() {
+    let told = |inner: &str| read(&format!("<scene>{inner}</scene>")).1;
+    for inner in [
+        "<shape type='sphere'><float name='radius' value='$a'/></shape>",
+        "<shape type='sphere'><point name='center' value='$a'/></shape>",
+        "<shape type='sphere'><transform name='to_world'><scale value='$a'/></transform></shape>",
+        "<bsdf type='diffuse' id='$a'/>",
+    ] {
+        let told = told(inner);
+        assert!(told.len() == 1 && told[0].contains("`$a` stands for nothing"), "{told:?}");
+    }
+    let told = told(
+        "<shape type='ply'><string name='filename' value='none.ply'/><bsdf type='diffuse'/>\
+        <emitter type='area'/></shape>",
+    );
+    assert!(told.len() == 1 && told[0].contains("the mesh cannot be had"), "{told:?}");
+}
+
+#[test]
+fn hostile_files_are_refused() {
+    // A circle of materials, of shapes, of files; a bomb of entities; much nesting; many instances
+    // of instances.
+    let (scene, told) = read(
+        "<scene><bsdf type='twosided' id='a'><ref id='b'/></bsdf><bsdf type='twosided' id='b'><ref id='a'/></bsdf>\
+        <shape type='sphere'><ref id='a'/></shape></scene>",
+    );
+    assert!(scene.is_none() && told[0].contains("nested more than"), "{told:?}");
+    let (scene, told) = read(
+        "<scene><shape type='shapegroup' id='g'><shape type='instance'><ref id='g'/></shape></shape>\
+        <shape type='instance'><ref id='g'/></shape></scene>",
+    );
+    assert!(scene.is_none() && told[0].contains("nested more than"), "{told:?}");
+    let (scene, told) = read("<!DOCTYPE s [<!ENTITY a 'aaaa'><!ENTITY b '&a;&a;'>]><scene/>");
+    assert!(scene.is_none() && told[0].contains("1:1 error"), "{told:?}");
+    let deep = "<bsdf type='twosided'>".repeat(3000);
+    assert!(read(&format!("<scene>{deep}</scene>")).1[0].contains("nested more than"));
+    let mut groups =
+        String::from("<shape type='shapegroup' id='g0'><shape type='sphere'/><shape type='sphere'/></shape>");
+    for i in 1..24 {
+        let inner = format!("<shape type='instance'><ref id='g{}'/></shape>", i - 1).repeat(4);
+        groups += &format!("<shape type='shapegroup' id='g{i}'>{inner}</shape>");
+    }
+    let (scene, told) = read(&format!("<scene>{groups}<shape type='instance'><ref id='g23'/></shape></scene>"));
+    assert!(scene.is_none() && told[0].contains("too many"), "{told:?}");
+    let folder = folder(&[
+        ("a.xml", b"<scene><include filename='b.xml'/></scene>"),
+        ("b.xml", b"<scene><include filename='a.xml'/></scene>"),
+    ]);
+    let (scene, told) = read_in(folder.path(), "a.xml", "<scene><include filename='b.xml'/></scene>");
+    assert!(scene.is_none() && told[0].starts_with("b.xml:1:27 error `a.xml` includes itself"), "{told:?}");
+    let (_, told) = read_in(folder.path(), "a.xml", "<scene><include filename='/etc/hostname'/></scene>");
+    assert!(told[0].starts_with("a.xml:1:27 error"), "{told:?}");
+}
+
+#[test]
+fn parts_of_a_file_and_changed_bytes_cause_no_panic() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/xml/own.xml");
+    let Ok(text) = std::fs::read(path) else { return };
+    for end in (0..text.len()).step_by(7) {
+        durer::fuzz::model(&text[..end], "x.xml");
+    }
+    let mut numbers = Random(7);
+    let mut random = |below| numbers.below(below);
+    for _ in 0..600 {
+        let mut changed = text.clone();
+        for _ in 0..1 + random(4) {
+            let at = random(changed.len());
+            changed[at] = changed[random(changed.len())];
+        }
+        durer::fuzz::model(&changed, "x.xml");
+    }
+}

@@ -1,0 +1,181 @@
+//! How bright things are, beside what Mitsuba 3.9.1 shows: lights that throw pictures, daylight,
+//! materials in even light, smoke.
+
+use super::conventions::{clean_in, picture};
+use super::{folder, material, read, read_in};
+use crate::beside::put_beside;
+use durer::load::{LoadOptions, load_text};
+use durer_diag::Diagnostics;
+use durer_render::integrator::{Integrate, Path, Settings, Transport};
+use durer_scene::light::Light;
+use durer_scene::math::{Vec3, fp};
+use durer_scene::sampler::SampleId;
+use durer_scene::scene::{Material, PictureBytes};
+use durer_scene::source::Source;
+
+#[test]
+fn projectors_and_spots_throw_pictures() {
+    // Red on the left, which is where Mitsuba's x goes, of a projector; of a spot on the other side.
+    let files: &[(&str, &[u8])] = &[("a.pfm", &picture([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]))];
+    let texture =
+        |name: &str| format!("<texture type='bitmap' name='{name}'><string name='filename' value='a.pfm'/></texture>");
+    for (text, at_front, expected) in [
+        (
+            format!("<emitter type='projector'><float name='fov' value='60'/>{}</emitter>", texture("irradiance")),
+            0,
+            true,
+        ),
+        (
+            format!("<emitter type='spot'><float name='cutoff_angle' value='40'/>{}</emitter>", texture("texture")),
+            0,
+            false,
+        ),
+    ] {
+        let scene = clean_in(files, &format!("{text}<shape type='sphere'/>"));
+        let lights = scene.lights.as_ref().unwrap();
+        let red = lights.iter().find_map(|light| match &light.value {
+            Light::Photometric(lamp) if lamp.color.x > 0.0 => Some(lamp),
+            _ => None,
+        });
+        let lamp = red.unwrap();
+        let profile = &scene.assets.profiles[&lamp.file.path];
+        let rows = profile.vertical.len();
+        // The middle of a pixel of the projector, where angles across begin and half around.
+        let vertical = profile.vertical.iter().position(|angle| *angle >= 16.102).unwrap();
+        let at = |horizontal: usize| profile.candela[horizontal * rows + vertical];
+        let half = profile.horizontal.len() / 2;
+        assert_eq!((at(at_front) > 0.5, at(half) > 0.5), (expected, !expected), "{text}");
+        if text.contains("projector") {
+            // Pi times the picture over the cube of the cosine.
+            let cosine = fp::sin_cos_degrees(16.102).1 as f32;
+            let found = at(0) * lamp.color.x / std::f32::consts::PI * cosine * cosine * cosine;
+            assert!((found - 1.0).abs() < 0.01, "{found}");
+        }
+    }
+}
+
+#[test]
+fn daylight_is_as_bright_on_level_ground_as_theirs() {
+    let text = "<emitter type='sunsky'><float name='turbidity' value='3'/><vector name='sun_direction' value='0,.8660254,.5'/>\
+                <transform name='to_world'><rotate x='1' angle='-90'/></transform></emitter><shape type='sphere'/>";
+    let (scene, told) = read(&format!("<scene version='3.0.0'>{text}</scene>"));
+    assert!(told.iter().all(|told| told.contains("Preetham")), "{told:?}");
+    let scene = scene.unwrap();
+    let Light::Directional(sun) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
+    assert!((sun.direction + Vec3::new(0.0, 0.866_025_4, 0.5)).length() < 1e-5, "{}", sun.direction);
+    // Mitsuba's sun 60 degrees high brings 1.276 of green to what faces it; Preetham's a little less.
+    let illuminance = std::f32::consts::PI * sun.color.y;
+    assert!((1.1..1.4).contains(&illuminance), "{illuminance}");
+    let name = &scene.background.environment.as_ref().unwrap().path;
+    let PictureBytes::Here(_, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
+    let texels = &bytes[bytes.len() - 1024 * 512 * 12..];
+    let mut level = 0.0;
+    for (i, texel) in texels.chunks_exact(12).enumerate() {
+        // From the lowest row up.
+        let angle = 180.0 * (511 - i / 1024) as f64 / 512.0 + 90.0 / 512.0;
+        let (sin, cos) = fp::sin_cos_degrees(angle);
+        let number =
+            |at: usize| f64::from(f32::from_le_bytes([texel[at], texel[at + 1], texel[at + 2], texel[at + 3]]));
+        let luminance = 0.2126 * number(0) + 0.7152 * number(4) + 0.0722 * number(8);
+        level += luminance * cos.max(0.0) * sin * 2.0 * (std::f64::consts::PI / 512.0) * (std::f64::consts::PI / 512.0)
+            / 2.0;
+    }
+    let lux = level * 683.0 * 106.856_9;
+    assert!((lux / 17_668.0 - 1.0).abs() < 0.02, "{lux}");
+    // By time: Mitsuba says where the sun is then, x south, y west, z up.
+    let text = "<emitter type='sun'><float name='latitude' value='48.8'/><float name='longitude' value='2.3'/>\
+                <float name='timezone' value='2'/><integer name='year' value='2024'/><integer name='month' value='6'/>\
+                <integer name='day' value='21'/><float name='hour' value='15'/><float name='minute' value='30'/></emitter>\
+                <shape type='sphere'/>";
+    let (scene, _) = read(&format!("<scene version='3.0.0'>{text}</scene>"));
+    let lights = scene.unwrap().lights.unwrap();
+    let Light::Directional(sun) = &lights[0].value else { panic!() };
+    assert!((sun.direction + Vec3::new(0.367_118, 0.377_866, 0.849_966)).length() < 5e-3, "{}", sun.direction);
+}
+
+/// What a ball of a material shows in even light on the mean.
+fn ball(bsdf: &str) -> Vec3 {
+    let text = format!(
+        "<scene version='3.0.0'><sensor type='perspective'/><emitter type='constant'/><shape type='sphere'>{bsdf}</shape></scene>"
+    );
+    let (mut files, mut found, options) = (Default::default(), Diagnostics::default(), LoadOptions::default());
+    let loaded = load_text(std::path::Path::new("a.xml"), text.as_bytes().into(), &options, &mut files, &mut found);
+    let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut found)).unwrap();
+    let settings = Settings { bounces: 8, ..durer_render::render::Job::default().settings };
+    let path = Path::new(&world, settings, Transport::default());
+    let n = 1 << 14;
+    let one = |i: u32| {
+        let id = SampleId::new(1, (0, 0), i);
+        let place = durer_scene::bsdf::warp::disc(id.pair(40));
+        let ray = durer_scene::math::Ray::new(Vec3::new(place.x, place.y, 5.0), Vec3::NEG_Z);
+        path.radiance(&ray, id, &mut ())
+    };
+    (0..n).map(one).sum::<Vec3>() / n as f32
+}
+
+#[test]
+fn balls_are_as_bright_as_theirs() {
+    // Means of what Mitsuba 3.9.1 gives for 200,000 pairs of directions by their cosines.
+    for (bsdf, expected) in [
+        ("<float name='specular' value='0'/><float name='roughness' value='1'/>", [0.7456, 0.4260, 0.2130]),
+        ("<float name='specular' value='.5'/><float name='roughness' value='.5'/>", [0.7638, 0.4614, 0.2597]),
+        ("<float name='specular' value='1'/><float name='roughness' value='.3'/>", [0.8092, 0.5134, 0.3162]),
+    ] {
+        let color = "<rgb name='base_color' value='.7,.4,.2'/>";
+        let shown = ball(&format!("<bsdf type='principled'>{color}{bsdf}</bsdf>"));
+        assert!((shown / Vec3::from(expected) - 1.0).abs().max_element() < 0.01, "{bsdf}: {shown}");
+    }
+    for (alpha, expected) in [(0.1, 0.4910), (0.3, 0.3660)] {
+        let shown = ball(&format!(
+            "<bsdf type='roughplastic'><string name='distribution' value='ggx'/><float name='alpha' value='{alpha}'/></bsdf>"
+        ));
+        assert!((shown / expected - 1.0).abs().max_element() < 0.02, "{alpha}: {shown}");
+    }
+}
+
+#[test]
+fn volumes_are_densities_where_their_transform_puts_them() {
+    // Two cells along x, 0.5 and 4, of a box from 0 to (2, 1, 1).
+    let mut volume = b"VOL\x03".to_vec();
+    [1_i32, 2, 1, 1, 1].iter().for_each(|n| volume.extend(n.to_le_bytes()));
+    [0.0_f32, 0.0, 0.0, 2.0, 1.0, 1.0, 0.5, 4.0].iter().for_each(|x| volume.extend(x.to_le_bytes()));
+    let medium = |more: &str, albedo: &str| {
+        format!(
+            "<shape type='cube'><bsdf type='null'/><medium type='heterogeneous' name='interior'>\
+             <volume name='sigma_t' type='gridvolume'><string name='filename' value='smoke.vol'/>{more}\
+             <transform name='to_world'><scale value='2'/><translate x='5'/></transform></volume>{albedo}\
+             <float name='scale' value='3'/></medium></shape>"
+        )
+    };
+    let even = "<volume name='albedo' type='constvolume'><rgb name='value' value='.9,.6,.3'/></volume>";
+    let files: &[(&str, &[u8])] = &[("smoke.vol", &volume)];
+    for (more, edge) in [("", [2.0, 0.0, 0.0]), ("<boolean name='use_grid_bbox' value='true'/>", [4.0, 0.0, 0.0])] {
+        let scene = clean_in(files, &medium(more, even));
+        let Material::Principled(m) = material(&scene) else { panic!() };
+        assert_eq!(m.transmission_density.as_ref().unwrap().path, "smoke.vol");
+        assert_eq!(m.transmission_density_box, [[5.0, 0.0, 0.0], edge, [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]);
+        let scattered = m.transmission_scatter / m.transmission_depth;
+        assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
+        // Beside the scene's text it is the same file.
+        let (made, beside) = put_beside(&scene, "kept", &Source::folder(&std::env::temp_dir()));
+        let Material::Principled(m) = material(&made) else { panic!() };
+        assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
+        assert!(beside.contains(&("kept/smoke.vol".to_string(), volume.clone())));
+    }
+    // Of an albedo by a volume the mean is taken; what is no volume is refused.
+    let told = |files: &[(&str, &[u8])], albedo: &str| {
+        let folder = folder(files);
+        read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{}</scene>", medium("", albedo)))
+    };
+    let by_volume = "<volume name='albedo' type='gridvolume'><string name='filename' value='albedo.vol'/></volume>";
+    let mut albedo = volume.clone();
+    albedo[52..56].copy_from_slice(&0.25_f32.to_le_bytes());
+    let (scene, said) = told(&[files[0], ("albedo.vol", &albedo)], by_volume);
+    let Material::Principled(m) = material(scene.as_ref().unwrap()).clone() else { panic!() };
+    assert!((m.transmission_scatter / m.transmission_depth - Vec3::splat(3.0 * 0.375)).abs().max_element() < 1e-5);
+    assert!(said.iter().all(|said| said.contains("its mean is taken")), "{said:?}");
+    let (_, said) = told(&[("smoke.vol", &volume[..55])], even);
+    assert!(said.iter().any(|said| said.contains("the file ends after 1 of 2 densities")), "{said:?}");
+    let (_, said) = told(&[], even);
+    assert!(said.iter().any(|said| said.contains("smoke.vol")), "{said:?}");
+}

@@ -1,0 +1,527 @@
+//! Conventions of Mitsuba, in closed form. Where the documents do not tell, Mitsuba 3.9.1 was
+//! asked.
+
+use super::{clean, folder, material, objects, read, read_in};
+use durer_scene::camera::{Camera, Handedness};
+use durer_scene::describe::FileName;
+use durer_scene::light::Light;
+use durer_scene::material::principled::Walls;
+use durer_scene::material::{HairMaterial, PrincipledMaterial};
+use durer_scene::math::{Vec2, Vec3, fp};
+use durer_scene::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
+
+pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
+    let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
+    let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
+    (**layers).clone()
+}
+
+/// The camera of a film of 200 x 100 pixels.
+fn camera(more: &str) -> Camera {
+    let film = "<film type='hdrfilm'><integer name='width' value='200'/><integer name='height' value='100'/></film>";
+    clean(&format!("<sensor {more}{film}</sensor><shape type='sphere'/>")).camera.unwrap()
+}
+
+fn tan(degrees: f32) -> f32 {
+    fp::tan_f64(f64::from(degrees).to_radians()) as f32
+}
+
+const LOOK: &str = "<transform name='to_world'><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>";
+
+#[test]
+fn views_are_told_across_any_side() {
+    // 90 degrees across x: half is 1; the film is twice as wide as high.
+    for (axis, fov, half) in [
+        ("x", 90.0, 1.0),
+        ("larger", 90.0, 1.0),
+        ("y", 90.0, 2.0),
+        ("smaller", 90.0, 2.0),
+        ("diagonal", 90.0, 2.0 / 5f32.sqrt()),
+    ] {
+        let text = format!(
+            "type='perspective'><float name='fov' value='{fov}'/><string name='fov_axis' value='{axis}'/>{LOOK}"
+        );
+        let Camera::Perspective(camera) = camera(&text) else { panic!() };
+        assert!((tan(0.5 * camera.angle) - half).abs() < 1e-5, "{axis}: {}", camera.angle);
+        assert_eq!((camera.center, camera.direction, camera.up), (Vec3::new(0.0, 0.0, 5.0), Vec3::NEG_Z, Vec3::Y));
+    }
+    // 50 mm on film of 36 x 24 mm, across the diagonal: 0.43267 half.
+    let Camera::Perspective(usual) = camera(&format!("type='perspective'>{LOOK}")) else { panic!() };
+    let half = (36f32 * 36.0 + 24.0 * 24.0).sqrt() / 100.0 * 2.0 / 5f32.sqrt();
+    assert!((tan(0.5 * usual.angle) - half).abs() < 1e-5);
+    let mirrored =
+        "<transform name='to_world'><scale x='-1'/><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>";
+    let Camera::ThinLens(lens) = camera(&format!("type='perspective'>{mirrored}")) else { panic!() };
+    assert_eq!(lens.handedness, Handedness::Left);
+    let flat =
+        "<transform name='to_world'><scale x='3' y='3'/><lookat origin='0,0,5' target='0,0,0' up='0,1,0'/></transform>";
+    let Camera::Orthographic(flat) = camera(&format!("type='orthographic'>{flat}")) else { panic!() };
+    assert!((flat.size - 6.0).abs() < 1e-6);
+}
+
+#[test]
+fn what_is_up_where_nothing_is_said() {
+    // As Mitsuba 3.9.1 has it: an axis across the direction.
+    for (origin, target, up) in [
+        ("0,2,6", "0,.6,0", [1.0, 0.0, 0.0]),
+        ("1,0,0", "0,3,-2", [0.953452, 0.139643, -0.267261]),
+        ("0,-1,0", "1,2,4", [0.978446, -0.064661, -0.196116]),
+        ("0,5,0", "0,0,0", [1.0, 0.0, 0.0]),
+    ] {
+        for more in ["", "up='0,0,0'"] {
+            let look =
+                format!("<transform name='to_world'><lookat origin='{origin}' target='{target}' {more}/></transform>");
+            let Camera::Perspective(camera) = camera(&format!("type='perspective'>{look}")) else { panic!() };
+            assert!((camera.up - Vec3::from_array(up)).length() < 1e-5, "{origin}: {}", camera.up);
+        }
+    }
+}
+
+#[test]
+fn what_the_picture_is_to_be() {
+    let scene = clean(
+        "<integrator type='path'><integer name='max_depth' value='7'/></integrator><sensor type='perspective'>\
+         <sampler type='multijitter'><integer name='sample_count' value='36'/></sampler></sensor><shape type='cube'/>",
+    );
+    assert_eq!(scene.wishes.size, Some((768, 576)));
+    assert_eq!((scene.wishes.samples, scene.wishes.bounces), (Some(36), Some(5)));
+    let film = |more: &str| {
+        let inner = format!("<film type='hdrfilm'><integer name='width' value='96'/>{more}</film>");
+        read(&format!("<scene><sensor type='perspective'>{inner}</sensor><shape type='cube'/></scene>"))
+    };
+    let number = |name: &str, value: i32| format!("<integer name='crop_{name}' value='{value}'/>");
+    let part = number("offset_x", 10) + &number("offset_y", 20) + &number("height", 32);
+    let (scene, told) = film(&(part.clone() + &number("width", 86)));
+    assert_eq!((scene.unwrap().wishes.crop, told), (Some((10, 20, 86, 32)), Vec::new()));
+    for wrong in [number("width", 87), number("width", 0), number("width", -1), String::new()] {
+        let (scene, told) = film(&(part.clone() + &wrong));
+        assert!(scene.is_none() && told[0].contains("the crop does not lie in the picture of 96 x 576"), "{told:?}");
+    }
+}
+
+#[test]
+fn lights_have_their_units() {
+    let of = |text: &str| clean(&format!("{text}<shape type='sphere'/>")).lights.unwrap()[0].value.clone();
+    let Light::Point(point) = of("<emitter type='point'><float name='intensity' value='2'/></emitter>") else {
+        panic!()
+    };
+    assert!((point.color.x - 2.0 / std::f32::consts::PI).abs() < 1e-6);
+    let spot =
+        "<emitter type='spot'><float name='cutoff_angle' value='40'/><float name='beam_width' value='40'/></emitter>";
+    let Light::Spot(spot) = of(spot) else { panic!() };
+    assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 40.0, Vec3::Z));
+    // One that fades does so by the angle: a lamp of its intensity.
+    let text = "<emitter type='spot'><float name='intensity' value='3'/></emitter><shape type='sphere'/>";
+    let scene = clean(text);
+    let Light::Photometric(lamp) = &scene.lights.as_ref().unwrap()[0].value else { panic!() };
+    let profile = &scene.assets.profiles[&lamp.file.path];
+    assert_eq!((lamp.direction, lamp.color), (Vec3::Z, Vec3::splat(3.0)));
+    assert_eq!(profile.vertical, [0.0, 15.0, 20.0]);
+    assert!(profile.candela.iter().zip([1.0, 1.0, 0.0]).all(|(found, wanted)| (found - wanted).abs() < 1e-6));
+    // An even spectrum that shines is not white, and one that reflects is.
+    let lit = |radiance: &str| {
+        let emitter = format!("<emitter type='area'>{radiance}</emitter>");
+        let m = layers(&emitter);
+        m.emission_luminance * m.emission_color
+    };
+    let expected = Vec3::new(0.843356, 0.663804, 0.636241);
+    assert!((lit("<spectrum name='radiance' value='.7'/>") - expected).abs().max_element() < 2e-3);
+    assert!((lit("<float name='radiance' value='.7'/>") - 0.7).abs().max_element() < 1e-6);
+    let curve = "value='400:0.1, 500:0.2, 600:0.3, 700:0.9'";
+    let expected = Vec3::new(0.526613, 0.221827, 0.123121);
+    assert!((lit(&format!("<spectrum name='radiance' {curve}/>")) - expected).abs().max_element() < 2e-3);
+    let matte = layers(&format!("<bsdf type='diffuse'><spectrum name='reflectance' {curve}/></bsdf>"));
+    assert!((matte.base_color - Vec3::new(0.445636, 0.235004, 0.139167)).abs().max_element() < 2e-3);
+}
+
+#[test]
+fn materials_have_their_indices_and_alphas() {
+    let glass = layers("<bsdf type='dielectric'><string name='int_ior' value='water'/></bsdf>");
+    assert!((glass.specular_ior - 1.333 / 1.000277).abs() < 1e-6 && glass.transmission_weight == 1.0);
+    let rough = layers(
+        "<bsdf type='roughconductor'><float name='alpha' value='.25'/><string name='distribution' value='ggx'/></bsdf>",
+    );
+    assert_eq!((rough.specular_roughness, rough.base_metalness, rough.base_color), (0.5, 1.0, Vec3::ONE));
+    let gold = layers("<bsdf type='conductor'><string name='material' value='Au'/></bsdf>");
+    // Fresnel's equations at right angles, for red.
+    let (n, k) = (0.143f32, 3.983f32);
+    let expected = ((n - 1.0) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
+    assert!((gold.base_color.x - expected).abs() < 1e-5);
+    let masked = layers("<bsdf type='mask'><float name='opacity' value='.25'/><bsdf type='diffuse'/></bsdf>");
+    assert_eq!((masked.opacity, masked.base_color), (0.25, Vec3::splat(0.5)));
+    let disney = layers(
+        "<bsdf type='principled'><float name='specular' value='.5'/><float name='roughness' value='.3'/></bsdf>",
+    );
+    // A reflectance of 0.04 at right angles.
+    let root = (disney.specular_ior - 1.0) / (disney.specular_ior + 1.0);
+    assert!((root * root - 0.04).abs() < 1e-6 && (disney.specular_roughness - 0.3).abs() < 1e-6);
+    let scene = clean(
+        "<shape type='sphere'><bsdf type='blendbsdf'><float name='weight' value='.25'/><bsdf type='diffuse'/>\
+        <bsdf type='conductor'/></bsdf></shape>",
+    );
+    assert!(format!("{:?}", material(&scene)).contains("share: 0.75"));
+}
+
+#[test]
+fn pictures_say_numbers_too() {
+    let fields = |name: &str, one: f32, other: f32| {
+        format!(
+            "<texture name='{name}' type='checkerboard'><rgb name='color0' value='{one}'/>\
+             <rgb name='color1' value='{other}'/></texture>"
+        )
+    };
+    // The values of a picture that a material names: numbers without a curve. Mitsuba exchanges
+    // fields where it asks for numbers.
+    let check = |bsdf: &str, get: &dyn Fn(&PrincipledMaterial) -> Option<&FileName>, [other, one]: [f32; 2]| {
+        let wanted = [one, other];
+        let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
+        let Material::Principled(layers) = material(&scene) else { panic!("{bsdf}") };
+        let name = get(layers).unwrap_or_else(|| panic!("{bsdf} has a picture"));
+        let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&name.path].bytes else { panic!() };
+        let image = durer_image::read(bytes, path).unwrap();
+        for (pixel, wanted) in image.pixels.iter().zip(wanted) {
+            // Fields have eight bits, and so has what is made of them.
+            assert!((pixel.x - wanted).abs() < 1.5 / 255.0, "{bsdf}: {} and not {wanted}", pixel.x);
+        }
+        (**layers).clone()
+    };
+    // The root of alpha is our roughness.
+    let (ggx, alpha) = ("<string name='distribution' value='ggx'/>", fields("alpha", 0.04, 0.25));
+    let metal = format!("<bsdf type='roughconductor'>{ggx}{alpha}</bsdf>");
+    let metal = check(&metal, &|m| m.specular_roughness_texture.as_ref(), [0.2, 0.5]);
+    assert_eq!(metal.specular_roughness, 1.0);
+    let inner = "<bsdf type='diffuse'/>";
+    let mask = format!("<bsdf type='mask'>{}{inner}</bsdf>", fields("opacity", 0.0, 1.0));
+    check(&mask, &|m| m.opacity_texture.as_ref(), [0.0, 1.0]);
+    // The weight is that of the second.
+    let weight = fields("weight", 0.2, 0.7);
+    let blend = format!("<bsdf type='blendbsdf'>{weight}{inner}<bsdf type='conductor'/></bsdf>");
+    let scene = clean(&format!("<shape type='sphere'>{blend}</shape>"));
+    let Material::Solid(durer_scene::material::Solid::Mix(mix), _) = material(&scene) else { panic!() };
+    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[&mix.share_texture.as_ref().unwrap().path].bytes
+    else {
+        panic!()
+    };
+    let image = durer_image::Encoded::open(bytes, path).unwrap();
+    let image = image.read(1 << 20, durer_image::decode_linear).unwrap();
+    let first: Vec<f32> = image.pixels.iter().map(|pixel| pixel.x).collect();
+    assert!(mix.share == 1.0 && first.iter().any(|x| (x - 0.8).abs() < 3e-3), "{first:?}");
+    assert!(first.iter().any(|x| (x - 0.3).abs() < 3e-3), "{first:?}");
+    let bump =
+        format!("<bsdf type='bumpmap'>{}<float name='scale' value='.3'/>{inner}</bsdf>", fields("arbitrary", 0.5, 0.9));
+    assert_eq!(check(&bump, &|m| m.bump_texture.as_ref(), [0.5, 0.9]).bump_height, 0.3);
+    // Of colours it is the luminance.
+    let colors = "<texture name='opacity' type='checkerboard'><rgb name='color0' value='0,1,0'/>\
+        <rgb name='color1' value='1,0,0'/></texture>";
+    check(&format!("<bsdf type='mask'>{colors}{inner}</bsdf>"), &|m| m.opacity_texture.as_ref(), [0.7152, 0.2126]);
+    let parts = fields("roughness", 0.3, 0.6) + &fields("metallic", 0.0, 0.7);
+    let disney = format!("<bsdf type='principled'>{parts}</bsdf>");
+    check(&disney, &|m| m.base_metalness_texture.as_ref(), [0.0, 0.7]);
+    let disney = check(&disney, &|m| m.specular_roughness_texture.as_ref(), [0.3, 0.6]);
+    assert!((disney.specular_roughness - 1.0).abs() < 1e-6 && disney.base_metalness == 1.0);
+}
+
+/// The only mesh of a scene.
+pub(super) fn mesh(scene: &Scene) -> &durer_scene::shape::MeshData {
+    scene.assets.meshes.values().next().unwrap()
+}
+
+#[test]
+fn coordinates_of_textures_are_turned_over() {
+    // Mitsuba has v = 0 at the upper border of a picture, and the lower left corner of a rectangle
+    // at 0 0.
+    let scene = clean("<shape type='rectangle'/>");
+    let lower_left = mesh(&scene).positions.iter().position(|p| p.x < 0.0 && p.y < 0.0).unwrap();
+    assert_eq!(mesh(&scene).uvs[lower_left], Vec2::new(0.0, 1.0));
+    let scene = clean("<shape type='rectangle'><boolean name='flip_normals' value='true'/></shape>");
+    let data = mesh(&scene);
+    let [a, b, c] = data.triangles[0].map(|i| data.positions[i as usize]);
+    assert!((b - a).cross(c - a).z < 0.0 && data.normals[0] == Vec3::NEG_Z);
+}
+
+#[test]
+fn what_is_inside_is_extinction_times_albedo() {
+    let scene = clean(
+        "<medium type='homogeneous' id='m'><float name='sigma_t' value='2'/><float name='albedo' value='.25'/></medium>\
+         <shape type='sphere'><bsdf type='null'/><ref id='m' name='interior'/></shape>",
+    );
+    let Material::Principled(m) = material(&scene) else { panic!() };
+    assert_eq!((m.specular_ior, m.transmission_depth, m.transmission_scatter), (1.0, 0.5, Vec3::splat(0.25)));
+    assert!((m.transmission_color.x - fp::exp(-1.0)).abs() < 1e-6);
+    assert_eq!(objects(&scene).len(), 1);
+    // Nothing alone is not shown.
+    let (scene, told) = read("<scene><shape type='sphere'><bsdf type='null'/></shape></scene>");
+    assert!(scene.is_some_and(|scene| objects(&scene).is_empty()), "{told:?}");
+}
+
+#[test]
+fn axes_that_are_not_of_length_1_are_told() {
+    let told = |version: &str, axis: &str| {
+        let rotate = format!("<transform name='to_world'><rotate {axis} angle='40'/></transform>");
+        read(&format!("<scene version='{version}'><shape type='sphere'>{rotate}</shape></scene>")).1
+    };
+    assert!(told("3.0.0", "x='1' y='2' z='.5'")[0].contains("not of length 1"));
+    assert!(told("0.6.0", "x='1' y='2' z='.5'").is_empty() && told("3.0.0", "x='.6' y='.8'").is_empty());
+}
+
+/// A scene of a folder's files, of which nothing is to be said.
+pub(super) fn clean_in(files: &[(&str, &[u8])], inner: &str) -> Scene {
+    let folder = folder(files);
+    let (scene, told) = read_in(folder.path(), "scene.xml", &format!("<scene version='3.0.0'>{inner}</scene>"));
+    assert_eq!(told, [""; 0], "{inner}");
+    scene.unwrap()
+}
+
+/// A picture of 2 x 1 pixels.
+pub(super) fn picture(pixels: [[f32; 3]; 2]) -> Vec<u8> {
+    let mut bytes = b"PF\n2 1\n-1.0\n".to_vec();
+    pixels.as_flattened().iter().for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes
+}
+
+#[test]
+fn lamps_scatter_nothing_unless_they_say_so() {
+    let lamp = "<emitter type='area'><rgb name='radiance' value='2'/></emitter>";
+    let alone = layers(lamp);
+    assert_eq!((alone.base_color, alone.emission_luminance), (Vec3::ZERO, 2.0));
+    assert_eq!(layers(&format!("{lamp}<bsdf type='diffuse'/>")).base_color, Vec3::splat(0.5));
+    assert_eq!(layers("").base_color, Vec3::splat(0.5));
+    // A sphere turned inside out is a dome around what it lights.
+    let dome = format!("<boolean name='flip_normals' value='true'/>{lamp}");
+    let (scene, told) = read(&format!("<scene><shape type='sphere'>{dome}</shape></scene>"));
+    assert!(told[0].contains("it shines outwards as well"), "{told:?}");
+    let Material::Principled(dome) = material(scene.as_ref().unwrap()) else { panic!() };
+    assert_eq!((dome.emission_luminance, dome.walls), (2.0, Walls::Thin));
+}
+
+#[test]
+fn pictures_of_lamps_may_be_brighter_than_1() {
+    let lamp = "<shape type='rectangle'><emitter type='area'><texture name='radiance' type='bitmap'>\
+        <string name='filename' value='lamp.pfm'/></texture></emitter></shape>";
+    let scene = clean_in(&[("lamp.pfm", &picture([[8.0, 2.0, 0.0], [4.0, 4.0, 4.0]]))], lamp);
+    let Material::Principled(lamp) = material(&scene) else { panic!() };
+    assert_eq!((lamp.emission_luminance, lamp.emission_color), (8.0, Vec3::ONE));
+    let name = &lamp.emission_texture.as_ref().unwrap().path;
+    let PictureBytes::Here(path, bytes) = &scene.assets.pictures[name].bytes else { panic!() };
+    let image = durer_image::read(bytes, path).unwrap();
+    let wanted = [Vec3::new(1.0, 0.25, 0.0), Vec3::splat(0.5)];
+    for (pixel, wanted) in image.pixels.iter().zip(wanted) {
+        let light = Vec3::from_array(pixel.to_array().map(srgb));
+        assert!((light - wanted).abs().max_element() < 0.01, "{light} and not {wanted}");
+    }
+}
+
+/// A number of eight bits with sRGB's curve, without it.
+fn srgb(number: f32) -> f32 {
+    durer_image::decode_srgb((255.0 * number).round() as u8)
+}
+
+#[test]
+fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
+    let grey = b"P6\n1 1\n255\n\x80\x80\x80";
+    let of = |raw: bool| {
+        let inner = format!(
+            "<shape type='rectangle'><bsdf type='diffuse'><texture name='reflectance' type='bitmap'>\
+             <string name='filename' value='grey.ppm'/><boolean name='raw' value='{raw}'/></texture></bsdf></shape>"
+        );
+        let scene = clean_in(&[("grey.ppm", grey)], &inner);
+        let Material::Principled(layers) = material(&scene) else { panic!() };
+        let picture = &scene.assets.pictures[&layers.base_color_texture.as_ref().unwrap().path];
+        // What a picture leaves open is no hole.
+        assert_eq!(picture.mapping.cutoff, Some(0.0));
+        match &picture.bytes {
+            PictureBytes::File(_) => srgb(128.0 / 255.0),
+            PictureBytes::Here(path, bytes) => srgb(durer_image::read(bytes, path).unwrap().pixels[0].x),
+        }
+    };
+    assert!((of(false) - 0.2159).abs() < 1e-3 && (of(true) - 128.0 / 255.0).abs() < 4e-3);
+}
+
+#[test]
+fn glass_in_glass_has_its_own_index() {
+    // Water in glass: its index outside is that of the glass, of which rays know.
+    let body = |radius: f32, inside: &str, outside: &str| {
+        let index = |name: &str, value: &str| match value.parse::<f32>() {
+            Ok(value) => format!("<float name='{name}' value='{value}'/>"),
+            Err(_) => format!("<string name='{name}' value='{value}'/>"),
+        };
+        let (inside, outside) = (index("int_ior", inside), index("ext_ior", outside));
+        format!(
+            "<shape type='sphere'><float name='radius' value='{radius}'/><bsdf type='dielectric'>{inside}{outside}\
+             </bsdf></shape>"
+        )
+    };
+    let indices = |text: &str| -> Vec<f32> {
+        let scene = clean(text);
+        let index =
+            |object: &&durer_scene::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
+                Material::Principled(layers) => layers.specular_ior,
+                _ => panic!(),
+            };
+        objects(&scene).iter().map(index).collect()
+    };
+    let air = 1.000277;
+    let near = |found: Vec<f32>, wanted: &[f32]| {
+        assert!(found.iter().zip(wanted).all(|(a, b)| (a - b).abs() < 1e-5), "{found:?} and not {wanted:?}");
+    };
+    for (glass, name) in [("1.5046", "bk7"), ("1.5", "1.5")] {
+        let glass: f32 = glass.parse().unwrap();
+        let outer = body(1.0, name, "air");
+        near(indices(&(outer.clone() + &body(0.5, "water", name))), &[glass / air, 1.333 / air]);
+        near(indices(&(body(0.5, "air", name) + &outer)), &[1.0, glass / air]);
+    }
+    // Where no such body is around, what is written is a quotient.
+    near(indices(&body(1.0, "water", "1.5")), &[1.333 / 1.5]);
+}
+
+#[test]
+fn tints_of_metals_count_at_all_angles() {
+    let metal =
+        |more: &str| layers(&format!("<bsdf type='conductor'><string name='material' value='Au'/>{more}</bsdf>"));
+    let (plain, tinted) = (metal(""), metal("<rgb name='specular_reflectance' value='.5,.25,.5'/>"));
+    let tint = Vec3::new(0.5, 0.25, 0.5);
+    // At 82 degrees a metal reflects Schlick's value times its specular colour.
+    let at_82 = |m: &PrincipledMaterial| {
+        let schlick = m.base_color + (Vec3::ONE - m.base_color) * fp::pow(6.0 / 7.0, 5.0);
+        schlick * m.specular_color
+    };
+    assert!((tinted.base_color - tint * plain.base_color).abs().max_element() < 1e-6);
+    assert!((at_82(&tinted) - tint * at_82(&plain)).abs().max_element() < 1e-6);
+}
+
+/// Two faces that are folded, of which one vertex has a colour.
+const FOLDED: &str = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+    property float u\nproperty float v\nproperty float r\nproperty float g\nproperty float b\n\
+    element face 2\nproperty list uchar int vertex_indices\nend_header\n\
+    0 0 0 0 0 .5 .2 .8\n1 0 0 1 0 1 1 1\n1 1 0 1 1 1 1 1\n0 1 1 0 1 1 1 1\n3 0 1 2\n3 0 2 3\n";
+
+#[test]
+fn meshes_of_files_are_smooth_and_without_colours() {
+    let of = |more: &str| {
+        let inner = format!("<shape type='ply'><string name='filename' value='folded.ply'/>{more}</shape>");
+        mesh(&clean_in(&[("folded.ply", FOLDED.as_bytes())], &inner)).clone()
+    };
+    let plain = of("");
+    assert!(plain.colors.is_empty() && !plain.flat && plain.tangents.is_empty());
+    // At the fold both faces count by their angles there: a right one, and of the other 60 degrees.
+    let a = plain.triangles[0].iter().position(|&i| plain.positions[i as usize] == Vec3::ZERO).unwrap();
+    let [face, other] = [Vec3::Z, Vec3::new(1.0, -1.0, 1.0) / 3f32.sqrt()];
+    let angles = [45f32.to_radians(), 60f32.to_radians()];
+    let wanted = (angles[0] * face + angles[1] * other).normalize();
+    let found = plain.normals[plain.triangle_normals[0][a] as usize];
+    assert!((found - wanted).length() < 1e-5, "{found} and not {wanted}");
+    assert!(of("<boolean name='face_normals' value='true'/>").flat);
+    let colored = of("<bsdf type='diffuse'><texture name='reflectance' type='mesh_attribute'>\
+        <string name='name' value='vertex_color'/></texture></bsdf>");
+    // Numbers of PLY are light without a curve.
+    let wanted = [0.5, 0.2, 0.8];
+    let found = colored.colors[0];
+    assert!((0..3).all(|k| (found[k] - wanted[k]).abs() < 4e-3) && found[3] == 1.0, "{found:?}");
+}
+
+#[test]
+fn pictures_of_normals_lean_them_to_where_u_and_v_grow() {
+    let leaning = "<bsdf type='normalmap'><texture name='normalmap' type='bitmap'><boolean name='raw' value='true'/>\
+        <string name='filename' value='n.ppm'/></texture><bsdf type='diffuse'/></bsdf>";
+    let files: [(&str, &[u8]); 2] = [("n.ppm", b"P6\n1 1\n255\n\x80\x80\xff"), ("folded.ply", FOLDED.as_bytes())];
+    for shape in [
+        "<shape type='rectangle'>",
+        "<shape type='ply'><string name='filename' value='folded.ply'/>",
+        "<shape type='cylinder'>",
+    ] {
+        let scene = clean_in(&files, &format!("{shape}{leaning}</shape>"));
+        let data = mesh(&scene);
+        assert_eq!(data.tangents.len(), data.positions.len(), "{shape}");
+        for (corners, uvs) in data.triangles.iter().zip(&data.triangle_uvs) {
+            for k in 0..3 {
+                // Along the tangent u grows.
+                let tangent = data.tangents[corners[k] as usize];
+                let [x, y, z, side] = tangent;
+                let along = (0..3).filter(|&l| l != k).map(|l| {
+                    let way = data.positions[corners[l] as usize] - data.positions[corners[k] as usize];
+                    (way.dot(Vec3::new(x, y, z)), data.uvs[uvs[l] as usize].x - data.uvs[uvs[k] as usize].x)
+                });
+                for (way, u) in along.filter(|(way, u)| way.abs() > 0.1 && u.abs() > 0.1) {
+                    assert!(way * u > 0.0, "{shape}: {tangent:?}");
+                }
+                assert_eq!(side, 1.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn axes_of_cylinders_are_those_of_mitsuba() {
+    // Where u is 0 on cylinders of radius 1 in Mitsuba 3.9.1, as an offset from the axis.
+    for (to, start) in [
+        ([0.0, 0.0, 2.0], [1.0, 0.0, 0.0]),
+        ([0.0, 1.0, 0.0], [1.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [0.0, 0.0, -1.0]),
+        ([0.5, 1.0, -2.0], [0.97462, -0.05180, 0.21776]),
+        ([-1.0, 0.2, 0.3], [0.30987, 0.13836, 0.94066]),
+    ] {
+        let [x, y, z] = to;
+        let scene = clean(&format!(
+            "<shape type='cylinder'><point name='p0' x='0' y='0' z='0'/><point name='p1' x='{x}' y='{y}' z='{z}'/></shape>"
+        ));
+        let (data, mut map) = (mesh(&scene), glam::DAffine3::IDENTITY);
+        let mut object = &scene.root.as_ref().unwrap().objects[0];
+        while let Node::Transform(ops, inner) = &object.node {
+            (map, object) = (map * MatrixOp::product(ops, 0), inner);
+        }
+        let number = data.uvs.iter().position(|uv| uv.x == 0.0).unwrap();
+        let corner = data.triangle_uvs.iter().zip(&data.triangles).find_map(|(uvs, corners)| {
+            uvs.iter().position(|&uv| uv == number as u32).map(|k| data.positions[corners[k] as usize])
+        });
+        let found = map.transform_vector3(corner.unwrap().with_z(0.0).as_dvec3()).as_vec3();
+        assert!((found - Vec3::from_array(start)).length() < 2e-3, "{to:?}: {found} and not {start:?}");
+    }
+}
+
+#[test]
+fn hair_on_curves_of_a_file() {
+    let folder = folder(&[
+        ("hair.txt", b"0 0 0 0.1\n1 0 0 0.1\n2 0 0 0.1\n3 0 0 0.1\n\n0 1 0 0.2\n1 1 0 0.2\n2 1 0 0.2\n3 1 0 0.2\n"),
+        ("short.txt", b"0 0 0 0.1\n1 0 0 0.1\n"),
+        ("bad.txt", b"0 0 0 0.1\n1 0 0\n"),
+        ("thin.txt", b"0 0 0 0.1\n1 0 0 -1\n"),
+    ]);
+    let text = |kind: &str, file: &str| {
+        format!(
+            "<scene version='3.0.0'><shape type='{kind}'><string name='filename' value='{file}'/>\
+             <bsdf type='hair'><float name='eumelanin' value='0.5'/><float name='scale_tilt' value='3'/>\
+             <float name='int_ior' value='1.6'/><float name='ext_ior' value='1'/></bsdf></shape></scene>"
+        )
+    };
+    // Splines end flat, and lines in halves of balls.
+    for (kind, from, to, ball) in [("bsplinecurve", 1.0, 2.0, 0.0), ("linearcurve", 0.0, 3.0, 0.2)] {
+        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, "hair.txt"));
+        assert_eq!(told, [""; 0]);
+        let scene = scene.unwrap();
+        let Material::Hair(hair) = material(&scene) else { panic!("{kind}") };
+        let wanted =
+            HairMaterial { eumelanin: 0.5, pheomelanin: 0.2, scale_tilt: 3.0, ior: 1.6, ..HairMaterial::default() };
+        assert_eq!(*hair, wanted);
+        let data = scene.assets.meshes.values().next().unwrap();
+        let ends = data.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
+        assert!((ends.0 - from + ball).abs() < 1e-5 && (ends.1 - to - ball).abs() < 1e-5, "{kind}: {ends:?}");
+        // Two tubes, each as wide as its radius says; u grows along them.
+        let wide = |y: f32| data.positions.iter().map(|p| (p.y - y).abs()).filter(|d| *d < 0.4).fold(0.0, f32::max);
+        assert!((wide(0.0) - 0.1).abs() < 0.004 && (wide(1.0) - 0.2).abs() < 0.008, "{} {}", wide(0.0), wide(1.0));
+        let u = |p: &Vec3| ((p.x - from) / (to - from)).clamp(0.0, 1.0);
+        assert!(data.positions.iter().zip(&data.uvs).all(|(p, uv)| (u(p) - uv.x).abs() < 1e-4));
+    }
+    for (file, kind, wanted) in [
+        ("short.txt", "bsplinecurve", "short.txt:3:1 error this ends a curve of 2, which needs 4"),
+        ("bad.txt", "linearcurve", "bad.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more"),
+        (
+            "thin.txt",
+            "linearcurve",
+            "thin.txt:2:1 error a point of a curve is three numbers, and a radius of 0 or more",
+        ),
+        ("none.txt", "linearcurve", "error the curves cannot be had"),
+    ] {
+        let (scene, told) = read_in(folder.path(), "scene.xml", text(kind, file));
+        assert!(scene.is_none() && told.iter().any(|told| told.contains(wanted)), "{told:#?}");
+    }
+}

@@ -1,0 +1,227 @@
+//! Textures: one value everywhere, or a picture.
+
+use super::plugin::{Plugin, Property};
+use super::state::Reader;
+use crate::pictures::{asset, checkerboard};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_image::{decode_linear, decode_srgb};
+use durer_scene::describe::FileName;
+use durer_scene::math::{Color, LUMINANCE, Vec3};
+use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::texture::{Mapping, Wrap};
+use glam::DAffine3;
+
+/// What a texture is here.
+#[derive(Clone)]
+pub(super) enum Texture {
+    Even(Color),
+    /// A picture, what multiplies it, and whether its bytes are numbers without a curve.
+    Picture(Picture, Color, bool),
+}
+
+impl Reader<'_> {
+    /// A property that may be a texture.
+    pub fn texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
+        plugin.get(name).map_or(Texture::Even(usual), |property| self.texture_of(property, usual))
+    }
+
+    /// The same with pictures brighter than 1, which are divided by their greatest number.
+    pub fn bright_texture(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Texture {
+        let bitmap = self.named_part(plugin, name).filter(|part| part.kind == "bitmap");
+        let Some(bitmap) = bitmap else { return self.texture(plugin, name, usual) };
+        let raw = bitmap.truth(self.said, "raw").unwrap_or(false);
+        let picture = self.bitmap_as(&bitmap, |name, at| self.pictures().eight_bits_scaled(name, at));
+        bitmap.finish(self.said);
+        picture.map_or(Texture::Even(usual), |(picture, scale)| Texture::Picture(picture, Vec3::splat(scale), raw))
+    }
+
+    /// A picture of colours whose bytes are numbers without a curve, if they are `raw`.
+    pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
+        if raw { self.pictures().curved(&picture, at).unwrap_or(picture) } else { picture }
+    }
+
+    fn texture_of(&self, property: &Property, usual: Color) -> Texture {
+        if let Some(color) = self.reflectance(property) {
+            return Texture::Even(color);
+        }
+        let Some(texture) = self.part(property) else {
+            if !matches!(property.value, super::plugin::Value::Ref(_)) {
+                self.said.bad(property.at, format!("`{}` must be a colour or a texture", property.name));
+            }
+            return Texture::Even(usual);
+        };
+        let made = match texture.kind.as_str() {
+            "bitmap" => {
+                let raw = texture.truth(self.said, "raw").unwrap_or(false);
+                self.bitmap(&texture).map(|picture| Texture::Picture(picture, Vec3::ONE, raw))
+            }
+            "checkerboard" => Some(self.checkerboard(&texture, [("color0", 0.4), ("color1", 0.2)])),
+            // Colours of vertices multiply what a material says.
+            "mesh_attribute" if texture.text(self.said, "name").is_some_and(|name| name == "vertex_color") => {
+                texture.known(&["scale"]);
+                Some(Texture::Even(Vec3::ONE))
+            }
+            other => {
+                let message = format!("the texture `{other}` has no counterpart: a middle value is taken");
+                let known = ["bitmap", "checkerboard", "mesh_attribute"];
+                let known = known.into_iter().filter(|word| *word != other);
+                let warning = durer_diag::Diagnostic::warning(message).code("NO_COUNTERPART").at(texture.at);
+                self.said.push(durer_diag::Diagnostic { help: meant(other, known), ..warning });
+                return Texture::Even(usual);
+            }
+        };
+        texture.finish(self.said);
+        made.unwrap_or(Texture::Even(usual))
+    }
+
+    /// A colour, and the picture that it multiplies.
+    pub fn colored(&mut self, plugin: &Plugin, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
+        match self.texture(plugin, name, Vec3::splat(usual)) {
+            Texture::Even(color) => {
+                if color.min_element() < 0.0 {
+                    self.said
+                        .once(plugin.place(name), format!("less than 0 of `{name}` has no counterpart: 0 is taken"));
+                }
+                (color.max(Vec3::ZERO), None)
+            }
+            Texture::Picture(picture, scale, raw) => {
+                let picture = self.without_curve(picture, raw, plugin.place(name));
+                (scale, Some(asset(&mut self.scene, picture, plugin.place(name))))
+            }
+        }
+    }
+
+    /// A number that may be a texture: what a change makes of the number, or 1 and what it makes of
+    /// the picture.
+    pub fn pictured(
+        &mut self,
+        plugin: &Plugin,
+        name: &'static str,
+        usual: f32,
+        change: impl Fn(f32) -> f32,
+    ) -> (f32, Option<FileName>) {
+        match plugin.get(name).and_then(|property| self.numbers(property, &change)) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (change(self.value(plugin, name, usual)), None),
+        }
+    }
+
+    /// What a change makes of the numbers of a picture; `None` of what is no picture.
+    pub fn numbers(&mut self, property: &Property, change: impl Fn(f32) -> f32) -> Option<FileName> {
+        let fields = self.part(property).filter(|part| part.class == "texture" && part.kind == "checkerboard");
+        let texture = match fields {
+            // Mitsuba exchanges the fields where it asks for a number.
+            Some(fields) => {
+                let made = self.checkerboard(&fields, [("color1", 0.2), ("color0", 0.4)]);
+                fields.finish(self.said);
+                made
+            }
+            None => self.texture_of(property, Vec3::ZERO),
+        };
+        let Texture::Picture(picture, scale, raw) = texture else { return None };
+        let decode = if raw { decode_linear } else { decode_srgb };
+        // The number of a colour is its luminance.
+        let number = |p: Color| change(scale.x * p.dot(LUMINANCE));
+        let picture = self.pictures().changed(&picture, property.at, decode, number)?;
+        Some(asset(&mut self.scene, picture, property.at))
+    }
+
+    /// A number that may be a texture: of a picture the mean is taken.
+    pub fn value(&self, plugin: &Plugin, name: &'static str, usual: f32) -> f32 {
+        let color = self.color(plugin, name, Vec3::splat(usual));
+        color.dot(LUMINANCE)
+    }
+
+    /// A colour that may be a texture: of a picture the mean is taken.
+    pub fn color(&self, plugin: &Plugin, name: &'static str, usual: Color) -> Color {
+        match self.texture(plugin, name, usual) {
+            Texture::Even(color) => color,
+            Texture::Picture(picture, scale, _) => {
+                let at = plugin.place(name);
+                self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+                self.pictures().mean(&picture, at).map_or(usual, |mean| mean * scale)
+            }
+        }
+    }
+
+    /// The picture of a texture `bitmap`.
+    pub fn bitmap(&self, texture: &Plugin) -> Option<Picture> {
+        let eight_bits = |name: &str, at| Some((self.pictures().eight_bits(name, at)?, 1.0));
+        self.bitmap_as(texture, eight_bits).map(|(picture, _)| picture)
+    }
+
+    /// The same as something makes it of the file, with what multiplies it.
+    fn bitmap_as(
+        &self,
+        texture: &Plugin,
+        make: impl FnOnce(&str, Span) -> Option<(PictureBytes, f32)>,
+    ) -> Option<(Picture, f32)> {
+        let said = self.said;
+        let Some(name) = texture.text(said, "filename") else {
+            said.bad(texture.at, "a `bitmap` needs a `filename`");
+            return None;
+        };
+        let mut mapping = self.mapping(texture);
+        let word = |name, usual: &str| texture.text(said, name).unwrap_or(usual.into());
+        mapping.wrap = match word("wrap_mode", "repeat").as_str() {
+            "repeat" => [Wrap::Repeat; 2],
+            "mirror" => [Wrap::Mirror; 2],
+            "clamp" => [Wrap::Clamp; 2],
+            other => {
+                let help = meant(other, ["repeat", "mirror", "clamp"]);
+                said.bad_with(texture.place("wrap_mode"), format!("there is no wrapping `{other}`"), help);
+                return None;
+            }
+        };
+        mapping.nearest = match word("filter_type", "bilinear").as_str() {
+            // Mitsuba 0.6 has the last two.
+            "bilinear" | "ewa" | "trilinear" => false,
+            "nearest" => true,
+            other => {
+                let help = meant(other, ["bilinear", "nearest"]);
+                said.bad_with(texture.place("filter_type"), format!("there is no filter `{other}`"), help);
+                return None;
+            }
+        };
+        texture.known(&["raw", "accel", "format"]);
+        // Colours have no opacity here: `mask` has.
+        mapping.cutoff = Some(0.0);
+        let (bytes, scale) = make(&self.loader.path(&name), texture.place("filename"))?;
+        Some((Picture { bytes, mapping }, scale))
+    }
+
+    /// How a texture lies: Mitsuba's coordinates of pictures go down from the upper border, as ours
+    /// do.
+    fn mapping(&self, texture: &Plugin) -> Mapping {
+        let said = self.said;
+        let mut map = texture.map(said, "to_uv");
+        let old = |name, usual: f32| f64::from(texture.number(said, name).unwrap_or(usual));
+        // Of Mitsuba 0.6.
+        let scale = glam::DVec3::new(old("uscale", 1.0), old("vscale", 1.0), 1.0);
+        map *= DAffine3::from_scale(scale);
+        map.translation += glam::DVec3::new(old("uoffset", 0.0), old("voffset", 0.0), 0.0);
+        let [x, y, t] = [map.matrix3.x_axis, map.matrix3.y_axis, map.translation].map(|v| v.as_vec3());
+        Mapping { transform: [[x.x, y.x, t.x], [x.y, y.y, t.y]], ..Mapping::default() }
+    }
+
+    /// Fields of half a unit, as a picture of four texels; the first lies at the origin.
+    fn checkerboard(&self, texture: &Plugin, fields: [(&'static str, f32); 2]) -> Texture {
+        let mapping = Mapping { nearest: true, ..self.mapping(texture) };
+        let [one, other] = fields.map(|(name, usual)| {
+            let made = self.texture(texture, name, Vec3::splat(usual));
+            if matches!(made, Texture::Picture(..)) {
+                let at: Span = texture.place(name);
+                self.said.once(at, "a picture in a field has no counterpart: the field has one colour");
+            }
+            match made {
+                Texture::Even(color) => color,
+                Texture::Picture(..) => Vec3::splat(usual),
+            }
+        });
+        match checkerboard(one, other) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most), false),
+            None => Texture::Even(0.5 * (one + other)),
+        }
+    }
+}

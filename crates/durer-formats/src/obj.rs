@@ -1,0 +1,279 @@
+//! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials
+//! of `.mtl` files.
+//!
+//! The file is read twice: positions, texture coordinates and normals first, then the faces, which
+//! may refer to vertices further down. So nothing but the mesh itself is kept. Both times its parts
+//! are read side by side.
+
+mod faces;
+mod materials;
+pub mod quirks;
+pub(super) mod scene;
+mod wires;
+mod words;
+mod write;
+mod written;
+
+use super::MeshFormat;
+use super::number::{NumberError, parse_f32, report_number};
+use super::report::{Report, counted, shown};
+use durer_diag::{Diagnostics, did_you_mean};
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::scene::Axis;
+use durer_scene::shape::mesh::MeshData;
+use rayon::prelude::*;
+use std::ops::Range;
+use words::Words;
+use write::write;
+
+/// What a statement is to us, by its first word.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Statement {
+    Position,
+    Uv,
+    Normal,
+    Face,
+    /// What has no surface: a mesh has none of it, a scene shows it.
+    Line,
+    Point,
+    /// Names the material of what follows.
+    Material,
+    /// Names files of materials.
+    Library,
+    /// Says with which others the following faces are smooth, where they have no normals.
+    Smoothing,
+    /// Known, and without effect on the mesh.
+    Ignored,
+}
+
+/// The statements that are understood, by their first word.
+const STATEMENTS: &[(&str, Statement)] = &[
+    ("v", Statement::Position),
+    ("vt", Statement::Uv),
+    ("vn", Statement::Normal),
+    ("f", Statement::Face),
+    // The name of `f` before version 2.11.
+    ("fo", Statement::Face),
+    ("o", Statement::Ignored),
+    ("g", Statement::Ignored),
+    ("s", Statement::Smoothing),
+    ("mg", Statement::Ignored),
+    ("usemtl", Statement::Material),
+    ("mtllib", Statement::Library),
+    ("usemap", Statement::Ignored),
+    ("maplib", Statement::Ignored),
+    ("l", Statement::Line),
+    ("p", Statement::Point),
+    ("vp", Statement::Ignored),
+    ("lod", Statement::Ignored),
+    ("bevel", Statement::Ignored),
+    ("c_interp", Statement::Ignored),
+    ("d_interp", Statement::Ignored),
+    ("shadow_obj", Statement::Ignored),
+    ("trace_obj", Statement::Ignored),
+];
+
+fn statement(word: &[u8]) -> Option<Statement> {
+    // The two that make up nearly all of a file need no search.
+    match word {
+        b"v" => Some(Statement::Position),
+        b"f" => Some(Statement::Face),
+        _ => STATEMENTS.iter().find(|(name, _)| name.as_bytes() == word).map(|&(_, statement)| statement),
+    }
+}
+
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat = MeshFormat {
+    name: "Wavefront OBJ",
+    extensions: &["obj"],
+    recognise,
+    read,
+    known: quirks::known,
+    write,
+    up: Axis::Y,
+};
+
+/// Whether the first statement is one of this format, and not merely a word that could be anything.
+fn recognise(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 16)];
+    Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
+}
+
+/// Reads a file; see [`read_mesh`](super::read_mesh).
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    read_with(bytes, file, &mut Switches::default(), diagnostics)
+}
+
+/// From which triangle on something is current, and what.
+type Switch<T> = (usize, T);
+
+/// What changes from face to face.
+#[derive(Default)]
+struct Switches {
+    /// Where the material is named.
+    materials: Vec<Switch<Range<usize>>>,
+    /// The number of the smoothing group; 0 for none.
+    groups: Vec<Switch<u32>>,
+}
+
+/// The same, with what changes from face to face.
+fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let mut mesh = MeshData::default();
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        report.error(0..2, "this file is UTF-16, two bytes a letter: save it as UTF-8 or ASCII text");
+        return report.finish(diagnostics, mesh);
+    }
+    let parts = words::parts(bytes);
+    let counts = read_vertices(bytes, &parts, &mut mesh, &mut report);
+    if !report.is_full() {
+        faces::read_faces(bytes, &parts, &counts, &mut mesh, switches, &mut report);
+    }
+    if mesh.triangles.is_empty() && !report.has_errors() {
+        report.warning(bytes.len()..bytes.len(), "the mesh has no triangles");
+    }
+    report.finish(diagnostics, mesh)
+}
+
+/// What a part of a file has of vertices.
+struct Vertices {
+    mesh: MeshData,
+    /// The first statement that is not understood, and how many are.
+    unknown: Option<(Range<usize>, usize)>,
+    report: Report,
+}
+
+/// How many positions, texture coordinates and normals there are.
+type Counts = [usize; 3];
+
+fn counts(mesh: &MeshData) -> Counts {
+    [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()]
+}
+
+/// Reads positions, texture coordinates and normals, and looks at the first word of everything
+/// else. Gives how many there are before each part.
+fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, report: &mut Report) -> Vec<Counts> {
+    let read = |part: &Range<usize>| vertices(bytes, part.clone(), report.part());
+    let read: Vec<Vertices> = parts.par_iter().map(read).collect();
+    let total = |count: fn(&MeshData) -> usize| read.iter().map(|part| count(&part.mesh)).sum();
+    mesh.positions.reserve_exact(total(|mesh| mesh.positions.len()));
+    mesh.uvs.reserve_exact(total(|mesh| mesh.uvs.len()));
+    mesh.normals.reserve_exact(total(|mesh| mesh.normals.len()));
+    let mut before = Vec::with_capacity(parts.len());
+    let mut unknown: Option<(Range<usize>, usize)> = None;
+    for part in read {
+        before.push(counts(mesh));
+        if !part.mesh.colors.is_empty() {
+            mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
+            mesh.colors.extend(part.mesh.colors);
+        }
+        mesh.positions.extend(part.mesh.positions);
+        mesh.uvs.extend(part.mesh.uvs);
+        mesh.normals.extend(part.mesh.normals);
+        report.join(part.report);
+        if let Some((first, count)) = part.unknown {
+            unknown.get_or_insert((first, 0)).1 += count;
+        }
+    }
+    if report.is_full() {
+        return before;
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
+    }
+    if let Some((first, count)) = unknown {
+        let word = &bytes[first.clone()];
+        let meant = did_you_mean(&shown(word).replace('`', ""), STATEMENTS.iter().map(|&(name, _)| name));
+        let statements = counted(count, "statement", "statements");
+        let message = format!("{statements} not understood and left out; the first is {}", shown(word));
+        report.warning(first, message).help = meant.map(|name| format!("did you mean `{name}`?"));
+    }
+    before
+}
+
+/// The same of one part.
+fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
+    let (mut mesh, mut unknown) = (MeshData::default(), None::<(Range<usize>, usize)>);
+    let mut words = Words::within(bytes, part);
+    while let Some(keyword) = words.next_statement() {
+        match statement(&bytes[keyword.clone()]) {
+            Some(Statement::Position) => {
+                let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
+                mesh.positions.push(Vec3::new(x, y, z));
+                // After the place a vertex may have a weight, or a colour.
+                if count == 6 {
+                    mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
+                    let [r, g, b] = [r, g, b].map(decode);
+                    mesh.colors.push([r, g, b, 1.0]);
+                }
+            }
+            Some(Statement::Uv) => {
+                let ([u, v], _) = numbers(bytes, keyword, 1, 2, &mut words, &mut report);
+                mesh.uvs.push(Vec2::new(u, v));
+            }
+            Some(Statement::Normal) => {
+                let ([x, y, z], _) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
+                mesh.normals.push(Vec3::new(x, y, z));
+            }
+            Some(_) => words.skip(),
+            None => {
+                unknown.get_or_insert((keyword, 0)).1 += 1;
+                words.skip();
+            }
+        }
+        if report.is_full() {
+            break;
+        }
+    }
+    if !mesh.colors.is_empty() {
+        mesh.colors.resize(mesh.positions.len(), [1.0; 4]);
+    }
+    Vertices { mesh, unknown, report }
+}
+
+/// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is
+/// white.
+fn decode(value: f32) -> f32 {
+    if (0.0..=1.0).contains(&value) { durer_image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
+}
+
+/// Reads the numbers of a statement and their count. The first `needed` must be there, the first
+/// `sound` finite; what is not there or wrong is 0.
+///
+/// More numbers may follow, such as weights and colours. They must be numbers, or two lines have
+/// run together.
+fn numbers<const N: usize>(
+    bytes: &[u8],
+    keyword: Range<usize>,
+    needed: usize,
+    sound: usize,
+    words: &mut Words,
+    report: &mut Report,
+) -> ([f32; N], usize) {
+    let mut values = [0.0; N];
+    let mut count = 0;
+    let mut end = keyword.end;
+    while let Some(word) = words.next_word() {
+        end = word.end;
+        match parse_f32(&bytes[word.clone()]) {
+            Ok(value) if count < N => values[count] = value,
+            Ok(_) => {}
+            // The rest may be infinite: it is looked at by nobody, or is a colour that is none.
+            Err(NumberError::NotFinite) if count >= sound => _ = values.get_mut(count).map(|value| *value = f32::NAN),
+            Err(error) => report_number(report, error, word.clone(), &bytes[word]),
+        }
+        count += 1;
+        if report.is_full() {
+            break;
+        }
+    }
+    if count < needed && !report.is_full() {
+        let name = shown(&bytes[keyword.clone()]);
+        let message = format!("{name} needs {}, found {count}", counted(needed, "number", "numbers"));
+        report.error(keyword.start..end, message);
+    }
+    (values, count)
+}
+
+#[cfg(test)]
+mod tests;

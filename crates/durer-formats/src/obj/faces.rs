@@ -1,0 +1,253 @@
+//! The faces of a Wavefront file, once all of its vertices are known.
+
+use super::{Counts, Statement, Switches, counts, statement, words::Words};
+use crate::number::parse_integer;
+use crate::polygon::Cutter;
+use crate::report::{Report, counted, shown};
+use durer_scene::math::Vec3;
+use durer_scene::shape::mesh::{MeshData, NO_INDEX};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// What a corner refers to: a position, a texture coordinate and a normal.
+type Corner = [u32; 3];
+
+/// The statements that corners refer to, in the order in which a corner does: singular, plural,
+/// keyword.
+const KINDS: [(&str, &str, &str); 3] =
+    [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
+
+/// What a part of a file has of faces.
+struct Faces {
+    mesh: MeshData,
+    switches: Switches,
+    /// The first face that names a vertex twice, and how many do.
+    degenerate: Option<(Range<usize>, usize)>,
+    report: Report,
+}
+
+/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm.
+/// `before` has how many vertices of each kind there are before each part.
+pub(super) fn read_faces(
+    bytes: &[u8],
+    parts: &[Range<usize>],
+    before: &[Counts],
+    mesh: &mut MeshData,
+    switches: &mut Switches,
+    report: &mut Report,
+) {
+    let read = |(part, so_far): (&Range<usize>, &Counts)| faces(bytes, part.clone(), *so_far, mesh, report.part());
+    let read: Vec<Faces> = parts.par_iter().zip(before).map(read).collect();
+    mesh.triangles.reserve_exact(read.iter().map(|part| part.mesh.triangles.len()).sum());
+    let mut degenerate: Option<(Range<usize>, usize)> = None;
+    for part in read {
+        let first = mesh.triangles.len();
+        mesh.triangles.extend(part.mesh.triangles);
+        // From the first triangle that has texture coordinates or normals on, all have entries; so
+        // must those before.
+        for (all, own) in
+            [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
+        {
+            if !own.is_empty() {
+                all.resize(first, [NO_INDEX; 3]);
+                all.extend(own);
+            }
+        }
+        let Switches { materials, groups } = part.switches;
+        switches.materials.extend(materials.into_iter().map(|(triangle, at)| (first + triangle, at)));
+        switches.groups.extend(groups.into_iter().map(|(triangle, group)| (first + triangle, group)));
+        report.join(part.report);
+        if let Some((first, count)) = part.degenerate {
+            degenerate.get_or_insert((first, 0)).1 += count;
+        }
+        if report.is_full() {
+            return;
+        }
+    }
+    for list in [&mut mesh.triangle_uvs, &mut mesh.triangle_normals] {
+        if !list.is_empty() {
+            list.resize(mesh.triangles.len(), [NO_INDEX; 3]);
+        }
+    }
+    if let Some((first, count)) = degenerate {
+        let verb = if count == 1 { "names" } else { "name" };
+        report.note(first, format!("{} {verb} a vertex twice; the first is here", counted(count, "face", "faces")));
+    }
+}
+
+/// The same of one part.
+fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
+    let mut reader = FaceReader {
+        bytes,
+        total: counts(whole),
+        so_far,
+        positions: &whole.positions,
+        corners: Vec::new(),
+        cutter: Cutter::new(part.len()),
+        found: Faces { mesh: MeshData::default(), switches: Switches::default(), degenerate: None, report },
+    };
+    let mut words = Words::within(bytes, part);
+    while let Some(keyword) = words.next_statement() {
+        match statement(&bytes[keyword.clone()]) {
+            Some(Statement::Position) => reader.so_far[0] += 1,
+            Some(Statement::Uv) => reader.so_far[1] += 1,
+            Some(Statement::Normal) => reader.so_far[2] += 1,
+            Some(Statement::Face) => reader.face(keyword, &mut words),
+            Some(Statement::Material) => {
+                let name = rest_of(&mut words, keyword.end);
+                reader.found.switches.materials.push((reader.found.mesh.triangles.len(), name));
+            }
+            Some(Statement::Smoothing) => {
+                // `off` is no number.
+                let word = words.next_word().map_or(&[][..], |word| &bytes[word]);
+                let group = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(0);
+                reader.found.switches.groups.push((reader.found.mesh.triangles.len(), group));
+            }
+            Some(Statement::Line | Statement::Point | Statement::Library | Statement::Ignored) | None => {}
+        }
+        words.skip();
+        if reader.found.report.is_full() {
+            break;
+        }
+    }
+    reader.found
+}
+
+/// The rest of a statement as one range, for names may have blanks.
+pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
+    match words.next_word() {
+        Some(first) => first.start..words.skip_rest().unwrap_or(first.end),
+        None => end..end,
+    }
+}
+
+struct FaceReader<'a> {
+    bytes: &'a [u8],
+    /// How many vertices, texture coordinates and normals the file has.
+    total: Counts,
+    /// How many of them come before this statement.
+    so_far: Counts,
+    positions: &'a [Vec3],
+    corners: Vec<Corner>,
+    cutter: Cutter,
+    found: Faces,
+}
+
+impl FaceReader<'_> {
+    fn face(&mut self, keyword: Range<usize>, words: &mut Words) {
+        self.corners.clear();
+        let mut all_good = true;
+        let mut written = 0;
+        let mut place = keyword;
+        while let Some(word) = words.next_word() {
+            place.end = word.end;
+            written += 1;
+            match self.corner(word) {
+                Some(corner) => self.corners.push(corner),
+                None if self.found.report.is_full() => return,
+                None => all_good = false,
+            }
+        }
+        if written < 3 {
+            let message = format!("a face needs at least 3 corners, found {written}");
+            self.found.report.error(place, message).help = (written == 2).then(|| "a line is an `l` statement".into());
+        } else if all_good {
+            self.note_degenerate(&place);
+            self.cut(place);
+        }
+    }
+
+    /// Reads `a`, `a/t`, `a//n` or `a/t/n`.
+    fn corner(&mut self, word: Range<usize>) -> Option<Corner> {
+        let mut corner = [NO_INDEX; 3];
+        let mut start = word.start;
+        for (part, slot) in corner.iter_mut().enumerate() {
+            let rest = &self.bytes[start..word.end];
+            let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
+            // All but the position may be left empty.
+            if end > start || part == 0 {
+                let counts = [self.total[part], self.so_far[part]];
+                *slot = index(self.bytes, start..end, part, counts, &mut self.found.report)?;
+            }
+            if end == word.end {
+                return Some(corner);
+            }
+            start = end + 1;
+        }
+        let message = format!("a corner has at most 3 indices, found {}", shown(&self.bytes[word.clone()]));
+        self.found.report.error(word, message).help =
+            Some("a corner is `vertex`, `vertex/texture`, `vertex//normal` or `vertex/texture/normal`".into());
+        None
+    }
+
+    fn note_degenerate(&mut self, place: &Range<usize>) {
+        // Neighbours only: outlines with holes pass a vertex twice for good reason.
+        let last = self.corners.len() - 1;
+        let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
+        if (0..=last).any(repeats) {
+            self.found.degenerate.get_or_insert((place.clone(), 0)).1 += 1;
+        }
+    }
+
+    fn cut(&mut self, place: Range<usize>) {
+        let MeshData { triangles, triangle_uvs, triangle_normals, .. } = &mut self.found.mesh;
+        let (positions, corners) = (self.positions, &self.corners);
+        let position = |i: usize| positions[corners[i][0] as usize];
+        let cut = self.cutter.cut(corners.len(), position, |triangle| {
+            let indices = |part: usize| triangle.map(|i| corners[i][part]);
+            let before = triangles.len();
+            triangles.push(indices(0));
+            push_optional(triangle_uvs, before, indices(1));
+            push_optional(triangle_normals, before, indices(2));
+        });
+        if cut.is_err() {
+            self.found
+                .report
+                .error(place, format!("this face of {} corners is too crooked to be cut", corners.len()))
+                .help = Some("cut it into triangles in a modelling program".into());
+        }
+    }
+}
+
+/// Reads an index of a kind, counted from 1 or, negative, back from the last statement of its kind.
+/// `total` and `so_far`: how many there are in the file and before this statement.
+pub(super) fn index(
+    bytes: &[u8],
+    at: Range<usize>,
+    kind: usize,
+    [total, so_far]: [usize; 2],
+    report: &mut Report,
+) -> Option<u32> {
+    let (one, many, keyword) = KINDS[kind];
+    let text = &bytes[at.clone()];
+    let Some(index) = parse_integer(text) else {
+        let found = if text.is_empty() { "nothing".into() } else { shown(text) };
+        report.error(at, format!("expected the number of a {one}, found {found}"));
+        return None;
+    };
+    if index > 0 && index <= total as i64 {
+        return Some((index - 1) as u32);
+    }
+    if index < 0 && index >= -(so_far as i64) {
+        return Some((so_far as i64 + index) as u32);
+    }
+    if index == 0 {
+        report.error(at, format!("there is no {one} 0: they are counted from 1"));
+    } else if index > 0 {
+        let message = format!("there is no {one} {}: the file has {}", shown(text), counted(total, one, many));
+        report.error(at, message).help =
+            (total == 0).then(|| format!("{many} are made by `{keyword}` statements, and there are none"));
+    } else {
+        let before = counted(so_far, one, many);
+        report.error(at, format!("{} reaches back too far: {before} so far", shown(text)));
+    }
+    None
+}
+
+/// Adds indices to a list that begins, filled up, where the first triangle has some.
+fn push_optional(list: &mut Vec<[u32; 3]>, before: usize, indices: [u32; 3]) {
+    if !list.is_empty() || indices != [NO_INDEX; 3] {
+        list.resize(before, [NO_INDEX; 3]);
+        list.push(indices);
+    }
+}

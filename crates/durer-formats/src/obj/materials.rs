@@ -1,0 +1,301 @@
+//! Wavefront `.mtl`: the words of materials, which `written.rs` brings together.
+//!
+//! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
+//! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
+
+use super::words::Words;
+use super::written::Written;
+use crate::model::Input;
+use crate::number::parse_f32;
+use crate::report::shown;
+use crate::said::NO_COUNTERPART;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::texture::{Channel, Mapping, Wrap};
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Materials by name, and the pictures that they show.
+#[derive(Default)]
+pub(super) struct Library {
+    pub materials: BTreeMap<String, PrincipledMaterial>,
+    pub pictures: BTreeMap<String, Picture>,
+}
+
+/// Reads the files that a `mtllib` names: one whose name has blanks, or several.
+pub(super) fn read_files(
+    input: &Input,
+    names: &Range<usize>,
+    span: Span,
+    library: &mut Library,
+    diagnostics: &mut Diagnostics,
+) {
+    let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
+    let files = match found(input, &all, span) {
+        Some(whole) => vec![(all.clone(), Some(whole))],
+        // Some programs write a blank within a name after a backslash.
+        None => {
+            let names = all.replace("\\ ", "\0");
+            let names = names.split_whitespace().map(|name| name.replace('\0', " "));
+            names.map(|name| (name.clone(), found(input, &name, span))).collect()
+        }
+    };
+    for (name, file) in files {
+        let bytes = file.and_then(|file| Some((input.source.read(&file.path).ok()?, file.path)));
+        let Some((bytes, path)) = bytes else {
+            let message =
+                format!("there is no file of materials {}: what it has is shown in grey", shown(name.as_bytes()));
+            diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
+            continue;
+        };
+        if bytes.len() < u32::MAX as usize {
+            let file = input.files.borrow_mut().add_once(&path, &bytes);
+            let left_out = BTreeMap::new();
+            Reader { input, file, path: &path, library, left_out }.read(&bytes, diagnostics);
+        }
+    }
+}
+
+/// Words for pictures of parameters, and where they go. What has no number of its own beside them
+/// counts as 1.
+type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
+const MAPS: [(&str, Field); 12] = [
+    ("map_ks", |m| &mut m.specular_color_texture),
+    ("map_ke", |m| &mut m.emission_texture),
+    ("map_pr", |m| &mut m.specular_roughness_texture),
+    ("map_pm", |m| &mut m.base_metalness_texture),
+    ("map_ps", |m| &mut m.fuzz_weight_texture),
+    ("map_pc", |m| &mut m.coat_weight_texture),
+    ("map_pcr", |m| &mut m.coat_roughness_texture),
+    ("map_d", |m| &mut m.opacity_texture),
+    ("norm", |m| &mut m.normal_texture),
+    ("map_kn", |m| &mut m.normal_texture),
+    ("bump", |m| &mut m.bump_texture),
+    ("map_bump", |m| &mut m.bump_texture),
+];
+
+/// How high the white of a bump map lies that is `-bm 1`, in sizes of the model: its own unit is
+/// not defined.
+const BUMP: f32 = 0.002;
+
+/// Numbers of words without a counterpart with which they change nothing.
+const WITHOUT_EFFECT: [(&str, f32); 2] = [("anisor", 0.0), ("sharpness", 60.0)];
+
+/// A word, and where it stands.
+struct Word {
+    text: String,
+    at: Span,
+}
+
+struct Reader<'a, 'i> {
+    input: &'a Input<'i>,
+    /// The number of the file.
+    file: u32,
+    /// Its name.
+    path: &'a str,
+    library: &'a mut Library,
+    /// Words that are left out, and where the first of each stands.
+    left_out: BTreeMap<String, Span>,
+}
+
+impl Reader<'_, '_> {
+    fn read(&mut self, bytes: &[u8], diagnostics: &mut Diagnostics) {
+        let (mut words, mut current, file) = (Words::new(bytes), None::<Written>, self.file);
+        while let Some(keyword) = words.next_statement() {
+            let rest: Vec<Range<usize>> = std::iter::from_fn(|| words.next_word()).collect();
+            let word = |at: Range<usize>| Word {
+                text: String::from_utf8_lossy(&bytes[at.clone()]).into_owned(),
+                at: Span { file, start: at.start as u32, end: at.end as u32 },
+            };
+            let keyword = word(keyword);
+            if keyword.text == "newmtl" {
+                let name = match (rest.first(), rest.last()) {
+                    (Some(first), Some(last)) => word(first.start..last.end).text,
+                    _ => String::new(),
+                };
+                let next = Written { name, ..Written::default() };
+                current.replace(next).into_iter().for_each(|written| self.finish(written));
+                continue;
+            }
+            let Some(material) = &mut current else { continue };
+            let arguments: Vec<Word> = rest.into_iter().map(word).collect();
+            if let Err((at, problem)) = self.word(&keyword, &arguments, material, diagnostics) {
+                let message = format!("material `{}`: {problem}", material.name);
+                diagnostics.push(Diagnostic::warning(message).code("bad-value").at(at));
+            }
+        }
+        current.into_iter().for_each(|written| self.finish(written));
+        if let Some(first) = self.left_out.values().copied().min_by_key(|span| span.start) {
+            let all: Vec<&str> = self.left_out.keys().map(String::as_str).collect();
+            let message = format!("words without a counterpart, which are left out: {}", all.join(", "));
+            diagnostics.push(Diagnostic::note(message).code(NO_COUNTERPART).at(first));
+        }
+    }
+
+    /// Takes up a statement; a problem comes with its place.
+    fn word(
+        &mut self,
+        keyword: &Word,
+        rest: &[Word],
+        m: &mut Written,
+        diagnostics: &mut Diagnostics,
+    ) -> Result<(), (Span, String)> {
+        let word = &keyword.text;
+        let number = || -> Result<Option<f32>, (Span, String)> {
+            // Some programs write `d -halo 0.5`.
+            let number = rest.iter().find(|word| word.text != "-halo");
+            let number = number.ok_or_else(|| (keyword.at, format!("`{word}` has no number")))?;
+            let text = number.text.as_bytes();
+            let problem = |_| (number.at, format!("`{word}` needs a number, found {}", shown(text)));
+            parse_f32(text).map(Some).map_err(problem)
+        };
+        let color = || -> Result<Option<Vec3>, (Span, String)> {
+            // Colours by spectrum or in CIE XYZ have a word before them.
+            match numbers(rest)[..] {
+                [r, g, b, ..] => Ok(Some(Vec3::new(r, g, b).max(Vec3::ZERO))),
+                [r, ..] => Ok(Some(Vec3::splat(r.max(0.0)))),
+                [] => Err((keyword.at, format!("`{word}` needs three numbers"))),
+            }
+        };
+        match word.to_ascii_lowercase().as_str() {
+            "kd" => m.diffuse = color()?,
+            "ks" => m.specular = color()?,
+            "ke" => m.emission = color()?,
+            "tf" => (m.filter, m.filter_at) = (color()?, keyword.at),
+            "ns" => m.exponent = number()?,
+            "ni" => m.ior = number()?,
+            "d" => m.opacity = number()?,
+            "tr" => m.opacity = m.opacity.or(number()?.map(|t| 1.0 - t)),
+            "illum" => m.model = number()?,
+            "pr" => m.roughness = number()?,
+            "pm" => m.metalness = number()?,
+            "ps" => m.sheen = number()?,
+            "pc" => m.coat = number()?,
+            "pcr" => m.coat_roughness = number()?,
+            "aniso" => m.anisotropy = number()?,
+            "map_kd" => {
+                m.pictured = true;
+                m.diffuse_map = self.map(keyword, rest, m, diagnostics);
+            }
+            // Light from everywhere and its maps are computed here.
+            "ka" | "map_ka" | "map_aat" => {}
+            lower => match MAPS.iter().find(|row| row.0 == lower) {
+                Some((_, field)) => {
+                    let picture = self.map(keyword, rest, m, diagnostics);
+                    let mut field = *field;
+                    if lower.ends_with("bump") {
+                        let strength =
+                            rest.iter().position(|word| word.text == "-bm").map(|at| numbers(&rest[at + 1..]));
+                        let strength = strength.and_then(|numbers| numbers.first().copied());
+                        m.pictures.bump_height = BUMP * strength.unwrap_or(1.0);
+                        // Many programs write pictures of normals where heights belong.
+                        if names_normals(rest) {
+                            field = |m| &mut m.normal_texture;
+                        }
+                    }
+                    *field(&mut m.pictures) = picture;
+                }
+                None if WITHOUT_EFFECT.iter().any(|row| row.0 == lower && numbers(rest) == [row.1]) => {}
+                None => self.leave_out(word, keyword.at),
+            },
+        }
+        Ok(())
+    }
+
+    fn leave_out(&mut self, word: &str, at: Span) {
+        self.left_out.entry(word.to_string()).or_insert(at);
+    }
+
+    /// A texture: options that begin with `-`, and the name of its picture, which may have blanks.
+    fn map(&mut self, keyword: &Word, rest: &[Word], m: &Written, diagnostics: &mut Diagnostics) -> Option<FileName> {
+        let (mut mapping, mut at) = (Mapping::default(), 0);
+        let (mut scale, mut offset) = ([1.0f32; 2], [0.0f32; 2]);
+        while let Some(option) = rest.get(at).map(|word| word.text.as_str()) {
+            if !option.starts_with('-') || option.len() == 1 {
+                break;
+            }
+            at += 1;
+            let numbers = numbers(&rest[at..(at + 3).min(rest.len())]);
+            let pair = |pair: &mut [f32; 2]| {
+                pair.iter_mut().zip(&numbers).for_each(|(to, from)| *to = *from);
+                numbers.len()
+            };
+            let next = rest.get(at).map(|word| word.text.as_str());
+            at += match option {
+                "-s" => pair(&mut scale),
+                "-o" => pair(&mut offset),
+                "-t" => numbers.len(),
+                "-clamp" => {
+                    if next == Some("on") {
+                        mapping.wrap = [Wrap::Clamp; 2];
+                    }
+                    1
+                }
+                "-mm" => {
+                    if let [base, gain, ..] = numbers[..] {
+                        mapping.range = [base, base + gain];
+                    }
+                    2
+                }
+                "-imfchan" => {
+                    mapping.channel = next.and_then(|word| match word {
+                        "m" => Some(Channel::Alpha),
+                        // Luminance and depth: of grey pictures any channel.
+                        word => Channel::from_word(word),
+                    });
+                    1
+                }
+                // -blendu, -blendv, -boost, -bm, -cc, -texres, -type, -colorspace.
+                _ => 1,
+            };
+        }
+        // Coordinates have v upwards, the picture's rows go down.
+        mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
+        let named = rest.get(at..).unwrap_or_default();
+        let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.to(last.at));
+        let name = named.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
+        let word = &keyword.text;
+        let Some(file) = found(self.input, &name, span) else {
+            let message = format!("material `{}`: there is no picture {} ({word})", m.name, shown(name.as_bytes()));
+            diagnostics.push(Diagnostic::warning(message).code("missing-file").at(span));
+            return None;
+        };
+        let path = format!("{}#{}/{word}", self.path, m.name);
+        self.library.pictures.insert(path.clone(), Picture { bytes: PictureBytes::File(file.path), mapping });
+        Some(FileName { path, span })
+    }
+
+    /// A material that is there keeps its place: the first of a name counts.
+    fn finish(&mut self, mut written: Written) {
+        if written.loses_filter() {
+            self.leave_out("Tf", written.filter_at);
+        }
+        let name = std::mem::take(&mut written.name);
+        self.library.materials.entry(name).or_insert_with(|| written.layers());
+    }
+}
+
+/// The numbers with which some words begin.
+fn numbers(words: &[Word]) -> Vec<f32> {
+    words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
+}
+
+/// Whether the name of a picture, the last of a statement's words, says that it has normals.
+fn names_normals(rest: &[Word]) -> bool {
+    let name = rest.last().map(|name| name.text.to_lowercase()).unwrap_or_default();
+    let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
+    ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
+}
+
+/// The name of a file that may be had, of those that a material may mean: as written, or its last
+/// name beside the scene.
+fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
+    let portable = path.replace('\\', "/");
+    let last = portable.rsplit('/').next().unwrap_or_default();
+    let names = [portable.as_str(), last];
+    let name = names.into_iter().find(|name| !name.is_empty() && input.source.contains(name))?;
+    Some(FileName { path: name.to_string(), span })
+}

@@ -1,0 +1,48 @@
+//! What the course's programs know of a Wavefront file.
+
+use super::{Statement, statement, words::Words};
+use durer_scene::dialect::{Compat, CompatSet};
+use std::borrow::Cow;
+
+/// The same file, with blanks in place of what programs with some quirks pass over: all else stays
+/// where it is.
+///
+/// The quirks are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
+pub fn known(bytes: &[u8], quirks: CompatSet) -> Cow<'_, [u8]> {
+    let has = |compat: Compat| quirks & compat.bit() != 0;
+    let end = match bytes.iter().rposition(|&byte| byte == b'\n') {
+        _ if !has(Compat::LostLastLine) => bytes.len(),
+        last => last.map_or(0, |last| last + 1),
+    };
+    let mut known = Cow::from(&bytes[..end]);
+    if has(Compat::ThreeCorners) {
+        let mut words = Words::new(&bytes[..end]);
+        while let Some(keyword) = words.next_statement() {
+            if statement(&bytes[keyword]) == Some(Statement::Face) {
+                let corners = std::iter::from_fn(|| words.next_word());
+                corners.skip(3).for_each(|corner| known.to_mut()[corner].fill(b' '));
+            }
+            words.skip_rest();
+        }
+    }
+    known
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1/1 2/1 3/1 4/1 # all\nf 1 2 4";
+
+    #[test]
+    fn what_old_programs_pass_over_is_blank_or_gone() {
+        assert_eq!(known(SQUARE, 0), SQUARE);
+        let last = known(SQUARE, Compat::LostLastLine.bit());
+        assert_eq!(*last, SQUARE[..SQUARE.len() - 7]);
+        assert_eq!(known(&last, Compat::LostLastLine.bit()), last);
+        let three = known(SQUARE, Compat::ThreeCorners.bit());
+        assert_eq!(three.len(), SQUARE.len());
+        assert!(three.ends_with(b"f 1/1 2/1 3/1     # all\nf 1 2 4"), "{}", String::from_utf8_lossy(&three));
+        assert!(known(b"f 1 2 3", Compat::LostLastLine.bit()).is_empty());
+    }
+}

@@ -1,0 +1,182 @@
+//! A Wavefront file with the materials that it names: a mesh for each.
+
+use super::faces::rest_of;
+use super::materials::{self, Library};
+use super::wires::{WireReader, Wires};
+use super::words::Words;
+use super::{Statement, Switch, Switches, read_with, statement};
+use crate::model::{Input, SceneFormat};
+use crate::report::{Report, shown};
+use crate::smooth::smoothed;
+use crate::{sticks, too_large};
+use durer_diag::{Diagnostic, Diagnostics, Span, did_you_mean};
+use durer_scene::math::Aabb;
+use durer_scene::scene::{Group, Material, Object, Scene};
+use durer_scene::shape::MeshData;
+use durer_scene::shape::mesh::NO_INDEX;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// The format of scenes.
+pub(crate) const FORMAT: SceneFormat = SceneFormat {
+    name: super::FORMAT.name,
+    extensions: super::FORMAT.extensions,
+    // Its first word could be anything: only the name tells.
+    recognise: |_| false,
+    read,
+    write: None,
+    up: super::FORMAT.up,
+    whole: false,
+    shines: None,
+};
+
+/// Reads a file; see [`read_model`](crate::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(error);
+        return None;
+    }
+    let mut switches = Switches::default();
+    let mut data = read_with(input.bytes, input.file, &mut switches, diagnostics)?;
+    smooth(&mut data, &switches.groups);
+    let span = |at: &Range<usize>| Span { file: input.file, start: at.start as u32, end: at.end as u32 };
+    let mut library = Library::default();
+    let mut report = Report::new(input.file, diagnostics);
+    let mut wires = WireReader::new(input.bytes, data.positions.len());
+    let mut words = Words::new(input.bytes);
+    while let Some(keyword) = words.next_statement() {
+        match statement(&input.bytes[keyword.clone()]) {
+            Some(Statement::Library) => {
+                let names = rest_of(&mut words, keyword.end);
+                materials::read_files(input, &names, span(&names), &mut library, diagnostics);
+            }
+            Some(Statement::Position) => wires.vertices[1] += 1,
+            Some(Statement::Material) => wires.material = rest_of(&mut words, keyword.end),
+            Some(kind @ (Statement::Line | Statement::Point)) => wires.read(kind, &mut words, &mut report),
+            _ => {}
+        }
+        words.skip();
+    }
+    wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
+    let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
+    if alone && !report.has_errors() {
+        // A file of vertices alone is a cloud of points.
+        let points = (0..data.positions.len() as u32).collect();
+        wires.found.push(Wires { points, ..Wires::default() });
+    }
+    if let [first, ..] = wires.found.as_slice() {
+        let lines = wires.found.iter().map(|wires| wires.lines.len()).sum();
+        let points = wires.found.iter().map(|wires| wires.points.len()).sum();
+        report.note(first.material.clone(), sticks::explained(lines, points)).code = "points-and-lines";
+    }
+    let wires = wires.found;
+    report.finish(diagnostics, ())?;
+    let size = Aabb::around(data.positions.iter().copied()).size().length();
+    for material in library.materials.values_mut().filter(|material| material.bump_texture.is_some()) {
+        material.bump_height *= size;
+    }
+    let mut scene = Scene::default();
+    scene.assets.pictures = std::mem::take(&mut library.pictures);
+    let mut objects = Vec::new();
+    let mut numbers: BTreeMap<&str, u32> = BTreeMap::new();
+    let mut shown_parts =
+        if data.triangles.is_empty() { Vec::new() } else { parts(&data, input.bytes, &switches.materials) };
+    let vertices = MeshData { positions: data.positions, colors: data.colors, ..MeshData::default() };
+    let thick = |wires: Wires| (sticks::thickened(&vertices, &wires.lines, &wires.points), wires.material);
+    shown_parts.extend(wires.into_iter().map(thick));
+    for (part, at) in shown_parts {
+        let name = String::from_utf8_lossy(&input.bytes[at.clone()]).into_owned();
+        let material = library.materials.get_key_value(name.as_str()).map(|(name, material)| {
+            *numbers.entry(name).or_insert_with(|| scene.add_material(Material::Principled(Box::new(material.clone()))))
+        });
+        if material.is_none() && !name.is_empty() {
+            let known = library.materials.keys().map(String::as_str);
+            let meant = did_you_mean(&name, known).map(|meant| format!("did you mean `{meant}`?"));
+            let message = format!("no file of materials has {}: a neutral one is shown", shown(name.as_bytes()));
+            diagnostics
+                .push(Diagnostic { help: meant, ..Diagnostic::warning(message).code("no-material").at(span(&at)) });
+        }
+        let asset = if name.is_empty() { input.name.to_string() } else { format!("{}#{name}", input.name) };
+        let node = scene.add_mesh(&asset, Arc::new(part), span(&at));
+        objects.push(Object { node, material, span: span(&at) });
+    }
+    scene.root = Some(Group { objects });
+    Some(scene)
+}
+
+/// From switch to switch the triangles for which it counts, of so many.
+fn runs<T>(switches: &[Switch<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
+    let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
+    switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
+}
+
+/// Gives the triangles of smoothing groups normals, where the file has none.
+fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
+    if switches.iter().all(|&(_, group)| group == 0) {
+        return;
+    }
+    let mut groups = vec![0; data.triangles.len()];
+    runs(switches, groups.len()).for_each(|(run, &group)| groups[run].fill(group));
+    smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
+}
+
+/// A mesh for each name of a material, in the order of the names' first triangles, and a place
+/// where it is named.
+fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
+    let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
+    let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
+    let mut order: Vec<(Vec<Range<usize>>, Range<usize>)> = Vec::new();
+    let mut known: BTreeMap<&[u8], usize> = BTreeMap::new();
+    for (run, at) in [(before, 0..0)].into_iter().chain(runs).filter(|(run, _)| !run.is_empty()) {
+        let number = *known.entry(&bytes[at.clone()]).or_insert_with(|| {
+            order.push((Vec::new(), at));
+            order.len() - 1
+        });
+        order[number].0.push(run);
+    }
+    match order.as_slice() {
+        // Nothing to part.
+        [] => vec![(data.clone(), 0..0)],
+        [(_, at)] => vec![(data.clone(), at.clone())],
+        _ => order.into_iter().map(|(runs, at)| (part(data, &runs), at)).collect(),
+    }
+}
+
+/// Some of the triangles, with what they use.
+fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
+    let mut part = MeshData::default();
+    let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
+        if list.is_empty() {
+            Vec::new()
+        } else {
+            runs.iter().flat_map(|run| list[run.clone()].iter().copied()).collect()
+        }
+    };
+    (part.triangles, part.triangle_uvs) = (pick(&data.triangles), pick(&data.triangle_uvs));
+    part.triangle_normals = pick(&data.triangle_normals);
+    let places = renumber(&mut part.triangles);
+    part.positions = places.iter().map(|&i| data.positions[i as usize]).collect();
+    if !data.colors.is_empty() {
+        part.colors = places.iter().map(|&i| data.colors[i as usize]).collect();
+    }
+    part.uvs = renumber(&mut part.triangle_uvs).iter().map(|&i| data.uvs[i as usize]).collect();
+    part.normals = renumber(&mut part.triangle_normals).iter().map(|&i| data.normals[i as usize]).collect();
+    for list in [&mut part.triangle_uvs, &mut part.triangle_normals] {
+        if list.iter().flatten().all(|&i| i == NO_INDEX) {
+            list.clear();
+        }
+    }
+    part
+}
+
+/// Numbers what is used from 0 on; gives the old numbers.
+fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
+    let mut used: Vec<u32> = list.iter().flatten().copied().filter(|&i| i != NO_INDEX).collect();
+    used.sort_unstable();
+    used.dedup();
+    for i in list.iter_mut().flatten().filter(|i| **i != NO_INDEX) {
+        *i = used.partition_point(|&old| old < *i) as u32;
+    }
+    used
+}

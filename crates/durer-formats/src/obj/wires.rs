@@ -1,0 +1,56 @@
+//! Lines and points of a Wavefront file, which have no surface.
+
+use super::Statement;
+use super::faces::index;
+use super::words::Words;
+use crate::report::Report;
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+/// Lines and points of one material.
+#[derive(Default)]
+pub(super) struct Wires {
+    /// A place where the material is named; empty without one.
+    pub(super) material: Range<usize>,
+    /// Pairs of vertices.
+    pub(super) lines: Vec<[u32; 2]>,
+    pub(super) points: Vec<u32>,
+}
+
+/// Collects the statements `l` and `p`.
+pub(super) struct WireReader<'a> {
+    pub(super) bytes: &'a [u8],
+    /// How many vertices the file has, and how many of them come before this statement.
+    pub(super) vertices: [usize; 2],
+    /// Where the current material is named.
+    pub(super) material: Range<usize>,
+    /// In the order in which materials are first used.
+    pub(super) found: Vec<Wires>,
+    numbers: BTreeMap<&'a [u8], usize>,
+}
+
+impl<'a> WireReader<'a> {
+    pub(super) fn new(bytes: &'a [u8], vertices: usize) -> Self {
+        WireReader { bytes, vertices: [vertices, 0], material: 0..0, found: Vec::new(), numbers: BTreeMap::new() }
+    }
+
+    /// Reads the vertices of a line or of points.
+    pub(super) fn read(&mut self, kind: Statement, words: &mut Words, report: &mut Report) {
+        let number = *self.numbers.entry(&self.bytes[self.material.clone()]).or_insert_with(|| {
+            self.found.push(Wires { material: self.material.clone(), ..Wires::default() });
+            self.found.len() - 1
+        });
+        let wires = &mut self.found[number];
+        let mut last = None;
+        while let Some(word) = words.next_word() {
+            // A texture coordinate may follow, for which a stick has no place.
+            let length = self.bytes[word.clone()].iter().position(|&byte| byte == b'/').unwrap_or(word.len());
+            let at = word.start..word.start + length;
+            let Some(vertex) = index(self.bytes, at, 0, self.vertices, report) else { return };
+            match kind {
+                Statement::Point => wires.points.push(vertex),
+                _ => wires.lines.extend(last.replace(vertex).map(|last| [last, vertex])),
+            }
+        }
+    }
+}

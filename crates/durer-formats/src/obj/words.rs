@@ -1,0 +1,124 @@
+//! The words of a Wavefront file, statement by statement.
+
+use crate::number::is_not_finite_tail;
+use std::ops::Range;
+
+/// Walks over the words of one statement after the other.
+///
+/// A statement ends with its line, unless a backslash ends the line; a `#` starts a comment that
+/// ends with the line in any case. Words are ranges of bytes, so nothing is copied.
+#[derive(Clone)]
+pub(super) struct Words<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl<'a> Words<'a> {
+    /// From the start of a file, after a byte order mark.
+    pub fn new(bytes: &'a [u8]) -> Self {
+        Words { bytes, at: if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 } }
+    }
+
+    /// Those of a part of a file that [`parts`] gave; places are still those in the file.
+    pub fn within(bytes: &'a [u8], part: Range<usize>) -> Self {
+        let whole = Words::new(&bytes[..part.end]);
+        Words { at: whole.at.max(part.start), ..whole }
+    }
+
+    /// Goes to the next statement and returns its first word, or `None` at the end of the file.
+    pub fn next_statement(&mut self) -> Option<Range<usize>> {
+        loop {
+            match self.next_word() {
+                Some(word) => return Some(word),
+                // Past the end of the line, where there is one.
+                None if self.at < self.bytes.len() => self.at += 1,
+                None => return None,
+            }
+        }
+    }
+
+    /// The next word of this statement.
+    pub fn next_word(&mut self) -> Option<Range<usize>> {
+        loop {
+            match *self.bytes.get(self.at)? {
+                b' ' | b'\t' | 0x0b | 0x0c => self.at += 1,
+                b'\n' | b'\r' => return None,
+                b'#' => {
+                    let rest = &self.bytes[self.at..];
+                    let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r');
+                    self.at += length.unwrap_or(rest.len());
+                    return None;
+                }
+                b'\\' if self.continuation() > 0 => self.at += self.continuation(),
+                _ => break,
+            }
+        }
+        let start = self.at;
+        while let Some(&byte) = self.bytes.get(self.at) {
+            if byte > b' ' && byte != b'#' && byte != b'\\' {
+                self.at += 1;
+                continue;
+            }
+            let ends = match byte {
+                b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => true,
+                b'\\' => self.continuation() > 0,
+                // A comment, unless it is the middle of `1.#INF`.
+                b'#' => !is_not_finite_tail(&self.bytes[self.at..]),
+                _ => false,
+            };
+            if ends {
+                break;
+            }
+            self.at += 1;
+        }
+        Some(start..self.at)
+    }
+
+    /// Skips what is left of this statement and returns where its last word ended, if any was left.
+    pub fn skip_rest(&mut self) -> Option<usize> {
+        std::iter::from_fn(|| self.next_word()).last().map(|word| word.end)
+    }
+
+    /// Skips what is left of this statement.
+    pub fn skip(&mut self) {
+        let rest = &self.bytes[self.at.min(self.bytes.len())..];
+        match rest.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'\\')) {
+            Some(length) if rest[length] == b'\\' => _ = self.skip_rest(),
+            Some(length) => self.at += length,
+            None => self.at = self.bytes.len(),
+        }
+    }
+
+    /// How many bytes the backslash and the end of line here take; 0 where they are no
+    /// continuation.
+    fn continuation(&self) -> usize {
+        match self.bytes[self.at..] {
+            [b'\\', b'\r', b'\n', ..] => 3,
+            [b'\\', b'\n' | b'\r', ..] => 2,
+            [b'\\'] => 1,
+            _ => 0,
+        }
+    }
+}
+
+/// Cuts a file into parts of about a megabyte that end where statements do. Where they end does not
+/// depend on the machine.
+pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
+    const SIZE: usize = 1 << 20;
+    let mut all = Vec::new();
+    let mut start = 0;
+    while start < bytes.len() {
+        let mut end = (start + SIZE).min(bytes.len());
+        while end < bytes.len() {
+            let line = bytes[end..].iter().position(|&byte| byte == b'\n');
+            end = line.map_or(bytes.len(), |line| end + line + 1);
+            let before = bytes[..end].strip_suffix(b"\n").unwrap_or(bytes);
+            if !before.strip_suffix(b"\r").unwrap_or(before).ends_with(b"\\") {
+                break;
+            }
+        }
+        all.push(start..end);
+        start = end;
+    }
+    all
+}

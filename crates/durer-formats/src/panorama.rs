@@ -1,0 +1,91 @@
+//! Light from infinitely far away as one picture of longitude and latitude, which is the scene's
+//! environment.
+
+use durer_diag::Span;
+use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
+use durer_scene::describe::FileName;
+use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::scene::{Picture, PictureBytes, Scene};
+use durer_scene::texture::Mapping;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::f32::consts::{PI, TAU};
+
+/// Places along each side of a texel that are looked up.
+const PLACES: u32 = 3;
+
+/// Bytes that a texel takes while the picture is made: its light, and that as a file which grows
+/// to twice as much.
+const MAKING: u64 = 4 * size_of::<Color>() as u64;
+
+/// Makes the picture of what comes from each direction of the world, and puts it around the scene.
+///
+/// # Errors
+/// [`ImageError::Memory`] where it would take more bytes than allowed.
+pub(super) fn surround(
+    scene: &mut Scene,
+    (name, span): (&str, Span),
+    rows: u32,
+    allowed: u64,
+    light: impl Fn(DVec3) -> Color + Sync,
+) -> Result<(), ImageError> {
+    let (width, height) = (2 * u64::from(rows), u64::from(rows));
+    let needed = width * height * MAKING;
+    if needed > allowed {
+        return Err(ImageError::Memory { width, height, needed, allowed });
+    }
+    let whole = Image::from_pixels(2 * rows, rows, pixels(light, rows))?;
+    let mut bytes = Vec::new();
+    image::format_for("a.pfm")?.write(&[Layer::data("", whole)], &WriteOptions::default(), &mut bytes)?;
+    let path = format!("{name}#environment.pfm");
+    let bytes = PictureBytes::Here(path.clone(), bytes.into());
+    scene.assets.pictures.insert(path.clone(), Picture { bytes, mapping: Mapping::default() });
+    scene.background.environment = Some(FileName { path, span });
+    Ok(())
+}
+
+/// What is left of the memory beside pictures.
+pub(super) fn beside<'a>(pictures: impl IntoIterator<Item = &'a Image>, memory: u64) -> u64 {
+    pictures.into_iter().fold(memory, |left, picture| left.saturating_sub(size_of_val(&picture.pixels[..]) as u64))
+}
+
+/// What a picture of longitude and latitude has in a direction, y upwards: the nearest texel's.
+pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
+    let dir = dir.as_vec3();
+    let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
+    let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count.saturating_sub(1));
+    picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
+}
+
+/// The light of all directions, as [`Environment`](durer_scene::texture::Environment) has them.
+fn pixels(light: impl Fn(DVec3) -> Color + Sync, rows: u32) -> Vec<Color> {
+    let columns = 2 * rows;
+    let texel = |i: u32| {
+        let (x, y) = (i % columns, i / columns);
+        let mut sum = Color::ZERO;
+        for place in 0..PLACES * PLACES {
+            let offset = |k: u32| (k as f32 + 0.5) / PLACES as f32;
+            let (u, v) = (x as f32 + offset(place % PLACES), y as f32 + offset(place / PLACES));
+            let angle = TAU * (u / columns as f32 - 0.5);
+            let (sin, cos) = (fp::sin(PI * v / rows as f32), fp::cos(PI * v / rows as f32));
+            sum += light(Vec3::new(sin * fp::sin(angle), cos, -sin * fp::cos(angle)).as_dvec3());
+        }
+        sum / (PLACES * PLACES) as f32
+    };
+    (0..columns * rows).into_par_iter().map(texel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_looked_up_is_what_was_put_there() {
+        let light = |dir: DVec3| dir.as_vec3() + 1.5;
+        let picture = Image::from_pixels(256, 128, pixels(light, 128)).unwrap();
+        for dir in [DVec3::X, DVec3::NEG_X, DVec3::Z, DVec3::NEG_Z, DVec3::Y, DVec3::new(0.48, -0.6, 0.64)] {
+            let found = looked_up(&picture, dir);
+            assert!((found - light(dir)).length() < 0.05, "{dir}: {found}");
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! Film, camera, sampler and integrator: what the picture is.
+
+use super::language::Language;
+use super::params::Params;
+use super::state::{Asked, Reader};
+use crate::said::meant;
+use durer_image::MAX_PIXELS;
+use durer_scene::camera::{
+    Camera, EquirectangularCamera, Handedness, OrthographicCamera, PerspectiveCamera, ThinLensCamera,
+};
+use durer_scene::math::fp;
+use glam::{DAffine3, DVec2, DVec3};
+
+/// The size of a film that does not say it, in pbrt-v4 and in pbrt-v3.
+const SIZE: (u32, u32) = (1280, 720);
+const OLD_SIZE: (u32, u32) = (640, 480);
+
+/// A camera in the world: its place and axes, to the right, upwards and forwards, as long as a unit
+/// of its own.
+struct Placed {
+    center: DVec3,
+    axes: [DVec3; 3],
+}
+
+impl Placed {
+    fn new(to_world: DAffine3) -> Self {
+        let m = to_world.matrix3;
+        Placed { center: to_world.translation, axes: [m.x_axis, m.y_axis, m.z_axis] }
+    }
+
+    /// Which side of the picture is right for somebody who looks along a direction.
+    fn handedness(right: DVec3, up: DVec3, forward: DVec3) -> Handedness {
+        if forward.cross(up).dot(right) < 0.0 { Handedness::Left } else { Handedness::Right }
+    }
+}
+
+/// First column and row, columns and rows.
+type Part = (u32, u32, u32, u32);
+
+/// The part of a film that is made.
+///
+/// Source: *Physically Based Rendering*, 4th edition, section 5.4.2: pixels from, to, from, to, or
+/// shares of the sides that are rounded up; it ends before the second and the fourth.
+fn crop(params: &Params, (width, height): (u32, u32)) -> Option<Part> {
+    let sides = [width, width, height, height].map(f64::from);
+    let mut part = [0.0, sides[0], 0.0, sides[2]];
+    let mut given = None;
+    for (name, is_share) in [("pixelbounds", false), ("cropwindow", true)] {
+        let Some(all) = params.get(name).map(|param| param.numbers()) else { continue };
+        let Ok(all) = <[f64; 4]>::try_from(all) else {
+            params.said.bad(params.place(name), format!("`{name}` needs four numbers: from, to, from, to"));
+            return None;
+        };
+        let pixel = |i: usize| if is_share { (all[i] * sides[i]).ceil() } else { all[i] };
+        part = std::array::from_fn(|i| pixel(i).clamp(0.0, sides[i]));
+        given = Some(name);
+    }
+    let [left, right, top, bottom] = part.map(|pixel| pixel as u32);
+    if left >= right || top >= bottom {
+        params.said.bad(params.place(given?), "this part of the film has no pixels");
+        return None;
+    }
+    given.map(|_| (left, top, right - left, bottom - top))
+}
+
+/// The part of a plane before the camera that is seen, y upwards.
+struct Window {
+    middle: DVec2,
+    half: DVec2,
+}
+
+impl Reader<'_> {
+    /// Makes a camera of what was said of it, for the film.
+    pub fn frame(&mut self) {
+        let ((width, height), crop) = self.film_size();
+        let Some(asked) = self.camera.take() else { return };
+        self.scene.wishes.size = Some((width, height));
+        self.scene.wishes.crop = crop;
+        let params = self.params_of(&asked);
+        if asked.transforms.moves() {
+            self.said.once(asked.at, "motion has no counterpart: all stands as when the shutter opens");
+        }
+        let placed = Placed::new(asked.transforms.maps[0].inverse());
+        let [a, b, c] = placed.axes.map(DVec3::normalize_or_zero);
+        if a.dot(b).abs().max(a.dot(c).abs()).max(b.dot(c).abs()) > 1e-4 {
+            self.said.other(asked.at, "the camera's transform is sheared: it looks straight ahead instead");
+        }
+        let camera = match asked.kind.as_str() {
+            "perspective" => Some(self.perspective(&placed, &params, (width, height), None)),
+            "orthographic" => self.orthographic(&placed, &params, (width, height)),
+            "spherical" => Some(self.spherical(&placed, &params)),
+            "environment" if self.language == Language::Third => Some(self.spherical(&placed, &params)),
+            "realistic" => {
+                let what = "a camera of lenses has no counterpart: one with a field of view of 38 degrees across the film's \
+                            diagonal is taken";
+                self.said.other(asked.at, what);
+                params.known(&["lensfile", "aperturediameter", "focusdistance", "aperture", "scale"]);
+                let diagonal = DVec2::new(f64::from(width), f64::from(height));
+                let half = fp::tan_f64(19f64.to_radians()) * diagonal.min_element() / diagonal.length();
+                Some(self.perspective(&placed, &params, (width, height), Some(half)))
+            }
+            other => {
+                let help = meant(other, ["perspective", "orthographic", "spherical", "realistic"]);
+                self.said.bad_with(asked.at, format!("there is no camera `{other}`"), help);
+                None
+            }
+        };
+        params.known(&["shutteropen", "shutterclose"]);
+        params.finish("this camera");
+        self.scene.camera = camera;
+        self.scene.camera_span = asked.at;
+    }
+
+    /// Its columns and rows, and the part of it that is made.
+    fn film_size(&self) -> ((u32, u32), Option<Part>) {
+        let third = self.language == Language::Third;
+        let usual = if third { OLD_SIZE } else { SIZE };
+        let Some(film) = &self.film else { return (usual, None) };
+        let params = self.params_of(film);
+        let kinds = if third { &["image"][..] } else { &["rgb", "gbuffer", "spectral"][..] };
+        if !kinds.contains(&film.kind.as_str()) {
+            let help = meant(&film.kind, kinds.iter().copied());
+            self.said.bad_with(film.at, format!("there is no film `{}`", film.kind), help);
+        }
+        let side = |name: &'static str, usual: u32| match params.whole(name) {
+            Some(value) if (1..=1 << 20).contains(&value) => value as u32,
+            Some(_) => {
+                params.said.bad(params.place(name), format!("`{name}` must be from 1 to {}", 1 << 20));
+                usual
+            }
+            None => usual,
+        };
+        let (width, height) = (side("xresolution", usual.0), side("yresolution", usual.1));
+        if u64::from(width) * u64::from(height) > MAX_PIXELS {
+            params.said.bad(film.at, format!("{width} x {height} pixels are too many"));
+        }
+        if let Some(sensor) = params.text("sensor").filter(|sensor| *sensor != "cie1931") {
+            let what = format!("the sensor `{sensor}` has no counterpart: the eye's, `cie1931`, is taken");
+            params.said.other(params.place("sensor"), what);
+        }
+        params.left_out(&["whitebalance"], "light keeps its colour");
+        let crop = crop(&params, (width, height));
+        let unseen = ["filename", "diagonal", "iso", "maxcomponentvalue", "savefp16", "coordinatesystem"];
+        params.known(&unseen);
+        params.known(&["nbuckets", "lambdamin", "lambdamax"]);
+        if third {
+            params.known(&["scale", "maxsampleluminance"]);
+        }
+        params.finish("this film");
+        ((width, height), crop)
+    }
+
+    /// What the film makes of radiance 1: how long the shutter is open, times ISO over 100.
+    ///
+    /// In pbrt-v3 its `scale`.
+    ///
+    /// Source: *Physically Based Rendering*, 4th edition, section 5.4.2, and 3rd edition, section 7.9.
+    pub fn exposure(&self) -> f32 {
+        if self.language == Language::Third {
+            let scale = self.film.as_ref().and_then(|film| self.params_of(film).float("scale"));
+            return scale.unwrap_or(1.0).max(0.0);
+        }
+        let film = self.film.as_ref().and_then(|film| self.params_of(film).float("iso"));
+        let open = self.camera.as_ref().map(|camera| {
+            let params = self.params_of(camera);
+            params.float("shutterclose").unwrap_or(1.0) - params.float("shutteropen").unwrap_or(0.0)
+        });
+        (open.unwrap_or(1.0) * film.unwrap_or(100.0) / 100.0).max(0.0)
+    }
+
+    /// What is seen of the plane where the picture's shorter half is 1 long.
+    fn window(&self, params: &Params, (width, height): (u32, u32)) -> Window {
+        let aspect = params.positive("frameaspectratio").unwrap_or(width as f32 / height as f32);
+        let aspect = f64::from(aspect);
+        match params.floats("screenwindow") {
+            Some(&[x0, x1, y0, y1]) if x1 > x0 && y1 > y0 => {
+                Window { middle: 0.5 * DVec2::new(x0 + x1, y0 + y1), half: 0.5 * DVec2::new(x1 - x0, y1 - y0) }
+            }
+            given => {
+                if given.is_some() {
+                    params.said.bad(
+                        params.place("screenwindow"),
+                        "`screenwindow` needs four numbers: x from and to, y from and to",
+                    );
+                }
+                Window { middle: DVec2::ZERO, half: DVec2::new(aspect.max(1.0), (1.0 / aspect).max(1.0)) }
+            }
+        }
+    }
+
+    /// Half the larger side, and by how much of that the middle lies aside; complains of pixels
+    /// that are not square.
+    fn larger(&self, window: &Window, (width, height): (u32, u32), params: &Params) -> (f64, DVec2) {
+        let (x, y) = (window.half.x / f64::from(width), window.half.y / f64::from(height));
+        if (x / y - 1.0).abs() > 2e-3 {
+            params.said.other(params.at, "the film's pixels are not square: the view across its larger side is taken");
+        }
+        let half = if width >= height { window.half.x } else { window.half.y };
+        (half, window.middle / half)
+    }
+
+    /// `half` is half the shorter side at distance 1, where no field of view says that.
+    fn perspective(&self, placed: &Placed, params: &Params, size: (u32, u32), half: Option<f64>) -> Camera {
+        let [a, b, c] = placed.axes;
+        let (usual, mut window) = (half.map_or(90.0, |_| 90.0), self.window(params, size));
+        let fov = params.float("fov").unwrap_or(usual);
+        let fov = params.float("halffov").map_or(fov, |half| 2.0 * half);
+        if !(fov > 0.0 && fov < 180.0) {
+            params.said.bad(params.place("fov"), "a field of view must be more than 0 and less than 180 degrees");
+        }
+        let scale = half.unwrap_or_else(|| fp::tan_f64(f64::from(fov.clamp(1e-3, 179.9)).to_radians() / 2.0));
+        // A camera whose own units are longer across than along sees more.
+        let across = scale * DVec2::new(a.length(), b.length()) / c.length();
+        (window.half, window.middle) = (window.half * across, window.middle * across);
+        let (half, shift) = self.larger(&window, size, params);
+        let angle = ((2.0 * fp::atan_f64(half)).to_degrees() as f32).clamp(1e-4, 179.99);
+        let lens = params.float("lensradius").unwrap_or(0.0).max(0.0);
+        let focus = params.float("focaldistance").unwrap_or(1e6).max(f32::MIN_POSITIVE);
+        let handedness = Placed::handedness(a, b, c);
+        let [center, direction, up] = [placed.center, c.normalize(), b.normalize()].map(|v| v.as_vec3());
+        if lens == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO {
+            return PerspectiveCamera { center, direction, up, angle }.into();
+        }
+        ThinLensCamera {
+            center,
+            direction,
+            up,
+            angle,
+            aperture: 2.0 * lens * (0.5 * (a.length() + b.length())) as f32,
+            focus_distance: if lens > 0.0 { focus * c.length() as f32 } else { 1.0 },
+            shift_right: shift.x as f32,
+            shift_up: shift.y as f32,
+            handedness,
+            ..ThinLensCamera::default()
+        }
+        .into()
+    }
+
+    fn orthographic(&self, placed: &Placed, params: &Params, size: (u32, u32)) -> Option<Camera> {
+        let [a, b, c] = placed.axes;
+        let mut window = self.window(params, size);
+        let middle = placed.center + window.middle.x * a + window.middle.y * b;
+        window.half *= DVec2::new(a.length(), b.length());
+        let (half, _) = self.larger(&window, size, params);
+        params.left_out(&["lensradius"], "without perspective everything is sharp");
+        params.known(&["focaldistance"]);
+        let camera = OrthographicCamera {
+            center: middle.as_vec3(),
+            direction: c.normalize().as_vec3(),
+            up: b.normalize().as_vec3(),
+            size: (2.0 * half) as f32,
+            handedness: Placed::handedness(a, b, c),
+            near: Some(0.0),
+        };
+        Some(camera.into())
+    }
+
+    /// The middle of the picture is where -x points.
+    fn spherical(&self, placed: &Placed, params: &Params) -> Camera {
+        let [a, b, c] = placed.axes;
+        if self.language == Language::Third {
+            params.known(&["frameaspectratio", "screenwindow", "lensradius", "focaldistance"]);
+        } else if params.text("mapping").unwrap_or("equalarea") != "equirectangular" {
+            params.said.other(params.at, "the mapping `equalarea` has no counterpart: `equirectangular` is taken");
+        }
+        EquirectangularCamera {
+            center: placed.center.as_vec3(),
+            direction: -a.normalize().as_vec3(),
+            up: b.normalize().as_vec3(),
+            handedness: Placed::handedness(-c, b, -a),
+            ..EquirectangularCamera::default()
+        }
+        .into()
+    }
+
+    /// Light scattered `maxdepth` times is scattered once less after the first time.
+    pub fn integrator(&mut self, asked: &Asked) {
+        const OLD: [&str; 9] =
+            ["path", "volpath", "bdpt", "mlt", "sppm", "ambientocclusion", "ao", "directlighting", "whitted"];
+        const KNOWN: [&str; 11] = [
+            "path",
+            "volpath",
+            "simplepath",
+            "simplevolpath",
+            "bdpt",
+            "mlt",
+            "sppm",
+            "lightpath",
+            "randomwalk",
+            "ambientocclusion",
+            "function",
+        ];
+        let params = self.params_of(asked);
+        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        if !known.contains(&asked.kind.as_str()) {
+            let help = meant(&asked.kind, known.iter().copied());
+            self.said.bad_with(asked.at, format!("there is no integrator `{}`", asked.kind), help);
+        } else if !asked.kind.ends_with("path") {
+            let what =
+                format!("the integrator `{}` has no counterpart: paths from the camera are followed", asked.kind);
+            self.said.push(durer_diag::Diagnostic::note(what).code("NO_COUNTERPART").at(asked.at));
+        }
+        match params.whole("maxdepth").unwrap_or(5) {
+            depth @ 1..=1_000_000 => self.scene.wishes.bounces = Some(depth as u32 - 1),
+            0 => {
+                self.scene.wishes.bounces = Some(0);
+                self.said
+                    .other(params.place("maxdepth"), "light that is not scattered at all is no picture: 1 is taken");
+            }
+            _ => self.said.bad(params.place("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
+        }
+        params.known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);
+        params.known(&["maxdistance", "cossample", "samplelights", "samplebsdf", "skipbad", "function", "filename"]);
+        params.known(&["photonsperiteration", "iterations", "radius", "seed", "bootstrapsamples", "chains"]);
+        params.known(&["mutationsperpixel", "largestepprobability", "sigma"]);
+        if self.language == Language::Third {
+            params.known(&["pixelbounds", "rrthreshold", "lightsamplestrategy", "strategy", "nsamples"]);
+            params.known(&["numiterations", "imagewritefrequency", "lightsamplethreshold"]);
+        }
+        params.finish("this integrator");
+    }
+
+    pub fn sampler(&mut self, asked: &Asked) {
+        const KNOWN: [&str; 8] =
+            ["halton", "independent", "paddedsobol", "pmj02bn", "sobol", "stratified", "zsobol", "mlt"];
+        const OLD: [&str; 7] =
+            ["02sequence", "halton", "lowdiscrepancy", "maxmindist", "random", "sobol", "stratified"];
+        let params = self.params_of(asked);
+        let known = if self.language == Language::Third { &OLD[..] } else { &KNOWN[..] };
+        if !known.contains(&asked.kind.as_str()) {
+            let help = meant(&asked.kind, known.iter().copied());
+            self.said.bad_with(asked.at, format!("there is no sampler `{}`", asked.kind), help);
+        }
+        let samples = match (params.whole("xsamples"), params.whole("ysamples")) {
+            (None, None) => params.whole("pixelsamples"),
+            (x, y) => x.unwrap_or(4).checked_mul(y.unwrap_or(4)),
+        };
+        match samples {
+            Some(samples @ 1..=1_048_576) => self.scene.wishes.samples = Some(samples as u32),
+            None => {}
+            Some(_) => self.said.bad(asked.at, "a pixel needs 1 to 1048576 samples"),
+        }
+        params.known(&["pixelsamples", "randomization", "seed", "jitter"]);
+        if self.language == Language::Third {
+            params.known(&["dimensions", "samplepixelcenter"]);
+        }
+        params.finish("this sampler");
+    }
+}

@@ -1,0 +1,141 @@
+//! Curves with a width: round ones as tubes, ribbons as strips, both of triangles.
+//!
+//! Source of meanings: *Physically Based Rendering*, 4th edition, section 6.7, and 3rd edition,
+//! section 3.7.
+
+use super::params::Params;
+use crate::said::meant;
+use crate::tubes::{Piece, add_strip, add_tube, of_spline, places};
+use durer_scene::math::{Vec2, fp};
+use durer_scene::shape::MeshData;
+use glam::{DVec3, DVec4};
+use std::f64::consts::PI;
+
+/// Points of one curve.
+const MAX_POINTS: usize = 1 << 14;
+
+/// A curve, which may be one of very many.
+pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshData> {
+    let said = params.said;
+    params.known(&["splitdepth"]);
+    let kind = params.text("type").unwrap_or("flat");
+    if !["flat", "cylinder", "ribbon"].contains(&kind) {
+        let help = meant(kind, ["flat", "cylinder", "ribbon"]);
+        said.bad_with(params.place("type"), format!("there is no curve of type `{kind}`"), help);
+        return None;
+    }
+    let pieces = pieces(params)?;
+    let width = params.float("width").unwrap_or(1.0);
+    let widths = [params.float("width0").unwrap_or(width), params.float("width1").unwrap_or(width)].map(f64::from);
+    if widths.iter().any(|width| *width < 0.0) {
+        said.bad(params.at, "the width of a curve must not be less than 0");
+        return None;
+    }
+    let normals = params.triples("N").unwrap_or_default();
+    if kind == "ribbon" && normals.len() != pieces.len() + 1 {
+        let message = format!(
+            "a ribbon of {} pieces needs {} normals `N`, found {}",
+            pieces.len(),
+            pieces.len() + 1,
+            normals.len()
+        );
+        said.bad(params.place("N"), message);
+        return None;
+    }
+    if kind == "flat" {
+        said.once(params.at, "flat curves turn to where they are seen from; here they are round");
+    }
+    let places = places(&widened(&pieces, widths), pieces.len());
+    if places.len() < 2 {
+        return None;
+    }
+    let mut data = MeshData::default();
+    if kind == "ribbon" {
+        let normals: Vec<DVec3> = normals.iter().map(|n| n.as_dvec3().normalize_or(DVec3::Z)).collect();
+        for place in &places {
+            let normal = turned_between([normals[place.piece], normals[place.piece + 1]], place.part);
+            let across = normal.cross(place.along).normalize_or(place.along.any_orthonormal_vector());
+            let faced = place.along.cross(across).as_vec3();
+            for (side, v) in [(-0.5, 0.0), (0.5, 1.0)] {
+                data.positions.push((place.point + side * place.width * across).as_vec3());
+                data.normals.push(faced);
+                data.uvs.push(Vec2::new(place.share as f32, v));
+            }
+        }
+        add_strip(&mut data, 0, places.len(), 2);
+    } else {
+        add_tube(&mut data, &places, many);
+    }
+    Some(super::mesh::oriented(data, reversed))
+}
+
+/// Pieces of a curve whose width grows evenly from one to another.
+fn widened(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
+    let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
+    let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));
+    pieces.iter().enumerate().map(wide).collect()
+}
+
+/// What lies between two directions, at an even pace.
+fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
+    let cosine = from.dot(to).clamp(-1.0, 1.0);
+    let across = to - cosine * from;
+    let Some(across) = across.try_normalize().filter(|_| cosine < 0.999_999) else {
+        return from.lerp(to, share).normalize_or(from);
+    };
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let angle = if cosine == -1.0 { PI } else { 2.0 * fp::atan_f64(sine / (1.0 + cosine)) };
+    let (sin, cos) = fp::sin_cos_f64(share * angle);
+    from * cos + across * sin
+}
+
+/// The pieces of a curve, as cubic ones of Bézier's.
+fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
+    let said = params.said;
+    let Some(points) = params.triples("P") else {
+        said.bad(params.at, "a curve needs points, `\"point3 P\"`");
+        return None;
+    };
+    let (basis, degree) = (params.text("basis").unwrap_or("bezier"), params.whole("degree").unwrap_or(3));
+    if !(degree == 2 || degree == 3) {
+        said.bad(params.place("degree"), "`degree` must be 2 or 3");
+        return None;
+    }
+    let degree = degree as usize;
+    let step = match basis {
+        "bezier" => degree,
+        "bspline" => 1,
+        other => {
+            let help = meant(other, ["bezier", "bspline"]);
+            said.bad_with(params.place("basis"), format!("there is no basis `{other}`"), help);
+            return None;
+        }
+    };
+    if points.len() <= degree || !(points.len() - 1 - degree).is_multiple_of(step) {
+        let message = match basis {
+            "bezier" => {
+                format!("{} points make no curve of degree {degree}: 1 and a multiple of {degree} do", points.len())
+            }
+            _ => format!("{} points make no curve of degree {degree}: more than {degree} do", points.len()),
+        };
+        said.bad(params.place("P"), message);
+        return None;
+    }
+    if points.len() > MAX_POINTS {
+        said.bad(params.place("P"), format!("more than {MAX_POINTS} points of a curve are too many"));
+        return None;
+    }
+    let points: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+    let piece = |p: &[DVec3]| match (basis, degree) {
+        ("bezier", 3) => [p[0], p[1], p[2], p[3]],
+        ("bezier", _) => raised([p[0], p[1], p[2]]),
+        (_, 2) => raised([0.5 * (p[0] + p[1]), p[1], 0.5 * (p[1] + p[2])]),
+        _ => of_spline(&[p[0], p[1], p[2], p[3]].map(|p| p.extend(0.0))).map(DVec4::truncate),
+    };
+    Some(points.windows(degree + 1).step_by(step).map(piece).collect())
+}
+
+/// A quadratic piece as a cubic one.
+fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
+    [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
+}

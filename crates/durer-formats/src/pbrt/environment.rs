@@ -1,0 +1,172 @@
+//! Light from infinitely far away: even, or pictures of all directions, which become one picture of
+//! longitude and latitude.
+
+use super::made::{Infinite, Map};
+use super::state::Reader;
+use crate::panorama;
+use crate::pictures::unusable;
+use durer_diag::{Diagnostic, Span};
+use durer_image::{self as image, Encoded, Image};
+use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
+use glam::{DAffine3, DVec3};
+use std::f32::consts::{FRAC_2_PI, PI, TAU};
+
+/// Rows of the picture that is made.
+const MAX_ROWS: u32 = 2048;
+
+/// A picture with what turns and scales it.
+struct Source {
+    image: Image,
+    to_light: DAffine3,
+    scale: Color,
+    map: Map,
+}
+
+impl Reader<'_> {
+    /// Puts what is infinitely far away behind the scene.
+    pub fn surround(&mut self) {
+        let mut even = Color::ZERO;
+        let mut sources = Vec::new();
+        let mut first = None;
+        for infinite in std::mem::take(&mut self.infinite) {
+            match infinite {
+                Infinite::Even(color) => even += color,
+                Infinite::Picture { name, at, scale, map, to_light, illuminance } => {
+                    let memory =
+                        panorama::beside(sources.iter().map(|source: &Source| &source.image), self.input.memory);
+                    let Some((image, map)) = self.environment(&name, at, map, memory) else { continue };
+                    let bright = |wanted: f32| wanted / upper_illuminance(&image, map);
+                    let scale = scale * illuminance.map_or(1.0, bright);
+                    first.get_or_insert((name, at));
+                    let scale = if scale.is_finite() { scale } else { Color::ZERO };
+                    sources.push(Source { image, to_light, scale, map });
+                }
+            }
+        }
+        (self.scene.background.color, self.scene.background.ambient_light) = (even, Color::ZERO);
+        let Some((name, at)) = first else { return };
+        // What is fine about a pole lies elsewhere in the picture that is made.
+        let finer = |source: &Source| source.image.height * if source.map == Map::Longitude { 2 } else { 1 };
+        let rows = sources.iter().map(finer).max().unwrap_or(1).min(MAX_ROWS);
+        let light = |dir: DVec3| even + sources.iter().map(|source| source.at(dir)).sum::<Color>();
+        let memory = panorama::beside(sources.iter().map(|source| &source.image), self.input.memory);
+        if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {
+            self.said.push(unusable(&name, &error).at(at));
+        }
+    }
+
+    /// A picture of all directions, and how they lie in it.
+    fn environment(&self, name: &str, at: Span, map: Map, memory: u64) -> Option<(Image, Map)> {
+        let bytes = match self.input.source.read(name) {
+            Ok(bytes) => bytes,
+            Err(error) => {
+                self.said.push(Diagnostic::error(error.to_string()).code("missing-file").at(at));
+                return None;
+            }
+        };
+        // pbrt-v3 takes the bytes of a light's picture for light itself.
+        let decode = if map == Map::Longitude { image::decode_linear } else { image::decode_srgb };
+        let read = Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, decode));
+        match read {
+            Ok(picture) if map == Map::Longitude => Some((picture, map)),
+            Ok(picture) if picture.width == picture.height => Some((picture, map)),
+            Ok(picture) if picture.width == 2 * picture.height => {
+                let what = "this picture is twice as wide as high: it is taken for longitude and latitude, as pbrt-v3 has them, \
+                            z upwards";
+                self.said.other(at, what);
+                Some((picture, Map::Longitude))
+            }
+            Ok(Image { width, height, .. }) => {
+                let message = format!("{width} x {height} pixels are no picture of all directions: it must be square");
+                self.said.bad_with(at, message, Some("pbrt's `imgtool makeequiarea` makes such a picture".into()));
+                None
+            }
+            Err(error) => {
+                self.said.push(unusable(name, &error).at(at));
+                None
+            }
+        }
+    }
+}
+
+impl Source {
+    /// The light from a direction of the world: of the nearest texel, as pbrt-v4 has it, and
+    /// between texels, as pbrt-v3 has it.
+    fn at(&self, dir: DVec3) -> Color {
+        let dir = self.to_light.transform_vector3(dir).normalize_or(DVec3::Z).as_vec3();
+        let (width, height) = (self.image.width, self.image.height);
+        let place = match self.map {
+            Map::EqualArea => equal_area(dir),
+            Map::Longitude => {
+                let u = fp::atan2(dir.y, dir.x) / TAU;
+                Vec2::new(u - u.floor(), fp::atan2((dir.x * dir.x + dir.y * dir.y).sqrt(), dir.z) / PI)
+            }
+        };
+        let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
+        let light = match self.map {
+            Map::EqualArea => self.image.get(texel(place.x, width), texel(place.y, height)).unwrap_or_default(),
+            Map::Longitude => between(&self.image, place),
+        };
+        let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
+        self.scale * light
+    }
+}
+
+/// The value at a place of a picture, in its widths and heights from the upper left corner: linear
+/// between texels, and beyond its border it begins again.
+pub(crate) fn between(image: &Image, place: Vec2) -> Color {
+    let (width, height) = (image.width as i64, image.height as i64);
+    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let (low_x, low_y) = (x.floor(), y.floor());
+    let texel = |dx: i64, dy: i64| {
+        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
+        let value = image.get(i as u32, j as u32).unwrap_or_default();
+        if value.is_finite() { value } else { Color::ZERO }
+    };
+    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
+    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
+}
+
+/// The place of a unit vector in the square onto which the sphere is laid with all areas in
+/// proportion.
+///
+/// Source: Petrik Clarberg, *Fast Equal-Area Mapping of the (Hemi)Sphere using SIMD*, Journal of
+/// Graphics Tools 13(3), 2008.
+pub(super) fn equal_area(dir: Vec3) -> Vec2 {
+    let Vec3 { x, y, z } = dir.abs();
+    let radius = (1.0 - z).max(0.0).sqrt();
+    // The share of the quarter turn from x to y.
+    let turn = if x == 0.0 && y == 0.0 { 0.0 } else { FRAC_2_PI * fp::atan2(y, x) };
+    let upper = Vec2::new(radius * (1.0 - turn), radius * turn);
+    let place = if dir.z < 0.0 { Vec2::new(1.0 - upper.y, 1.0 - upper.x) } else { upper };
+    0.5 * (Vec2::new(place.x.copysign(dir.x), place.y.copysign(dir.y)) + 1.0)
+}
+
+/// The unit vector of a place in that square.
+pub(super) fn of_equal_area(place: Vec2) -> Vec3 {
+    let place = 2.0 * place - 1.0;
+    let across = place.abs();
+    let distance = 1.0 - (across.x + across.y);
+    let radius = 1.0 - distance.abs();
+    let turn = if radius == 0.0 { 1.0 } else { (across.y - across.x) / radius + 1.0 } * 0.25 * PI;
+    let flat = radius * (2.0 - radius * radius).max(0.0).sqrt();
+    let z = (1.0 - radius * radius).copysign(distance);
+    Vec3::new((fp::cos(turn) * flat).copysign(place.x), (fp::sin(turn) * flat).copysign(place.y), z)
+}
+
+/// The illuminance that the upper half of a picture (z > 0) makes from above.
+fn upper_illuminance(image: &Image, map: Map) -> f32 {
+    let mut sum = 0.0_f64;
+    let (width, height) = (image.width, image.height);
+    for (i, light) in image.pixels.iter().enumerate() {
+        let (x, y) = ((i as u32 % width) as f32 + 0.5, (i as u32 / width) as f32 + 0.5);
+        let place = Vec2::new(x / width as f32, y / height as f32);
+        let (cosine, size) = match map {
+            Map::EqualArea => (of_equal_area(place).z, 4.0 * PI),
+            Map::Longitude => (fp::cos(PI * place.y), 2.0 * PI * PI * fp::sin(PI * place.y)),
+        };
+        let luminance = light.dot(LUMINANCE);
+        sum += f64::from(luminance * cosine.max(0.0) * size);
+    }
+    (sum / f64::from(width * height)) as f32
+}

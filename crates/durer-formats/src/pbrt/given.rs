@@ -1,0 +1,113 @@
+//! The spectrum of a parameter: a colour, a black body, numbers, a name or a file.
+
+use super::language::Language;
+use super::named;
+use super::params::{Kind, Param, Params, Values};
+use super::spectrum::{Spectrum, of_xyz};
+use crate::number::parse_f32;
+use crate::said::meant;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::math::Vec3;
+
+impl Spectrum {
+    /// The spectrum of a parameter. Those of pbrt-v3 are three numbers from the beginning on.
+    pub(super) fn of(param: &Param, params: &Params) -> Option<Spectrum> {
+        let found = Self::written(param, params)?;
+        if params.language == Language::Fourth {
+            return Some(found);
+        }
+        // What is not 1 by its unit, but by a number behind the temperature.
+        let factor = match (&found, param.numbers()) {
+            (Spectrum::Blackbody(_), [_, factor, ..]) => *factor as f32,
+            _ => 1.0,
+        };
+        Some(Spectrum::Rgb(factor.max(0.0) * found.plain()))
+    }
+
+    fn written(param: &Param, params: &Params) -> Option<Spectrum> {
+        let said = params.said;
+        match (param.kind, &param.values) {
+            (Kind::Xyz, _) => {
+                let xyz = *param.triples().first()?;
+                Some(Spectrum::Rgb(of_xyz(xyz.as_dvec3()).max(Vec3::ZERO)))
+            }
+            (Kind::Rgb, _) => Some(Spectrum::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
+            (Kind::Blackbody, _) => {
+                let kelvin = param.number();
+                if !(kelvin > 0.0 && kelvin < 1e6) {
+                    said.bad(param.values_at, "a black body needs more than 0 kelvin, and less than a million");
+                    return None;
+                }
+                Some(Spectrum::Blackbody(kelvin))
+            }
+            (_, Values::Numbers(all)) => {
+                let curve = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
+                rising(curve, param.values_at, params)
+            }
+            _ => named(param.text(), param.values_at, params),
+        }
+    }
+}
+
+fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
+    if params.language == Language::Third {
+        curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        curve.dedup_by_key(|row| row[0]);
+    }
+    if let Some(pair) = curve.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        let message = format!("the wavelengths of a spectrum must rise: {} comes after {}", pair[1][0], pair[0][0]);
+        params.said.bad(at, message);
+        return None;
+    }
+    Some(Spectrum::Curve(curve))
+}
+
+/// A spectrum by name: one that pbrt knows, or a file of wavelengths and values.
+fn named(name: &str, at: Span, params: &Params) -> Option<Spectrum> {
+    if params.language == Language::Fourth
+        && let Some(known) = named::spectrum(name)
+    {
+        return Some(known);
+    }
+    let bytes = match params.input.source.read_unpacked(name) {
+        Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
+        Ok(_) => {
+            params.said.bad(at, format!("`{name}` is too large for a spectrum"));
+            return None;
+        }
+        Err(error) => {
+            let (help, message) = match params.language {
+                Language::Third => (error.help(), format!("the spectrum cannot be had: {error}")),
+                Language::Fourth => {
+                    (meant(name, named::names()), format!("pbrt has no spectrum of that name, and {error}"))
+                }
+            };
+            params.said.push(Diagnostic { help, ..Diagnostic::error(message).code("missing-file").at(at) });
+            return None;
+        }
+    };
+    let file = params.input.files.borrow_mut().add(name, bytes.clone());
+    let (mut numbers, mut start) = (Vec::new(), 0);
+    for line in bytes.split_inclusive(|&b| b == b'\n') {
+        let text = line.split(|&b| b == b'#').next().unwrap_or_default();
+        for word in text.split(|b| b.is_ascii_whitespace() || *b == b',').filter(|word| !word.is_empty()) {
+            let place = start + (word.as_ptr() as usize - line.as_ptr() as usize);
+            match parse_f32(word) {
+                Ok(value) => numbers.push(value),
+                Err(_) => {
+                    let word_at = Span { file, start: place as u32, end: (place + word.len()) as u32 };
+                    let found = crate::report::shown(word);
+                    let error = Diagnostic::error(format!("expected a number, found {found}"));
+                    params.said.push(error.code("bad-file").at(word_at).related(at, "asked for here"));
+                    return None;
+                }
+            }
+        }
+        start += line.len();
+    }
+    if numbers.is_empty() || numbers.len() % 2 != 0 {
+        params.said.bad(at, format!("`{name}` must hold pairs of wavelength and value"));
+        return None;
+    }
+    rising(numbers.chunks_exact(2).map(|pair| [pair[0], pair[1]]).collect(), at, params)
+}

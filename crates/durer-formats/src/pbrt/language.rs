@@ -1,0 +1,173 @@
+//! Which pbrt a file is written for. Nothing in a file says so: its words do.
+//!
+//! Sources: *Input File Format* of pbrt-v3 and of pbrt-v4, pbrt.org/fileformat-v3 and
+//! pbrt.org/fileformat-v4.
+
+use super::lexer::{Lexer, Token};
+use crate::model::Input;
+use crate::said::Said;
+use durer_diag::Span;
+
+/// The edition of pbrt whose meaning words have.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Language {
+    Third,
+    Fourth,
+}
+
+/// What a file is written in, and the word of it that says so; none where no word does, or one of a
+/// file that it includes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Decided {
+    pub language: Language,
+    pub by: Option<Span>,
+}
+
+/// Directives that only the third has.
+const OLD_DIRECTIVES: [&str; 4] = ["Renderer", "SurfaceIntegrator", "VolumeIntegrator", "WorldEnd"];
+
+/// Directives that only the fourth has.
+const NEW_DIRECTIVES: [&str; 4] = ["Attribute", "ColorSpace", "Import", "Option"];
+
+/// What stands after a directive in the third alone, and in the fourth alone.
+const NAMES: [(&[&str], &[&str], &[&str]); 9] = [
+    (&["Film"], &["image"], &["rgb", "gbuffer", "spectral"]),
+    (&["Camera"], &["environment"], &["spherical"]),
+    (
+        &["Sampler"],
+        &["02sequence", "lowdiscrepancy", "maxmindist", "random"],
+        &["independent", "paddedsobol", "pmj02bn", "zsobol"],
+    ),
+    (
+        &["Integrator"],
+        &["ao", "directlighting", "whitted"],
+        &["function", "lightpath", "randomwalk", "simplepath", "simplevolpath"],
+    ),
+    (&["Material", "MakeNamedMaterial"], &OLD_MATERIALS, &NEW_MATERIALS),
+    (&["MakeNamedMedium"], &["heterogeneous"], &["cloud", "nanovdb", "rgbgrid", "uniformgrid"]),
+    (&["Shape"], &["cone", "heightfield", "hyperboloid", "nurbs", "paraboloid"], &["bilinearmesh"]),
+    (&["AreaLightSource"], &["area"], &[]),
+    (&["LightSource"], &["exinfinite"], &[]),
+];
+
+const OLD_MATERIALS: [&str; 11] = [
+    "disney",
+    "fourier",
+    "glass",
+    "kdsubsurface",
+    "matte",
+    "metal",
+    "mirror",
+    "plastic",
+    "substrate",
+    "translucent",
+    "uber",
+];
+
+/// Materials that only the fourth has.
+pub(super) const NEW_MATERIALS: [&str; 9] = [
+    "coatedconductor",
+    "coateddiffuse",
+    "conductor",
+    "dielectric",
+    "diffuse",
+    "diffusetransmission",
+    "interface",
+    "measured",
+    "thindielectric",
+];
+
+/// Names of parameters, and types, that only the third has.
+const OLD_PARAMETERS: [&str; 8] = ["Kd", "Ks", "Kr", "Kt", "bumpmap", "mapname", "namedmaterial1", "namedmaterial2"];
+const OLD_TYPES: [&str; 2] = ["color", "xyz"];
+
+/// Files that are looked into, and how deep they include each other.
+const MAX_FILES: usize = 64;
+const DEEPEST: usize = 8;
+
+/// The first word that only one of the two has decides.
+pub(super) fn decide(input: &Input) -> Decided {
+    let mut left = MAX_FILES;
+    let found = search(Lexer::new(input.bytes.clone(), input.file), input, &mut left, 0);
+    let (language, by) = found.unwrap_or((Language::Fourth, None));
+    Decided { language, by }
+}
+
+/// What decides, and its place where that is in the first file: others have no number yet.
+fn search(mut text: Lexer, input: &Input, left: &mut usize, depth: usize) -> Option<(Language, Option<Span>)> {
+    // What is wrong is told when the file is read.
+    let said = Said::default();
+    // The directive, how many strings stood after it, and the last that is a parameter's type and
+    // name.
+    let (mut directive, mut names, mut head) = (String::new(), 0, String::new());
+    while let Some(found) = text.next(&said) {
+        let here = (depth == 0).then_some(found.at);
+        match found.token {
+            Token::Word => {
+                let word = text.word(found.at);
+                if OLD_DIRECTIVES.contains(&word) {
+                    return Some((Language::Third, here));
+                }
+                if NEW_DIRECTIVES.contains(&word) {
+                    return Some((Language::Fourth, here));
+                }
+                // Numbers begin with no letter.
+                if word.starts_with(|first: char| first.is_ascii_uppercase()) {
+                    (directive, names, head) = (word.to_string(), 0, String::new());
+                }
+            }
+            Token::Text(name) => {
+                names += 1;
+                if let Some(language) = told(&directive, names, &head, &name) {
+                    return Some((language, here));
+                }
+                if name.contains(' ') {
+                    head.clone_from(&name);
+                }
+                if directive == "Include" && names == 1 && *left > 0 && depth < DEEPEST {
+                    *left -= 1;
+                    let file = input.source.read_unpacked(&name).ok();
+                    let file = file.filter(|bytes| bytes.len() < u32::MAX as usize);
+                    let inner = file.and_then(|bytes| search(Lexer::new(bytes, input.file), input, left, depth + 1));
+                    if inner.is_some() {
+                        return inner;
+                    }
+                }
+            }
+            Token::Open | Token::Close => {}
+        }
+        if said.is_full() {
+            break;
+        }
+    }
+    None
+}
+
+/// What a string says: the so-many-th after a directive, behind a parameter's type and name.
+fn told(directive: &str, number: usize, head: &str, text: &str) -> Option<Language> {
+    let mut words = text.split_ascii_whitespace();
+    if let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) {
+        let light = matches!(directive, "LightSource" | "AreaLightSource");
+        let colored = matches!(kind, "rgb" | "spectrum" | "color");
+        return match (kind, name) {
+            _ if OLD_TYPES.contains(&kind) || OLD_PARAMETERS.contains(&name) => Some(Language::Third),
+            (_, "scale") if light && colored => Some(Language::Third),
+            (_, "nsamples") if light => Some(Language::Third),
+            ("float", "scale" | "power" | "illuminance") | ("string", "filename") if light => Some(Language::Fourth),
+            _ => None,
+        };
+    }
+    if directive == "Texture" && number == 2 && text == "color" {
+        return Some(Language::Third);
+    }
+    let is_name = match directive {
+        "MakeNamedMaterial" | "MakeNamedMedium" => head == "string type",
+        _ => number == 1,
+    };
+    let (_, old, new) = NAMES.iter().find(|row| is_name && row.0.contains(&directive))?;
+    match (old.contains(&text), new.contains(&text)) {
+        (true, _) => Some(Language::Third),
+        (_, true) => Some(Language::Fourth),
+        _ => None,
+    }
+}

@@ -1,0 +1,140 @@
+//! Words of a text: directives, numbers, strings in quotes, brackets. `#` begins a comment.
+
+use crate::report::shown;
+use crate::said::Said;
+use durer_diag::{Diagnostic, Span};
+use std::sync::Arc;
+
+/// A word.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token {
+    /// A directive, a number, `true` or `false`.
+    Word,
+    /// What stands in quotes.
+    Text(String),
+    /// `[`
+    Open,
+    /// `]`
+    Close,
+}
+
+/// A word and where it is.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Found {
+    pub token: Token,
+    pub at: Span,
+}
+
+/// A text on its way to words.
+pub(super) struct Lexer {
+    bytes: Arc<[u8]>,
+    file: u32,
+    at: usize,
+    peeked: Option<Found>,
+}
+
+impl Lexer {
+    /// Of a file's bytes; there are less than 2^32 of them.
+    pub fn new(bytes: Arc<[u8]>, file: u32) -> Self {
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        Lexer { bytes, file, at, peeked: None }
+    }
+
+    /// The bytes of a word.
+    pub fn bytes(&self, at: Span) -> &[u8] {
+        &self.bytes[at.start as usize..at.end as usize]
+    }
+
+    /// A word's letters, if they are such.
+    pub fn word(&self, at: Span) -> &str {
+        std::str::from_utf8(self.bytes(at)).unwrap_or_default()
+    }
+
+    /// A word as it is shown in messages.
+    pub fn shown(&self, at: Span) -> String {
+        shown(self.bytes(at))
+    }
+
+    fn span(&self, start: usize, end: usize) -> Span {
+        Span { file: self.file, start: start as u32, end: end as u32 }
+    }
+
+    /// The next word, which stays the next.
+    pub fn peek(&mut self, said: &Said) -> Option<&Found> {
+        if self.peeked.is_none() {
+            self.peeked = self.read(said);
+        }
+        self.peeked.as_ref()
+    }
+
+    /// The next word.
+    pub fn next(&mut self, said: &Said) -> Option<Found> {
+        self.peeked.take().or_else(|| self.read(said))
+    }
+
+    fn read(&mut self, said: &Said) -> Option<Found> {
+        loop {
+            match *self.bytes.get(self.at)? {
+                b' ' | b'\t' | b'\r' | b'\n' => self.at += 1,
+                b'#' => self.at += self.bytes[self.at..].iter().take_while(|&&b| b != b'\n').count(),
+                _ => break,
+            }
+        }
+        let start = self.at;
+        let token = match self.bytes[start] {
+            b'[' => Token::Open,
+            b']' => Token::Close,
+            b'"' => return Some(self.text(start, said)),
+            _ => {
+                let ends = |b: &&u8| !matches!(b, b' ' | b'\t' | b'\r' | b'\n' | b'"' | b'[' | b']' | b'#');
+                self.at += self.bytes[start..].iter().take_while(ends).count();
+                return Some(Found { token: Token::Word, at: self.span(start, self.at) });
+            }
+        };
+        self.at += 1;
+        Some(Found { token, at: self.span(start, self.at) })
+    }
+
+    /// A string in quotes, whose place is without them. One that does not end in its line is an
+    /// error.
+    fn text(&mut self, start: usize, said: &Said) -> Found {
+        let mut text = Vec::new();
+        self.at = start + 1;
+        loop {
+            match self.bytes.get(self.at) {
+                Some(b'"') => break,
+                Some(b'\\') => {
+                    let letter = self.bytes.get(self.at + 1).copied();
+                    text.push(match letter {
+                        Some(b'n') => b'\n',
+                        Some(b't') => b'\t',
+                        Some(b'r') => b'\r',
+                        Some(b'b') => 8,
+                        Some(b'f') => 12,
+                        Some(letter @ (b'"' | b'\\' | b'\'')) => letter,
+                        _ => {
+                            let at = self.span(self.at, (self.at + 2).min(self.bytes.len()));
+                            said.bad(at, "`\\` is followed by b, f, n, r, t, a quote or another `\\`");
+                            b'\\'
+                        }
+                    });
+                    // What is no escape counts as it stands.
+                    self.at = (self.at + 2).min(self.bytes.len());
+                }
+                Some(b'\n') | None => {
+                    let error = Diagnostic::error("this string is not closed: it has no second `\"` in its line");
+                    said.push(error.code("unclosed").at(self.span(start, self.at)));
+                    let at = self.span(start + 1, self.at);
+                    return Found { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at };
+                }
+                Some(&letter) => {
+                    text.push(letter);
+                    self.at += 1;
+                }
+            }
+        }
+        let at = self.span(start + 1, self.at);
+        self.at += 1;
+        Found { token: Token::Text(String::from_utf8_lossy(&text).into_owned()), at }
+    }
+}

@@ -1,0 +1,179 @@
+//! Lights: at points, far away, and of surfaces. Their units are those of radiance; a pixel of
+//! value 1 shows radiance 1.
+//!
+//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapter 12. What is given as
+//! a spectrum has luminance 1 times `scale`; `power` is luminous flux. In pbrt-v3 (3rd edition,
+//! chapter 12) a light is as strong as is written, and `scale` is a colour.
+
+use super::language::Language;
+use super::made::{AreaLight, Infinite, Map};
+use super::params::{Kind, Param, Params};
+use super::state::{LIGHT, Reader};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_scene::light::{DirectionalLight, Fade, Light, PointLight, SpotLight};
+use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::scene::Spanned;
+use glam::DVec3;
+use std::f32::consts::PI;
+use std::rc::Rc;
+
+/// The colour of a light by one of its parameters, with `scale`.
+fn color(params: &Params, name: &'static str) -> Color {
+    if params.language == Language::Third {
+        return params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.plain()) * colored_scale(params);
+    }
+    let color = params.spectrum(name).map_or(Vec3::ONE, |spectrum| spectrum.light());
+    color * params.float("scale").unwrap_or(1.0).max(0.0)
+}
+
+/// The `scale` of pbrt-v3, which is a colour. It passes over a number, and so do we.
+fn colored_scale(params: &Params) -> Color {
+    match params.get("scale") {
+        Some(param) if param.kind == Kind::Float => {
+            params
+                .said
+                .once(param.at, "`scale` of a light is a colour in pbrt-v3, which passes over a number: so do we");
+            Vec3::ONE
+        }
+        _ => params.spectrum("scale").map_or(Vec3::ONE, |spectrum| spectrum.plain()),
+    }
+}
+
+impl Reader<'_> {
+    pub fn light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        let params = self.params(list, Some(LIGHT), at);
+        let (map, exposure) = (self.map(at), self.exposure());
+        let end = |name: &'static str, usual: DVec3| params.triple(name).map_or(usual, |p| p.as_dvec3());
+        let (from, to) = (end("from", DVec3::ZERO), end("to", DVec3::Z));
+        let place = map.transform_point3(from).as_vec3();
+        let direction = map.transform_vector3(to - from);
+        let aimed = || {
+            let direction = direction.try_normalize();
+            if direction.is_none() {
+                params.said.bad(params.place("to"), "a light must not be aimed at where it is");
+            }
+            direction.unwrap_or(DVec3::Z).as_vec3()
+        };
+        let third = self.language == Language::Third;
+        let flux = || params.float("power").filter(|power| *power > 0.0);
+        let power = if third { None } else { flux() };
+        // A light's colour is what a white matte surface shows: illuminance over pi.
+        let value: Light = match kind {
+            "goniometric" | "projection" => {
+                let color = color(&params, "I") * exposure;
+                self.pictured_light(kind, &params, map, (color, power));
+                params.known(&["scale", "power"]);
+                return params.finish("this light");
+            }
+            "point" => {
+                let strength = power.map_or(1.0, |power| power / (4.0 * PI));
+                let color = color(&params, "I") * (strength * exposure / PI);
+                PointLight { position: place, color, attenuation: Some(Vec3::Z), ..PointLight::default() }.into()
+            }
+            "spot" => {
+                let cone = [params.float("coneangle").unwrap_or(30.0), params.float("conedeltaangle").unwrap_or(5.0)];
+                if !(cone[0] > 0.0 && cone[0] <= 180.0) {
+                    self.said.bad(params.place("coneangle"), "`coneangle` must be more than 0 and at most 180 degrees");
+                }
+                let [outer, inner] = [cone[0], (cone[0] - cone[1]).max(0.0)];
+                let cosine = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees)).1 as f32;
+                // Half of what is between the two cones.
+                let solid_angle = PI * (2.0 - cosine(inner) - cosine(outer));
+                let strength = power.map_or(1.0, |power| power / solid_angle);
+                let color = color(&params, "I") * (strength * exposure / PI);
+                SpotLight {
+                    position: place,
+                    direction: aimed(),
+                    color,
+                    angle: outer.clamp(1e-3, 180.0),
+                    inner_angle: inner,
+                    fade: if third { Fade::Fourth } else { Fade::Smooth },
+                    ..SpotLight::default()
+                }
+                .into()
+            }
+            "distant" => {
+                let strength = if third { None } else { params.float("illuminance").filter(|e| *e > 0.0) };
+                let color = color(&params, "L") * (strength.unwrap_or(1.0) * exposure / PI);
+                DirectionalLight { direction: aimed(), color, ..DirectionalLight::default() }.into()
+            }
+            "infinite" | "exinfinite" => {
+                self.infinite_light(&params, exposure);
+                return params.finish("this light");
+            }
+            other => {
+                let known = ["point", "distant", "spot", "goniometric", "projection", "infinite"];
+                return self.said.bad_with(at, format!("there is no light `{other}`"), meant(other, known));
+            }
+        };
+        params.known(&["from", "to", "scale"]);
+        if !third {
+            params.known(&["power"]);
+        }
+        params.finish("this light");
+        self.scene.lights.get_or_insert_default().push(Spanned { value, span: at });
+    }
+
+    fn infinite_light(&mut self, params: &Params, exposure: f32) {
+        if self.language == Language::Third {
+            let color = color(params, "L") * exposure;
+            params.known(&["samples", "nsamples"]);
+            let infinite = match params.text("mapname").filter(|name| !name.is_empty()) {
+                Some(name) => {
+                    let at = params.get("mapname").map_or(params.at, |param| param.values_at);
+                    let to_light = self.map(params.at).inverse();
+                    let map = Map::Longitude;
+                    Infinite::Picture { name: name.to_string(), at, scale: color, map, to_light, illuminance: None }
+                }
+                None => Infinite::Even(color),
+            };
+            return self.infinite.push(infinite);
+        }
+        let illuminance = params.float("illuminance").filter(|e| *e > 0.0);
+        params.left_out(&["portal"], "light is looked for all around");
+        let infinite = match params.text("filename") {
+            Some(name) => {
+                let at = params.get("filename").map_or(params.at, |param| param.values_at);
+                let scale = params.float("scale").unwrap_or(1.0).max(0.0) * exposure;
+                let to_light = self.map(params.at).inverse();
+                let (scale, map) = (Vec3::splat(scale), Map::EqualArea);
+                Infinite::Picture { name: name.to_string(), at, scale, map, to_light, illuminance }
+            }
+            None => Infinite::Even(color(params, "L") * (exposure * illuminance.map_or(1.0, |e| e / PI))),
+        };
+        params.known(&["from", "to", "power", "scale"]);
+        self.infinite.push(infinite);
+    }
+
+    pub fn area_light(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        let third = self.language == Language::Third;
+        if kind != "diffuse" && !(third && kind == "area") {
+            return self.said.bad_with(
+                at,
+                format!("there is no light of surfaces `{kind}`"),
+                Some("there is `diffuse`".into()),
+            );
+        }
+        let params = self.params(list, Some(LIGHT), at);
+        let picture = if third { None } else { params.text("filename").map(str::to_string) };
+        if picture.is_some() && params.get("L").is_some() {
+            self.said.bad(params.place("filename"), "a light has either `L` or `filename`");
+        }
+        let light = AreaLight {
+            radiance: color(&params, "L") * self.exposure(),
+            power: if third { None } else { params.float("power").filter(|power| *power > 0.0) },
+            two_sided: params.truth("twosided").unwrap_or(false),
+            picture,
+            at,
+        };
+        if third {
+            params.known(&["samples", "nsamples"]);
+        }
+        params.finish("this light");
+        if light.radiance == Vec3::ZERO {
+            self.said.push(durer_diag::Diagnostic::note("this light is black").code("black-light").at(at));
+        }
+        self.state.area = Some(Rc::new(light));
+    }
+}

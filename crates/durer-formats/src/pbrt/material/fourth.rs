@@ -1,0 +1,260 @@
+//! Materials of pbrt-v4.
+//!
+//! Source of all meanings: *Physically Based Rendering*, 4th edition, chapters 9, 10 and 14. A coat
+//! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
+//! GGX's alpha is the square of our roughness.
+
+use super::super::made::{Made, Medium, Texture};
+use super::super::named;
+use super::super::params::{Kind, Params, Values};
+use super::super::spectrum::{Spectrum, metal};
+use super::super::state::Reader;
+use super::{below_skin, matte};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_scene::bsdf::fresnel::schlick_82;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::{Color, Vec3};
+
+const KNOWN: [&str; 12] = [
+    "diffuse",
+    "coateddiffuse",
+    "conductor",
+    "coatedconductor",
+    "dielectric",
+    "thindielectric",
+    "diffusetransmission",
+    "mix",
+    "interface",
+    "subsurface",
+    "measured",
+    "hair",
+];
+
+/// Materials of pbrt-v3, and what they are now.
+const OLD: [(&str, &str); 8] = [
+    ("matte", "diffuse"),
+    ("plastic", "coateddiffuse"),
+    ("metal", "conductor"),
+    ("glass", "dielectric"),
+    ("mirror", "conductor"),
+    ("substrate", "coateddiffuse"),
+    ("uber", "coateddiffuse"),
+    ("translucent", "diffusetransmission"),
+];
+
+impl Reader<'_> {
+    /// GGX's alpha along both directions, by three parameters: of both, and of each.
+    fn alphas(&self, params: &Params, [both, u, v]: [&'static str; 3], remapped: bool) -> [f32; 2] {
+        let usual = self.value(params, both, 0.0);
+        // Source: pbrt-v4 takes the root of what is written, where that is asked for.
+        [u, v].map(|name| {
+            let written = self.value(params, name, usual).max(0.0);
+            if remapped { written.sqrt() } else { written }
+        })
+    }
+
+    /// The roughness of a picture of GGX's alpha, and what alpha it multiplies: that of the
+    /// picture, or of the numbers.
+    fn roughness(&mut self, params: &Params, names: [&'static str; 3], remapped: bool) -> (Option<FileName>, [f32; 2]) {
+        let each = names[1..].iter().any(|name| params.get(name).is_some());
+        let fourth = |x: f32| x.max(0.0).sqrt().sqrt();
+        let picture = if each {
+            None
+        } else {
+            self.changed(params, names[0], false, |x| if remapped { fourth(x) } else { x.max(0.0).sqrt() })
+        };
+        match picture {
+            Some(picture) => (Some(picture), [1.0; 2]),
+            None => (None, self.alphas(params, names, remapped)),
+        }
+    }
+
+    pub(super) fn fourth(&mut self, kind: &str, params: &Params, at: Span) -> Made {
+        let remapped = params.truth("remaproughness").unwrap_or(true);
+        let mut m = PrincipledMaterial::default();
+        const ROUGHNESS: [&str; 3] = ["roughness", "uroughness", "vroughness"];
+        match kind {
+            "diffuse" => {
+                let (color, picture) = self.colored(params, "reflectance", 0.5);
+                m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
+                params.left_out(&["sigma"], "the surface is Lambert's");
+            }
+            "coateddiffuse" => {
+                let (color, picture) = self.colored(params, "reflectance", 0.5);
+                m = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
+                let alphas;
+                (m.coat_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
+                m.coat_ior = self.index(params, "eta", 1.5);
+                self.coat(&mut m, alphas, params);
+            }
+            "conductor" => {
+                let alphas;
+                (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
+                self.conductor(&mut m, params, ["eta", "k", "reflectance"], alphas, 1.0);
+            }
+            "coatedconductor" => {
+                let interface = ["interface.roughness", "interface.uroughness", "interface.vroughness"];
+                let conductor = ["conductor.roughness", "conductor.uroughness", "conductor.vroughness"];
+                let (above, below);
+                (m.coat_roughness_texture, above) = self.roughness(params, interface, remapped);
+                (m.specular_roughness_texture, below) = self.roughness(params, conductor, remapped);
+                m.coat_ior = self.index(params, "interface.eta", 1.5);
+                let ior = m.coat_ior;
+                self.conductor(&mut m, params, ["conductor.eta", "conductor.k", "reflectance"], below, ior);
+                self.coat(&mut m, above, params);
+            }
+            "dielectric" | "thindielectric" => {
+                m.transmission_weight = 1.0;
+                m.specular_ior = self.index(params, "eta", 1.5);
+                let mut alphas = [0.0; 2];
+                if kind == "dielectric" {
+                    (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
+                }
+                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+                m.walls = if kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
+            }
+            "diffusetransmission" => {
+                let scale = params.float("scale").unwrap_or(1.0);
+                let [reflected, through] = ["reflectance", "transmittance"].map(|name| {
+                    let (color, picture) = self.colored(params, name, 0.25);
+                    if picture.is_some() {
+                        let what = "light that is scattered through a surface by a picture has no counterpart: one colour is taken";
+                        self.said.once(params.place(name), what);
+                    }
+                    scale * color
+                });
+                // A sheet divides what it scatters by one number for all colours.
+                let sum = |color: Color| color.element_sum().max(1e-6);
+                m = PrincipledMaterial {
+                    subsurface_weight: 1.0,
+                    subsurface_color: (reflected + through).min(Vec3::ONE),
+                    subsurface_scatter_anisotropy: ((sum(through) - sum(reflected)) / (sum(through) + sum(reflected)))
+                        .clamp(-0.999, 0.999),
+                    walls: Walls::Thin,
+                    ..matte(Vec3::ZERO)
+                };
+            }
+            "subsurface" => {
+                let alphas;
+                (m.specular_roughness_texture, alphas) = self.roughness(params, ROUGHNESS, remapped);
+                [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+                m.specular_ior = self.index(params, "eta", 1.33);
+                if params.get("reflectance").is_some() {
+                    let color = self.colored(params, "reflectance", 1.0);
+                    let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.coefficient());
+                    below_skin(&mut m, params, color, path);
+                } else {
+                    // The skin refracts, and what is inside scatters.
+                    m.transmission_weight = 1.0;
+                    Medium::of(params, "name").fill(&mut m);
+                }
+            }
+            "measured" => {
+                params.known(&["filename"]);
+                m = matte(Vec3::splat(0.5));
+                self.said.once(at, "measured materials have no counterpart: matte grey is taken");
+            }
+            "hair" => return self.hair(params, &["reflectance", "color"], at),
+            "mix" => return self.mixed(params, at),
+            "interface" | "" | "none" => return Made::Nothing,
+            other => {
+                let old = OLD.iter().find(|row| row.0 == other);
+                let help = match old {
+                    Some((_, now)) => Some(format!("this is of pbrt-v3; `{now}` is nearest")),
+                    None => meant(other, KNOWN),
+                };
+                self.no_material(other, at, help, old.is_some());
+                return Made::Nothing;
+            }
+        }
+        self.surface(&mut m, params, "displacement");
+        Made::Layers(Box::new(m), at)
+    }
+
+    /// An index of refraction, which may be a spectrum.
+    fn index(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
+        let index = match params.get(name).map(|param| param.kind) {
+            Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.index()),
+            _ => self.value(params, name, usual),
+        };
+        if index <= 0.0 {
+            self.said.bad(params.place(name), "an index of refraction must be more than 0");
+            return usual;
+        }
+        index
+    }
+
+    fn coat(&self, m: &mut PrincipledMaterial, [u, v]: [f32; 2], params: &Params) {
+        (m.coat_weight, m.coat_roughness) = (1.0, (u.min(1.0) * v.min(1.0)).sqrt().sqrt());
+        if u != v {
+            self.said.once(params.at, "a coat is as rough in both directions: their mean is taken");
+        }
+        if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
+            self.said.once(params.place("albedo"), "what is inside a coat has no counterpart: the coat is clear");
+        }
+        params.known(&["thickness", "g", "maxdepth", "nsamples", "twosided"]);
+    }
+
+    fn conductor(
+        &mut self,
+        m: &mut PrincipledMaterial,
+        params: &Params,
+        [eta, k, reflectance]: [&'static str; 3],
+        alphas: [f32; 2],
+        outside: f32,
+    ) {
+        let copper = |which: &str| named::spectrum(&format!("metal-Cu-{which}"));
+        let [f0, f82] = match params.get(reflectance) {
+            Some(param) => {
+                if params.get(eta).is_some() || params.get(k).is_some() {
+                    self.said.bad(param.at, format!("a metal has either `{reflectance}` or `{eta}` and `{k}`"));
+                }
+                let share = match self.pattern(params, reflectance, true, Vec3::splat(0.5)) {
+                    Texture::Even(color) => color,
+                    Texture::Picture(picture, scale) => {
+                        // What it reflects at right angles is the picture's; grazing light has no
+                        // colour of its own.
+                        m.base_color_texture = Some(self.asset(picture, param.at));
+                        (m.base_metalness, m.base_color) = (1.0, scale);
+                        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+                        return;
+                    }
+                };
+                // Such a k, with an index of 1, reflects that share at right angles.
+                let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
+                metal(&Spectrum::Rgb(Vec3::ONE), &Spectrum::Rgb(k), 1.0)
+            }
+            None => {
+                let given = |name, which| params.spectrum(name).or_else(|| copper(which));
+                let grey = Spectrum::Rgb(Vec3::ONE);
+                metal(&given(eta, "eta").unwrap_or(grey.clone()), &given(k, "k").unwrap_or(grey), outside)
+            }
+        };
+        (m.base_metalness, m.base_color) = (1.0, f0);
+        m.specular_color = f82 / schlick_82(f0).max(Vec3::splat(1e-6));
+        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(alphas);
+    }
+
+    fn mixed(&mut self, params: &Params, at: Span) -> Made {
+        let share = self.pictured(params, "amount", 0.5, |amount| 1.0 - amount.clamp(0.0, 1.0));
+        let Some(param) = params.get("materials") else {
+            self.said.bad(at, "a mix needs two names, `\"string materials\" [ \"a\" \"b\" ]`");
+            return Made::Nothing;
+        };
+        let Values::Texts(names) = &param.values else { return Made::Nothing };
+        let [first, second] = names.as_slice() else {
+            self.said.bad(param.values_at, format!("a mix is of two materials, not of {}", names.len()));
+            return Made::Nothing;
+        };
+        let (Some(a), Some(b)) =
+            (self.known_material(first, param.values_at), self.known_material(second, param.values_at))
+        else {
+            return Made::Nothing;
+        };
+        self.mix_by([a, b], share, at)
+    }
+}

@@ -1,0 +1,139 @@
+//! What pbrt-v3's materials are made of: lobes as layers, and their sums.
+//!
+//! A sum is a mixture here, whose parts are as much brighter as they are less there.
+
+use super::super::made::Made;
+use super::super::state::Reader;
+use super::matte;
+use super::rough::Rough;
+use durer_diag::Span;
+use durer_scene::bsdf::fresnel::schlick_82;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::{Color, Vec3};
+
+/// One of those that are added.
+pub(super) struct Part {
+    pub layers: PrincipledMaterial,
+    /// The most that it gives back.
+    pub most: f32,
+}
+
+/// A rough boundary that reflects, with nothing below it.
+pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
+    let mut m = matte(Vec3::ZERO);
+    (m.specular_weight, m.specular_ior) = (1.0, ior);
+    (m.specular_color, m.specular_color_texture) = (rough.kept(ior) * color, picture);
+    rough.put(&mut m);
+    m
+}
+
+/// The colour of an energy-preserving rough surface that gives back as much on the mean as Oren's and
+/// Nayar's does, and its roughness.
+///
+/// Source: Oren and Nayar, *Generalization of Lambert's Reflectance Model*, SIGGRAPH 1994.
+pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
+    // The mean of max(0, cos) sin tan over both directions by their cosines: 2/3 - 64 / (45 pi).
+    const LEANING: f32 = 0.213_954;
+    let sigma = degrees.to_radians();
+    let variance = sigma * sigma;
+    let (a, b) = (1.0 - 0.5 * variance / (variance + 0.33), 0.45 * variance / (variance + 0.09));
+    let roughness = (b / a).clamp(0.0, 1.0);
+    // As in `bsdf::lobe::diffuse`: what is scattered once on the mean, and again.
+    let mean = (1.0 + 0.072_488 * roughness) / (1.0 + 0.287_793 * roughness);
+    let whole = |c: f32| c * mean + c * c * mean * (1.0 - mean) / (1.0 - c * (1.0 - mean));
+    let solved = color.map(|wanted| {
+        let wanted = wanted.min(1.0) * (a + LEANING * b);
+        let (mut low, mut high) = (0.0, 1.0);
+        for _ in 0..24 {
+            let middle = 0.5 * (low + high);
+            if whole(middle) < wanted { low = middle } else { high = middle }
+        }
+        0.5 * (low + high)
+    });
+    (solved, roughness)
+}
+
+/// A metal by what it reflects at right angles and at 82 degrees, without what a rough one gives back
+/// later, on the mean over all directions.
+pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
+    let kept = rough.kept_by_metal();
+    let (lost, strongest) = ((1.0 - kept) / kept, f0.max_element());
+    let weight = 1.0 / (1.0 + strongest * lost);
+    // Ours is x (1 + x lost) times the weight.
+    let ours = f0.map(|f0| match lost > 1e-4 {
+        true => ((1.0 + 4.0 * lost * f0 / weight).sqrt() - 1.0) / (2.0 * lost),
+        false => f0 / weight,
+    });
+    let ours = ours.min(Vec3::ONE);
+    let schlick = schlick_82(ours);
+    let wanted = f82 / (weight * (Vec3::ONE + ours * lost));
+    let mut m = PrincipledMaterial {
+        base_metalness: 1.0,
+        base_color: ours,
+        specular_color: wanted / schlick.max(Vec3::splat(1e-6)),
+        specular_weight: weight,
+        ..PrincipledMaterial::default()
+    };
+    rough.put(&mut m);
+    m
+}
+
+/// A body of glass, rough or smooth.
+pub(super) fn glass(
+    (reflected, reflected_picture): (Color, Option<FileName>),
+    (through, through_picture): (Color, Option<FileName>),
+    index: f32,
+    rough: Option<&Rough>,
+) -> PrincipledMaterial {
+    // Light goes in and out.
+    let kept = rough.map_or(1.0, |rough| 0.5 * (rough.kept(index) + rough.kept(1.0 / index)));
+    let mut m = PrincipledMaterial {
+        transmission_weight: 1.0,
+        transmission_color: kept * through,
+        transmission_color_texture: through_picture,
+        specular_color: kept * reflected,
+        specular_color_texture: reflected_picture,
+        specular_ior: index,
+        specular_roughness: 0.0,
+        ..PrincipledMaterial::default()
+    };
+    rough.into_iter().for_each(|rough| rough.put(&mut m));
+    m
+}
+
+impl Reader<'_> {
+    /// A material that scatters as several do together.
+    pub(super) fn sum(&mut self, parts: Vec<Part>, at: Span) -> Made {
+        // What gives nothing back may still be there in part only.
+        let opacity =
+            parts.first().map_or((1.0, None), |part| (part.layers.opacity, part.layers.opacity_texture.clone()));
+        let black = PrincipledMaterial { opacity: opacity.0, opacity_texture: opacity.1, ..matte(Vec3::ZERO) };
+        let mut parts: Vec<Part> = parts.into_iter().filter(|part| part.most > 0.0).collect();
+        let whole: f32 = parts.iter().map(|part| part.most).sum();
+        let Some(last) = parts.pop() else { return Made::Layers(Box::new(black), at) };
+        if parts.is_empty() {
+            return Made::Layers(Box::new(last.layers), at);
+        }
+        let layers = |part: Part| {
+            let (mut m, factor) = (part.layers, whole / part.most);
+            for color in [&mut m.base_color, &mut m.specular_color, &mut m.transmission_color, &mut m.subsurface_color]
+            {
+                *color *= factor;
+            }
+            Made::Layers(Box::new(m), at)
+        };
+        let mut rest = last.most;
+        let mut made = layers(last);
+        while let Some(part) = parts.pop() {
+            let share = part.most / (part.most + rest);
+            rest += part.most;
+            let numbers = [layers(part), made].map(|made| {
+                self.materials.push(made);
+                self.materials.len() - 1
+            });
+            made = self.mix(numbers, share, at);
+        }
+        made
+    }
+}

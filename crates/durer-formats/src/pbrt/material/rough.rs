@@ -1,0 +1,95 @@
+//! How rough pbrt-v3's materials are, and what of light rough ones lose there.
+
+use super::super::params::{Kind, Params};
+use super::super::state::Reader;
+use durer_scene::bsdf::albedo;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::fp;
+
+/// How rough something is.
+pub(super) struct Rough {
+    picture: Option<FileName>,
+    /// GGX's alpha along u and v.
+    pub alphas: [f32; 2],
+    /// Our roughness; of a picture its mean.
+    mean: f32,
+}
+
+impl Rough {
+    pub fn new(alphas: [f32; 2]) -> Self {
+        Rough { picture: None, alphas, mean: (alphas[0] * alphas[1]).sqrt().min(1.0).sqrt() }
+    }
+
+    pub fn put(&self, m: &mut PrincipledMaterial) {
+        m.specular_roughness_texture = self.picture.clone();
+        [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(self.alphas);
+    }
+
+    fn is_smooth(&self) -> bool {
+        self.picture.is_none() && self.alphas == [0.0; 2]
+    }
+
+    /// The share of light that it gives back at once, where it reflects all, on the mean over all
+    /// directions: pbrt-v3 leaves the rest out, and we do not.
+    pub fn kept_by_metal(&self) -> f32 {
+        const STEPS: u16 = 8;
+        let given = |i: u16| albedo::ggx(((f32::from(i) + 0.5) / f32::from(STEPS)).sqrt(), self.mean);
+        (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS)
+    }
+
+    /// The same of a boundary, reflected or refracted.
+    pub fn kept(&self, index: f32) -> f32 {
+        if self.is_smooth() { 1.0 } else { albedo::single_means(index, self.mean)[1] }
+    }
+}
+
+/// GGX's alpha of a roughness from 0 to 1.
+///
+/// Source: *Physically Based Rendering*, 3rd edition, section 8.4.2.
+pub(in crate::pbrt) fn alpha_of_roughness(roughness: f32) -> f32 {
+    let x = fp::ln(roughness.max(1e-3));
+    1.62142 + x * (0.819955 + x * (0.1734 + x * (0.0171201 + x * 0.000640711)))
+}
+
+impl Reader<'_> {
+    /// Roughness by one parameter for both directions, if there is such, or by one for each.
+    pub(super) fn rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
+        const EACH: [&str; 2] = ["uroughness", "vroughness"];
+        let remapped = params.truth("remaproughness").unwrap_or(true);
+        let alpha = |written: f32| if remapped { alpha_of_roughness(written) } else { written };
+        let names = if each { EACH.map(|name| params.get(name)) } else { [None; 2] };
+        let texture = |i: usize| names[i].filter(|param| param.kind == Kind::Texture).map(|param| param.text());
+        let pictured = match (names[0].is_some() || names[1].is_some(), both) {
+            (true, _) if texture(0).is_some() && texture(0) == texture(1) => Some(EACH[0]),
+            (true, _) => None,
+            (false, both) => both,
+        };
+        let picture = pictured.and_then(|name| self.changed(params, name, false, |x| alpha(x).max(0.0).sqrt()));
+        if let Some(picture) = picture {
+            // What is left out is that of its mean.
+            let mean = self.mean_of_asset(&picture, params.at).unwrap_or(0.5);
+            return Rough { picture: Some(picture), alphas: [1.0; 2], mean };
+        }
+        let usual = both.map_or(usual, |name| self.value(params, name, usual));
+        let alphas = EACH.map(|name| {
+            let written = if each { self.value(params, name, usual) } else { usual };
+            alpha(written).max(1e-3)
+        });
+        Rough::new(alphas)
+    }
+
+    /// The same as the mean of both directions: what lies on a matte base has but one here.
+    pub(super) fn even_rough(&mut self, params: &Params, both: Option<&'static str>, each: bool, usual: f32) -> Rough {
+        let rough = self.rough(params, both, each, usual);
+        let [u, v] = rough.alphas;
+        if u != v {
+            self.said.once(
+                params.at,
+                "what is reflected on a matte base is as rough in both directions: their mean is taken",
+            );
+        }
+        Rough { alphas: [(u * v).sqrt(); 2], ..rough }
+    }
+}

@@ -1,0 +1,79 @@
+//! A matte base below a coat that reflects more at grazing angles, as pbrt-v3 has it.
+//!
+//! Source: Ashikhmin and Shirley, *An Anisotropic Phong BRDF Model*, Journal of Graphics Tools 5(2),
+//! 2000, with the facets of *Physically Based Rendering*, 3rd edition, section 8.5.
+
+use super::super::params::Params;
+use super::super::state::Reader;
+use super::matte;
+use super::parts::{Part, glossy};
+use durer_scene::bsdf::{albedo, fresnel};
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::{Vec3, fp};
+use std::f32::consts::TAU;
+
+/// The boundary below which a base looks as that one does: it gives back
+/// (1 - (1 - cos / 2)^5) of what it has at right angles, both ways, to 2 %.
+const INDEX: f32 = 0.8;
+const ROUGHNESS: f32 = 0.894_427;
+
+/// What such a boundary reflects on the mean, and what of the base's colour comes back on the mean.
+const REFLECTED: f32 = 0.1514;
+const MEAN: f32 = 23.0 / 28.0;
+
+impl Reader<'_> {
+    pub(super) fn substrate(&mut self, params: &Params) -> Vec<Part> {
+        let rough = self.even_rough(params, None, true, 0.1);
+        let (color, picture) = self.colored(params, "Kd", 0.5);
+        let (shine, shine_picture) = self.colored(params, "Ks", 0.5);
+        let most = shine.max_element();
+        let passing = Vec3::ONE - shine.min(Vec3::ONE);
+        let base = PrincipledMaterial {
+            base_color_texture: picture,
+            specular_weight: 1.0,
+            specular_color: Vec3::ZERO,
+            specular_ior: INDEX,
+            specular_roughness: ROUGHNESS,
+            ..matte(color * passing * (MEAN / (1.0 - REFLECTED)))
+        };
+        let base = Part { most: color.max_element(), layers: base };
+        if most <= 0.0 {
+            return vec![base];
+        }
+        let (f0, hue) = (most.min(0.98), shine / most);
+        let strength = blended(rough.alphas[0], f0);
+        let layers = glossy((strength * hue, shine_picture), fresnel::ior_of_reflectance(f0), &rough);
+        // By how much the light that it reflects in all directions is more than at right angles.
+        vec![base, Part { most: f0 + (1.0 - f0) / 21.0, layers }]
+    }
+}
+
+/// What the coat reflects on the mean over what facets of a dielectric do here, by as much at right
+/// angles.
+pub(super) fn blended(alpha: f32, f0: f32) -> f32 {
+    const POINTS: u16 = 4096;
+    // Source: Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
+    const STEPS: Vec3 = Vec3::new(0.819_172_5, 0.671_043_6, 0.549_700_5);
+    let mut blend = 0.0;
+    for i in 0..POINTS {
+        let u = (Vec3::splat(0.5) + f32::from(i) * STEPS).fract();
+        let mu = u.x.max(1e-4).sqrt();
+        let wo = Vec3::new((1.0 - mu * mu).max(0.0).sqrt(), 0.0, mu);
+        // A facet by its density times its cosine.
+        let tangent2 = alpha * alpha * u.y / (1.0 - u.y);
+        let up = 1.0 / (1.0 + tangent2).sqrt();
+        let (sin, cos) = (fp::sin(TAU * u.z), fp::cos(TAU * u.z));
+        let across = (1.0 - up * up).max(0.0).sqrt();
+        let h = Vec3::new(across * cos, across * sin, up);
+        let cosine = wo.dot(h);
+        let wi = 2.0 * cosine * h - wo;
+        if cosine > 0.0 && wi.z > 0.0 {
+            let schlick = f0 + (1.0 - f0) * fp::pow(1.0 - cosine.min(1.0), 5.0);
+            blend += schlick * wi.z / (up * wi.z.max(wo.z));
+        }
+    }
+    let eta = fresnel::ior_of_reflectance(f0);
+    let reflected = albedo::single_means(eta, alpha.clamp(0.0, 1.0).sqrt())[0];
+    // What is left out of facets is left out already.
+    if reflected > 0.0 { blend / f32::from(POINTS) / reflected } else { 1.0 }
+}

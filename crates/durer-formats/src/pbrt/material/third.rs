@@ -1,0 +1,256 @@
+//! Materials of pbrt-v3. Most are sums: Lambert's and a rough mirror beside each other, where later
+//! there are layers. Sums are mixes here, whose parts are as much brighter as they are less there.
+//!
+//! Source of all meanings: *Physically Based Rendering*, 3rd edition, chapters 8 and 9, and *Input File
+//! Format*, pbrt.org/fileformat-v3.
+
+use super::super::language::NEW_MATERIALS;
+use super::super::made::{Made, Medium, Texture};
+use super::super::params::{Kind, Params};
+use super::super::spectrum::{Spectrum, metal};
+use super::super::state::Reader;
+use super::parts::{Part, glass, glossy, metallic, oren_nayar};
+use super::rough::Rough;
+use super::{below_skin, matte};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::{Color, Vec3};
+
+const KNOWN: [&str; 15] = [
+    "disney",
+    "fourier",
+    "glass",
+    "hair",
+    "kdsubsurface",
+    "matte",
+    "metal",
+    "mirror",
+    "mix",
+    "none",
+    "plastic",
+    "substrate",
+    "subsurface",
+    "translucent",
+    "uber",
+];
+
+/// Indices of copper for red, green and blue: what its spectra come to in pbrt-v3.
+///
+/// Source of the spectra: as pbrt-v3 has them, from Palik, *Handbook of Optical Constants of Solids*,
+/// 1985.
+const COPPER: [Vec3; 2] = [Vec3::new(0.200438, 0.924033, 1.102212), Vec3::new(3.912949, 2.452848, 2.142188)];
+
+impl Reader<'_> {
+    /// An index of refraction, `eta` or `index`.
+    pub(super) fn old_index(&self, params: &Params, usual: f32) -> f32 {
+        let name = if params.get("eta").is_some() { "eta" } else { "index" };
+        let index = match params.get(name).map(|param| param.kind) {
+            Some(Kind::Spectrum | Kind::Rgb) => params.spectrum(name).map_or(usual, |spectrum| spectrum.plain().y),
+            _ => self.value(params, name, usual),
+        };
+        if index <= 0.0 {
+            self.said.bad(params.place(name), "an index of refraction must be more than 0");
+            return usual;
+        }
+        index
+    }
+
+    pub(super) fn third(&mut self, kind: &str, params: &Params, at: Span) -> Made {
+        let parts = match kind {
+            "matte" => {
+                let (color, picture) = self.colored(params, "Kd", 0.5);
+                let degrees = self.value(params, "sigma", 0.0).clamp(0.0, 90.0);
+                let (color, roughness) = if degrees > 0.0 { oren_nayar(color, degrees) } else { (color, 0.0) };
+                let layers = PrincipledMaterial {
+                    base_color_texture: picture,
+                    base_diffuse_roughness: roughness,
+                    ..matte(color)
+                };
+                vec![Part { layers, most: 1.0 }]
+            }
+            "plastic" => {
+                let rough = self.even_rough(params, Some("roughness"), false, 0.1);
+                // Its index is 1.5 outside and 1 inside: it reflects as from within.
+                vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, 1.0 / 1.5), &rough)]
+            }
+            "uber" => self.uber(params),
+            "translucent" => self.translucent(params),
+            "substrate" => self.substrate(params),
+            "metal" => {
+                let rough = self.rough(params, Some("roughness"), true, 0.01);
+                let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.plain()));
+                let [eta, k] = [eta.unwrap_or(COPPER[0]), k.unwrap_or(COPPER[1])];
+                let [f0, f82] = metal(&Spectrum::Rgb(eta), &Spectrum::Rgb(k), 1.0);
+                vec![Part { layers: metallic(f0, f82, &rough), most: 1.0 }]
+            }
+            "mirror" => {
+                let (color, picture) = self.colored(params, "Kr", 0.9);
+                let most = color.max_element().clamp(1e-6, 1.0);
+                // It reflects the same share at all angles.
+                let m = PrincipledMaterial {
+                    base_metalness: 1.0,
+                    base_color: color / most,
+                    base_color_texture: picture,
+                    specular_weight: most,
+                    specular_roughness: 0.0,
+                    ..PrincipledMaterial::default()
+                };
+                vec![Part { layers: m, most: if color == Vec3::ZERO { 0.0 } else { 1.0 } }]
+            }
+            "glass" => {
+                let index = self.old_index(params, 1.5);
+                let (reflected, through) = (self.colored(params, "Kr", 1.0), self.colored(params, "Kt", 1.0));
+                let smooth = ["uroughness", "vroughness"].iter().all(|name| {
+                    params.get(name).is_none_or(|param| param.kind != Kind::Texture && param.number() == 0.0)
+                });
+                let rough = if smooth { None } else { Some(self.rough(params, None, true, 0.0)) };
+                vec![Part { layers: glass(reflected, through, index, rough.as_ref()), most: 1.0 }]
+            }
+            "disney" => return self.disney(params, at),
+            "subsurface" | "kdsubsurface" => vec![self.below(kind, params)],
+            "mix" => return self.mix_of_two(params, at),
+            "hair" => return self.hair(params, &["color"], at),
+            "" | "none" => return Made::Nothing,
+            "fourier" => {
+                params.known(&["bsdffile"]);
+                self.said.once(at, "measured materials have no counterpart: matte grey is taken");
+                vec![Part { layers: matte(Vec3::splat(0.5)), most: 1.0 }]
+            }
+            other => {
+                let is_new = NEW_MATERIALS.contains(&other);
+                let help = if is_new { Some("this is of pbrt-v4".into()) } else { meant(other, KNOWN) };
+                self.no_material(other, at, help, is_new);
+                return Made::Nothing;
+            }
+        };
+        let mut bent = Vec::with_capacity(parts.len());
+        for Part { mut layers, most } in parts {
+            self.surface(&mut layers, params, "bumpmap");
+            bent.push(Part { layers, most });
+        }
+        self.sum(bent, at)
+    }
+
+    /// What Lambert's law scatters.
+    fn lambert(&mut self, params: &Params, name: &'static str, usual: f32) -> Part {
+        let (color, picture) = self.colored(params, name, usual);
+        let layers = PrincipledMaterial { base_color_texture: picture, ..matte(color) };
+        Part { layers, most: color.max_element() }
+    }
+
+    /// What facets reflect: by default so much of what a boundary of an index does.
+    fn gloss(&mut self, params: &Params, name: &'static str, (usual, ior): (f32, f32), rough: &Rough) -> Part {
+        let color = self.colored(params, name, usual);
+        Part { most: color.0.max_element(), layers: glossy(color, ior, rough) }
+    }
+
+    fn uber(&mut self, params: &Params) -> Vec<Part> {
+        let rough = self.even_rough(params, Some("roughness"), true, 0.1);
+        let index = self.old_index(params, 1.5);
+        let smooth = Rough::new([0.0; 2]);
+        let mut parts = vec![self.lambert(params, "Kd", 0.25), self.gloss(params, "Ks", (0.25, index), &rough)];
+        let (reflected, through) = (self.colored(params, "Kr", 0.0), self.colored(params, "Kt", 0.0));
+        parts.push(match through.0 == Vec3::ZERO {
+            true => Part { most: reflected.0.max_element(), layers: glossy(reflected, index, &smooth) },
+            false => {
+                let most = reflected.0.max_element().max(through.0.max_element());
+                Part { most, layers: glass(reflected, through, index, None) }
+            }
+        });
+        let (share, picture) = match self.pattern(params, "opacity", true, Vec3::ONE) {
+            Texture::Even(color) => (self.grey(params, "opacity", color), None),
+            Texture::Picture(..) => (1.0, self.changed(params, "opacity", true, |x| x)),
+        };
+        for part in &mut parts {
+            (part.layers.opacity, part.layers.opacity_texture) = (share, picture.clone());
+        }
+        parts
+    }
+
+    /// What is matte on both sides, with facets that reflect.
+    fn translucent(&mut self, params: &Params) -> Vec<Part> {
+        let rough = self.rough(params, Some("roughness"), false, 0.1);
+        let even = |reader: &mut Self, name, usual| reader.pattern(params, name, true, Vec3::splat(usual)).even();
+        let [up, down] = ["reflect", "transmit"].map(|name| even(self, name, 0.5).unwrap_or(Vec3::splat(0.5)));
+        let (color, picture) = self.colored(params, "Kd", 0.25);
+        let sum = |color: Color| color.element_sum().max(1e-6);
+        let layers = PrincipledMaterial {
+            subsurface_weight: 1.0,
+            subsurface_color: color * (up + down),
+            subsurface_color_texture: picture,
+            // A sheet divides what it scatters by one number for all colours.
+            subsurface_scatter_anisotropy: ((sum(down) - sum(up)) / (sum(down) + sum(up))).clamp(-0.999, 0.999),
+            walls: Walls::Thin,
+            ..matte(Vec3::ZERO)
+        };
+        let matte = Part { most: (color * (up + down)).max_element(), layers };
+        let (shine, picture) = self.colored(params, "Ks", 0.25);
+        let gloss = glossy((up * shine, picture.clone()), 1.5, &rough);
+        let mut parts = vec![matte, Part { most: (up * shine).max_element(), layers: gloss }];
+        // Facets let light through too; those of a sheet do not refract.
+        if (down * shine).max_element() > 0.0 {
+            let what = "light that facets of `translucent` let through is not refracted here";
+            self.said.once(params.at, what);
+            let kept = 0.5 * (rough.kept(1.5) + rough.kept(1.0 / 1.5));
+            let mut through = super::matte(Vec3::ZERO);
+            (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
+            (through.transmission_weight, through.walls) = (1.0, Walls::Thin);
+            (through.transmission_color, through.transmission_color_texture) = (kept * down * shine, picture);
+            rough.put(&mut through);
+            parts.push(Part { most: (down * shine).max_element(), layers: through });
+        }
+        parts
+    }
+
+    /// What scatters light below a skin that refracts.
+    fn below(&mut self, kind: &str, params: &Params) -> Part {
+        let rough = self.rough(params, None, true, 0.0);
+        let mut m = PrincipledMaterial::default();
+        rough.put(&mut m);
+        m.specular_ior = self.old_index(params, 1.33);
+        params.left_out(&["Kr", "Kt"], "the skin takes no light");
+        if kind == "kdsubsurface" {
+            let color = self.colored(params, "Kd", 0.5);
+            let path = params.spectrum("mfp").map_or(Vec3::ONE, |spectrum| spectrum.plain());
+            below_skin(&mut m, params, color, path);
+        } else {
+            m.transmission_weight = 1.0;
+            Medium::of(params, "name").fill(&mut m);
+        }
+        Part { layers: m, most: 1.0 }
+    }
+
+    /// One number of a parameter that may be a colour in pbrt-v3.
+    fn grey(&self, params: &Params, name: &'static str, color: Color) -> f32 {
+        if color.max_element() - color.min_element() > 1e-3 {
+            let what = format!("an `{name}` of a colour has no counterpart: the mean of its parts is taken");
+            self.said.once(params.place(name), what);
+        }
+        color.element_sum() / 3.0
+    }
+
+    /// `amount` is the share of the first.
+    fn mix_of_two(&mut self, params: &Params, at: Span) -> Made {
+        let share = |amount: f32| amount.clamp(0.0, 1.0);
+        let amount = match self.pattern(params, "amount", true, Vec3::splat(0.5)) {
+            Texture::Even(color) => (share(self.grey(params, "amount", color)), None),
+            Texture::Picture(..) => (1.0, self.changed(params, "amount", true, share)),
+        };
+        let names = ["namedmaterial1", "namedmaterial2"].map(|name| (name, params.text(name).map(str::to_string)));
+        let mut numbers = [0; 2];
+        for (number, (name, given)) in numbers.iter_mut().zip(names) {
+            let Some(given) = given else {
+                self.said.bad(at, format!("a mix needs `\"string {name}\"`"));
+                return Made::Nothing;
+            };
+            let place = params.get(name).map_or(at, |param| param.values_at);
+            match self.known_material(&given, place) {
+                Some(found) => *number = found,
+                None => return Made::Nothing,
+            }
+        }
+        self.mix_by(numbers, amount, at)
+    }
+}

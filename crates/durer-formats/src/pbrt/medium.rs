@@ -1,0 +1,245 @@
+//! Media: what is inside of shapes, and around the camera.
+//!
+//! Source of meanings and of the default coefficients: *Physically Based Rendering*, 4th edition,
+//! chapter 11. Coefficients are per unit of the world.
+
+use super::language::Language;
+use super::made::{Density, Made, Medium};
+use super::params::{Param, Params};
+use super::state::Reader;
+use crate::said::{Said, meant};
+use durer_diag::Span;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::{Aabb, Color, Vec3, fp};
+use durer_scene::medium::{DensityGrid, Fog};
+use durer_scene::scene::Spanned;
+use glam::{DAffine3, DQuat, DVec3};
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// What is scattered, as if evenly, and absorbed in a millimetre, for red, green and blue.
+///
+/// Source: Jensen, Marschner, Levoy and Hanrahan, *A Practical Model for Subsurface Light Transport*,
+/// SIGGRAPH 2001, table 5.
+const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
+    ("Apple", [2.29, 2.39, 1.97], [0.003, 0.0034, 0.046]),
+    ("Chicken1", [0.15, 0.21, 0.38], [0.015, 0.077, 0.19]),
+    ("Chicken2", [0.19, 0.25, 0.32], [0.018, 0.088, 0.2]),
+    ("Cream", [7.38, 5.47, 3.15], [0.0002, 0.0028, 0.0163]),
+    ("Ketchup", [0.18, 0.07, 0.03], [0.061, 0.97, 1.45]),
+    ("Marble", [2.19, 2.62, 3.0], [0.0021, 0.0041, 0.0071]),
+    ("Potato", [0.68, 0.7, 0.55], [0.0024, 0.009, 0.12]),
+    ("Skimmilk", [0.7, 1.22, 1.9], [0.0014, 0.0025, 0.0142]),
+    ("Skin1", [0.74, 0.88, 1.01], [0.032, 0.17, 0.48]),
+    ("Skin2", [1.09, 1.59, 1.79], [0.013, 0.07, 0.145]),
+    ("Spectralon", [11.6, 20.4, 14.9], [0.0, 0.0, 0.0]),
+    ("Wholemilk", [2.55, 3.21, 3.77], [0.0011, 0.0024, 0.014]),
+];
+
+/// What is absorbed and scattered where nothing is written.
+const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
+
+impl Medium {
+    /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
+    /// which a parameter has.
+    pub(super) fn of(params: &Params, preset: &'static str) -> Medium {
+        Medium::with(params, preset, USUAL)
+    }
+
+    /// The same where nothing that is written means some absorption and scattering.
+    fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
+        let scale = params.float("scale").unwrap_or(1.0).max(0.0);
+        if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
+            match MEASURED.iter().find(|row| row.0 == name) {
+                Some((_, scattering, absorption)) => {
+                    params.known(&["sigma_a", "sigma_s", "g"]);
+                    let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
+                    return Medium { absorption, scattering, anisotropy: 0.0, density: None };
+                }
+                None => {
+                    let message = format!("the medium `{name}` is not known here: its coefficients count");
+                    params.said.once(params.place(preset), message);
+                }
+            }
+        }
+        let coefficient = |name, usual: [f32; 3]| {
+            let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
+            scale * given.unwrap_or(Vec3::from_array(usual))
+        };
+        params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
+        Medium {
+            absorption: coefficient("sigma_a", usual_a),
+            scattering: coefficient("sigma_s", usual_s),
+            anisotropy: params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99),
+            density: None,
+        }
+    }
+
+    fn extinction(&self) -> Color {
+        self.absorption + self.scattering
+    }
+
+    /// Fills what light goes into.
+    pub fn fill(&self, m: &mut PrincipledMaterial) {
+        let most = self.extinction().max_element();
+        if most <= 0.0 {
+            return;
+        }
+        let depth = 1.0 / most;
+        m.transmission_depth = depth;
+        m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
+        m.transmission_scatter = depth * self.scattering;
+        m.transmission_scatter_anisotropy = self.anisotropy;
+        if let Some(Density { name, placed }) = &self.density {
+            m.transmission_density = Some(name.clone());
+            let DAffine3 { matrix3: edges, translation } = placed.unwrap_or_default();
+            let rows = [translation, edges.x_axis, edges.y_axis, edges.z_axis];
+            m.transmission_density_box = placed.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
+        }
+    }
+
+    /// The same around a camera; `None` for what is clear.
+    pub fn fog(&self, at: Span, said: &Said) -> Option<Spanned<Fog>> {
+        let extinction = self.extinction();
+        let most = extinction.max_element();
+        if most <= 0.0 {
+            return None;
+        }
+        if self.density.is_some() {
+            said.once(at, "what is around the camera is the same everywhere here, and this is not: it is left out");
+            return None;
+        }
+        if extinction.min_element() < 0.99 * most {
+            said.once(at, "what is around the camera thins all colours alike: the strongest counts");
+        }
+        let (color, anisotropy) = (self.scattering / most, self.anisotropy);
+        Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })
+    }
+}
+
+impl Reader<'_> {
+    pub fn make_named_medium(&mut self, name: String, at: Span, list: Vec<Rc<Param>>) {
+        let params = self.params(list, Some(super::state::MEDIUM), at);
+        let kind = params.text("type").unwrap_or("homogeneous").to_string();
+        let medium = match kind.as_str() {
+            "homogeneous" => {
+                let medium = Medium::of(&params, "preset");
+                params.finish(&format!("the medium `{name}`"));
+                Some(medium)
+            }
+            "uniformgrid" | "heterogeneous" => self.grid(&name, &params),
+            "rgbgrid" | "cloud" | "nanovdb" => {
+                let what = format!(
+                    "media of type `{kind}` have no counterpart: light goes through them as if they were not there"
+                );
+                self.said.once(at, what);
+                None
+            }
+            other => {
+                let help = meant(other, ["homogeneous", "uniformgrid", "rgbgrid", "cloud", "nanovdb"]);
+                return self.said.bad_with(at, format!("there is no medium of type `{other}`"), help);
+            }
+        };
+        if self.media.insert(name.clone(), medium).is_some() {
+            self.said.bad(at, format!("there is a medium `{name}` already"));
+        }
+    }
+
+    /// A medium that is as dense as a grid says, whose values lie in the middles of cells.
+    fn grid(&mut self, name: &str, params: &Params) -> Option<Medium> {
+        let usual = match params.language {
+            Language::Third => USUAL,
+            Language::Fourth => [[1.0; 3]; 2],
+        };
+        let medium = Medium::with(params, "preset", usual);
+        params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium does not shine");
+        let counts = ["nx", "ny", "nz"].map(|name| params.whole(name).unwrap_or(1));
+        let corner = |name, usual| params.triple(name).unwrap_or(usual).as_dvec3();
+        let (low, high) = (corner("p0", Vec3::ZERO), corner("p1", Vec3::ONE));
+        let densities = params.floats("density").map(<[f64]>::to_vec);
+        params.finish(&format!("the medium `{name}`"));
+        let Some(densities) = densities else {
+            self.said.bad(params.at, "this medium needs a `density`");
+            return None;
+        };
+        let place = params.place("density");
+        let wanted = counts.iter().try_fold(1_i64, |product, &n| product.checked_mul(n.max(0)));
+        if wanted != Some(densities.len() as i64) {
+            let [x, y, z] = counts;
+            let given = densities.len();
+            self.said
+                .bad(place, format!("`density` needs {x} x {y} x {z} numbers, by `nx`, `ny` and `nz`: found {given}"));
+            return None;
+        }
+        if let Some(bad) = densities.iter().position(|density| *density < 0.0) {
+            self.said.bad(place, format!("density {} is {}: it must be 0 or more", bad + 1, densities[bad]));
+            return None;
+        }
+        // Beyond the outermost values there is nothing: a shell of zeros says so.
+        let [nx, ny, nz] = counts.map(|n| n as usize);
+        let mut values = vec![0.0; (nx + 2) * (ny + 2) * (nz + 2)];
+        for (i, row) in densities.chunks_exact(nx).enumerate() {
+            let start = ((i / ny + 1) * (ny + 2) + i % ny + 1) * (nx + 2) + 1;
+            values[start..start + nx].iter_mut().zip(row).for_each(|(value, density)| *value = *density as f32);
+        }
+        let grid = DensityGrid::new(counts.map(|n| n as u32 + 2), values)?;
+        let path = format!("{}#densities-{}.vol", self.input.name, self.scene.assets.densities.len());
+        let bounds = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+        self.scene.assets.densities.insert(path.clone(), (bounds, Arc::new(grid)));
+        let cell = (high - low) / DVec3::from_array(counts.map(|n| n as f64));
+        let map = DAffine3::from_scale_rotation_translation(high - low + 2.0 * cell, DQuat::IDENTITY, low - cell);
+        let placed = Some(self.state.transforms.maps[0] * map);
+        Some(Medium { density: Some(Density { name: FileName { path, span: place }, placed }), ..medium })
+    }
+
+    /// What is inside and outside of shapes: it must have been made.
+    pub fn medium_interface(&mut self, names: &[String; 2], at: Span) {
+        for name in names.iter().filter(|name| !name.is_empty() && !self.media.contains_key(*name)) {
+            let help = meant(name, self.media.keys().map(String::as_str));
+            self.said.bad_with(at, format!("there is no medium `{name}`"), help);
+        }
+        let [inside, outside] = names.clone().map(|name| (!name.is_empty()).then_some(name));
+        (self.state.inside, self.state.outside) = (inside, outside);
+    }
+
+    /// The number of the current material with what is inside of the shape.
+    pub fn filled(&mut self) -> usize {
+        let plain = self.state.material;
+        let Some(name) = self.state.inside.clone() else { return plain };
+        let Some(Some(medium)) = self.media.get(&name).cloned() else { return plain };
+        if let Some(known) = self.filled.get(&(plain, name.clone())) {
+            return *known;
+        }
+        let made = match &self.materials[plain] {
+            Made::Nothing => {
+                let mut m =
+                    PrincipledMaterial { specular_ior: 1.0, transmission_weight: 1.0, ..PrincipledMaterial::default() };
+                medium.fill(&mut m);
+                Made::Layers(Box::new(m), Span::default())
+            }
+            Made::Layers(layers, at) if layers.transmission_weight > 0.0 && layers.walls == Walls::Solid => {
+                let mut m = layers.clone();
+                medium.fill(&mut m);
+                Made::Layers(m, *at)
+            }
+            // Nothing gets into the others.
+            _ => return plain,
+        };
+        self.materials.push(made);
+        let number = self.materials.len() - 1;
+        self.filled.insert((plain, name), number);
+        number
+    }
+
+    /// What the camera is in, as fog.
+    pub fn fog(&mut self, at: Span) {
+        let Some(Some(medium)) = self.state.outside.as_ref().and_then(|name| self.media.get(name)).cloned() else {
+            return;
+        };
+        if let Some(fog) = medium.fog(at, self.said) {
+            self.scene.fog = Some(fog);
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Scenes of pbrt-v4 and of pbrt-v3: the whole language, and what of it has a counterpart here.
+//!
+//! Sources: *Input File Format*, pbrt.org/fileformat-v4 and pbrt.org/fileformat-v3; Pharr, Jakob and
+//! Humphreys, *Physically Based Rendering*, 4th edition, 2023, and 3rd edition, 2016. A text changes a state, and what is written then (a shape,
+//! a light) takes the state as it is.
+
+mod camera;
+mod curve;
+mod directives;
+pub(super) mod environment;
+mod given;
+mod language;
+mod lexer;
+mod light;
+pub(super) mod made;
+mod material;
+pub(super) mod medium;
+pub(super) mod mesh;
+mod named;
+mod net;
+mod params;
+mod pictured;
+mod round;
+pub(super) mod shape;
+pub(super) mod spectrum;
+mod state;
+mod subdivision;
+mod texture;
+mod transform;
+
+#[cfg(test)]
+mod tests;
+
+use super::model::{Input, SceneFormat};
+use super::said::Said;
+use super::too_large;
+use directives::DIRECTIVES;
+use durer_diag::{Diagnostic, Diagnostics};
+use durer_scene::scene::{Axis, Scene};
+use lexer::{Lexer, Token};
+use state::Reader;
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "pbrt",
+    extensions: &["pbrt"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Y,
+    whole: true,
+    shines: Some(
+        "write `AreaLightSource \"diffuse\"` before a shape, or `LightSource \"infinite\"`: what is all around is light too",
+    ),
+};
+
+/// Whether a file begins with a directive that only pbrt has. `Transform` and `Material` begin
+/// texts of the course's too.
+fn recognise(bytes: &[u8]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 12)];
+    let (mut text, said) = (Lexer::new(head.into(), 0), Said::default());
+    let is_text = |token: Option<&Token>| matches!(token, Some(Token::Text(_)));
+    let Some(first) = text.next(&said).filter(|found| found.token == Token::Word) else { return false };
+    let word = text.word(first.at).to_string();
+    match DIRECTIVES.iter().find(|row| row.0 == word) {
+        Some((_, true)) => is_text(text.peek(&said).map(|found| &found.token)),
+        Some(_) => matches!(word.as_str(), "LookAt" | "WorldBegin" | "AttributeBegin" | "ReverseOrientation"),
+        None => false,
+    }
+}
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
+        return None;
+    }
+    let said = Said::default();
+    let scene = Reader::new(input, language::decide(input), &said).read();
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    sound.then_some(scene)
+}

@@ -1,0 +1,429 @@
+//! Lists of parameters: `"float radius" [ 2 ]`.
+
+use super::language::Language;
+use super::lexer::{Found, Lexer, Token};
+use super::spectrum::{Space, Spectrum};
+use crate::model::Input;
+use crate::report::counted;
+use crate::said::{Said, meant};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::math::{Vec2, Vec3};
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+/// The type of a parameter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Integer,
+    Float,
+    Bool,
+    Text,
+    Texture,
+    /// Two numbers each.
+    Pair,
+    /// Three numbers each.
+    Triple,
+    Rgb,
+    Xyz,
+    Blackbody,
+    Spectrum,
+}
+
+/// Names of types; the last three are those of pbrt-v3.
+const KINDS: [(&str, Kind); 18] = [
+    ("integer", Kind::Integer),
+    ("float", Kind::Float),
+    ("bool", Kind::Bool),
+    ("string", Kind::Text),
+    ("texture", Kind::Texture),
+    ("point2", Kind::Pair),
+    ("vector2", Kind::Pair),
+    ("point3", Kind::Triple),
+    ("vector3", Kind::Triple),
+    ("normal3", Kind::Triple),
+    ("point", Kind::Triple),
+    ("vector", Kind::Triple),
+    ("normal", Kind::Triple),
+    ("rgb", Kind::Rgb),
+    ("blackbody", Kind::Blackbody),
+    ("spectrum", Kind::Spectrum),
+    ("color", Kind::Rgb),
+    ("xyz", Kind::Xyz),
+];
+
+/// What stands behind a name.
+#[derive(Clone, Debug)]
+pub(super) enum Values {
+    Numbers(Vec<f64>),
+    Texts(Vec<String>),
+    Bools(Vec<bool>),
+}
+
+impl Values {
+    /// How many of what they are.
+    fn counted(&self) -> String {
+        let (one, many) = match self {
+            Values::Numbers(_) => ("number", "numbers"),
+            Values::Texts(_) => ("string", "strings"),
+            Values::Bools(_) => ("truth value", "truth values"),
+        };
+        counted(self.len(), one, many)
+    }
+
+    fn len(&self) -> usize {
+        match self {
+            Values::Numbers(all) => all.len(),
+            Values::Texts(all) => all.len(),
+            Values::Bools(all) => all.len(),
+        }
+    }
+}
+
+/// A parameter.
+#[derive(Debug)]
+pub(super) struct Param {
+    pub kind: Kind,
+    pub name: String,
+    pub values: Values,
+    /// Its type and name.
+    pub at: Span,
+    /// Its values.
+    pub values_at: Span,
+    used: Cell<bool>,
+}
+
+impl Param {
+    /// The first number.
+    pub fn number(&self) -> f32 {
+        match &self.values {
+            Values::Numbers(all) => all.first().copied().unwrap_or_default() as f32,
+            _ => 0.0,
+        }
+    }
+
+    /// All numbers.
+    pub fn numbers(&self) -> &[f64] {
+        if let Values::Numbers(all) = &self.values { all } else { &[] }
+    }
+
+    /// The first string.
+    pub fn text(&self) -> &str {
+        match &self.values {
+            Values::Texts(all) => all.first().map_or("", String::as_str),
+            _ => "",
+        }
+    }
+
+    /// Rows of three numbers.
+    pub fn triples(&self) -> Vec<Vec3> {
+        self.numbers().chunks_exact(3).map(|p| Vec3::new(p[0] as f32, p[1] as f32, p[2] as f32)).collect()
+    }
+}
+
+/// Parameters of one directive, those of `Attribute` after its own.
+pub(super) struct Params<'s> {
+    list: Vec<Rc<Param>>,
+    /// How many are the directive's own.
+    own: usize,
+    /// The directive's word, or the string after it.
+    pub at: Span,
+    pub said: &'s Said,
+    pub input: &'s Input<'s>,
+    /// What red, green and blue are.
+    pub space: Space,
+    pub language: Language,
+    asked: RefCell<Vec<&'static str>>,
+}
+
+/// Reads parameters as long as strings follow.
+pub(super) fn read(text: &mut Lexer, language: Language, said: &Said) -> Vec<Rc<Param>> {
+    let mut list: Vec<Rc<Param>> = Vec::new();
+    while !said.is_full() {
+        let Some(Found { token: Token::Text(_), .. }) = text.peek(said) else { break };
+        let Some(Found { token: Token::Text(head), at }) = text.next(said) else { break };
+        let Some((values, values_at)) = values(text, at, said) else { continue };
+        let Some((kind, name)) = declared(&head, at, language, said) else { continue };
+        if let Some(first) = list.iter().find(|param| param.name == name) {
+            let error = Diagnostic::error(format!("`{name}` is given twice")).code("bad-value").at(at);
+            said.push(error.related(first.at, "first here"));
+            continue;
+        }
+        if fits(kind, &name, &values, values_at, said) {
+            list.push(Rc::new(Param { kind, name, values, at, values_at, used: Cell::new(false) }));
+        }
+    }
+    list
+}
+
+/// The type and name of `"float radius"`.
+fn declared(head: &str, at: Span, language: Language, said: &Said) -> Option<(Kind, String)> {
+    let mut words = head.split_ascii_whitespace();
+    let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
+        said.bad_with(
+            at,
+            "expected the type and the name of a parameter",
+            Some("parameters are written as in `\"float radius\" [ 2 ]`".into()),
+        );
+        return None;
+    };
+    let found = KINDS.iter().find(|row| row.0 == kind);
+    if found.is_none() {
+        let help = meant(kind, KINDS.iter().map(|row| row.0));
+        said.bad_with(at, format!("`{kind}` is no type of a parameter"), help);
+    }
+    if kind == "xyz" && language == Language::Fourth {
+        said.bad_with(at, "colours by XYZ are of pbrt-v3", Some("write `rgb`".into()));
+        return None;
+    }
+    Some((found?.1, name.to_string()))
+}
+
+/// What follows a parameter's name: one value, or several in brackets.
+fn values(text: &mut Lexer, head: Span, said: &Said) -> Option<(Values, Span)> {
+    let Some(first) = text.peek(said).cloned() else {
+        said.bad(head, "a value must follow this parameter");
+        return None;
+    };
+    let (mut numbers, mut texts, mut bools) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut sound, mut kinds) = (true, 0);
+    let mut add = |found: Found, text: &Lexer| match found.token {
+        Token::Text(value) => {
+            texts.push(value);
+            true
+        }
+        Token::Word if matches!(text.bytes(found.at), b"true" | b"false") => {
+            bools.push(text.bytes(found.at) == b"true");
+            true
+        }
+        Token::Word => match number(text, found.at, said) {
+            Some(value) => {
+                numbers.push(value);
+                true
+            }
+            None => false,
+        },
+        Token::Open | Token::Close => false,
+    };
+    let mut end = first.at;
+    if first.token == Token::Open {
+        text.next(said);
+        loop {
+            let Some(found) = text.next(said) else {
+                let error = Diagnostic::error("these brackets are not closed").code("unclosed").at(first.at);
+                said.push(error.help("a `]` is missing"));
+                return None;
+            };
+            end = found.at;
+            match found.token {
+                Token::Close => break,
+                Token::Open => {
+                    said.bad(found.at, "brackets cannot be nested: a `]` is missing before this");
+                    sound = false;
+                }
+                _ => sound &= add(found, text),
+            }
+            if said.is_full() {
+                return None;
+            }
+        }
+    } else {
+        if first.token == Token::Close {
+            said.bad(first.at, "a value must stand before this `]`");
+            text.next(said);
+            return None;
+        }
+        text.next(said);
+        sound = add(first.clone(), text);
+    }
+    let at = first.at.to(end);
+    for filled in [!numbers.is_empty(), !texts.is_empty(), !bools.is_empty()] {
+        kinds += u32::from(filled);
+    }
+    if kinds > 1 {
+        said.bad(at, "numbers, strings and truth values cannot be mixed");
+        return None;
+    }
+    sound.then_some(match (texts.is_empty(), bools.is_empty()) {
+        (false, _) => (Values::Texts(texts), at),
+        (_, false) => (Values::Bools(bools), at),
+        _ => (Values::Numbers(numbers), at),
+    })
+}
+
+/// A word as a number.
+pub(super) fn number(text: &Lexer, at: Span, said: &Said) -> Option<f64> {
+    let word = text.word(at);
+    match word.parse::<f64>() {
+        Ok(value) if value.abs() <= f64::from(f32::MAX) => return Some(value),
+        Ok(_) => said.bad_with(
+            at,
+            format!("expected a finite number, found {}", text.shown(at)),
+            Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into()),
+        ),
+        Err(_) => {
+            let point = word.replace(',', ".");
+            let help = (point != word && point.parse::<f32>().is_ok())
+                .then(|| format!("decimals are written with a point: `{point}`"));
+            said.bad_with(at, format!("expected a number, found {}", text.shown(at)), help);
+        }
+    }
+    None
+}
+
+/// Whether values are of a type.
+fn fits(kind: Kind, name: &str, values: &Values, at: Span, said: &Said) -> bool {
+    let complain = |wanted: &str| {
+        let found = match values.len() {
+            0 => "nothing".to_string(),
+            _ => values.counted(),
+        };
+        said.bad(at, format!("`{name}` needs {wanted}, found {found}"));
+        false
+    };
+    let rows = |size: usize| match values {
+        Values::Numbers(all) => all.len() % size == 0,
+        _ => false,
+    };
+    match (kind, values) {
+        (Kind::Bool, Values::Bools(_)) => true,
+        // As pbrt-v3 has them.
+        (Kind::Bool, Values::Texts(all)) if all.iter().all(|word| word == "true" || word == "false") => true,
+        (Kind::Bool, _) => complain("`true` or `false`"),
+        (Kind::Text | Kind::Texture, Values::Texts(_)) => true,
+        (Kind::Text | Kind::Texture, _) => complain("a string in quotes"),
+        (Kind::Spectrum, Values::Texts(_)) => true,
+        (Kind::Spectrum, Values::Numbers(all)) if all.len() % 2 == 0 && !all.is_empty() => true,
+        (Kind::Spectrum, _) => complain("pairs of wavelength and value, or a name"),
+        (Kind::Pair, _) if !rows(2) => complain("a multiple of two numbers"),
+        (Kind::Triple, _) if !rows(3) => complain("a multiple of three numbers"),
+        (Kind::Rgb | Kind::Xyz, _) if !rows(3) || values.len() == 0 => complain("three numbers"),
+        (Kind::Integer, Values::Numbers(all)) => {
+            let whole = all.iter().all(|x| x.fract() == 0.0 && x.abs() < f64::from(i32::MAX));
+            whole || complain("whole numbers of 32 bits")
+        }
+        (Kind::Float | Kind::Integer | Kind::Blackbody, Values::Texts(_) | Values::Bools(_)) => complain("numbers"),
+        _ => true,
+    }
+}
+
+impl<'s> Params<'s> {
+    /// A directive's own parameters before those that `Attribute` set.
+    pub fn new(
+        own: Vec<Rc<Param>>,
+        others: &[Rc<Param>],
+        at: Span,
+        (input, said): (&'s Input<'s>, &'s Said),
+        (language, space): (Language, Space),
+    ) -> Self {
+        let count = own.len();
+        let list = own.into_iter().chain(others.iter().cloned()).collect();
+        Params { list, own: count, at, said, input, space, language, asked: RefCell::default() }
+    }
+
+    /// The parameter of a name.
+    pub fn get(&self, name: &'static str) -> Option<&Param> {
+        self.asked.borrow_mut().push(name);
+        let found = self.list.iter().find(|param| param.name == name)?;
+        found.used.set(true);
+        Some(found)
+    }
+
+    /// The parameter of a name and one of some types, with at least one value.
+    fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
+        let found = self.get(name)?;
+        if !kinds.contains(&found.kind) {
+            self.said.bad(found.at, format!("`{name}` must be {wanted}"));
+            return None;
+        }
+        if found.values.len() == 0 {
+            self.said.bad(found.values_at, format!("`{name}` has no value"));
+            return None;
+        }
+        Some(found)
+    }
+
+    /// Where a parameter is, or the directive.
+    pub fn place(&self, name: &'static str) -> Span {
+        self.get(name).map_or(self.at, |param| param.at)
+    }
+
+    pub fn float(&self, name: &'static str) -> Option<f32> {
+        self.of(name, &[Kind::Float, Kind::Integer], "a float").map(Param::number)
+    }
+
+    /// A number that must be more than zero.
+    pub fn positive(&self, name: &'static str) -> Option<f32> {
+        let value = self.float(name)?;
+        if value <= 0.0 {
+            self.said.bad(self.place(name), format!("`{name}` must be more than 0"));
+            return None;
+        }
+        Some(value)
+    }
+
+    pub fn whole(&self, name: &'static str) -> Option<i64> {
+        self.of(name, &[Kind::Integer], "an integer").map(|param| param.numbers()[0] as i64)
+    }
+
+    pub fn wholes(&self, name: &'static str) -> Option<Vec<i64>> {
+        let param = self.of(name, &[Kind::Integer], "integers")?;
+        Some(param.numbers().iter().map(|&x| x as i64).collect())
+    }
+
+    pub fn floats(&self, name: &'static str) -> Option<&[f64]> {
+        self.of(name, &[Kind::Float, Kind::Integer], "floats").map(Param::numbers)
+    }
+
+    pub fn truth(&self, name: &'static str) -> Option<bool> {
+        self.of(name, &[Kind::Bool], "`true` or `false`").map(|param| match &param.values {
+            Values::Bools(all) => all[0],
+            _ => param.text() == "true",
+        })
+    }
+
+    pub fn text(&self, name: &'static str) -> Option<&str> {
+        self.of(name, &[Kind::Text], "a string").map(Param::text)
+    }
+
+    pub fn pairs(&self, name: &'static str) -> Option<Vec<Vec2>> {
+        let param = self.of(name, &[Kind::Pair, Kind::Float], "points of two numbers")?;
+        Some(param.numbers().chunks_exact(2).map(|p| Vec2::new(p[0] as f32, p[1] as f32)).collect())
+    }
+
+    pub fn triples(&self, name: &'static str) -> Option<Vec<Vec3>> {
+        self.of(name, &[Kind::Triple], "points of three numbers").map(Param::triples)
+    }
+
+    pub fn triple(&self, name: &'static str) -> Option<Vec3> {
+        self.triples(name).map(|all| all[0])
+    }
+
+    /// A colour or spectrum that is no texture.
+    pub fn spectrum(&self, name: &'static str) -> Option<Spectrum> {
+        let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
+        Spectrum::of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
+    }
+
+    /// Takes note that parameters are known which have no counterpart here.
+    pub fn known(&self, names: &[&'static str]) {
+        names.iter().for_each(|name| _ = self.get(name));
+    }
+
+    /// The same, and says what becomes of those that are there.
+    pub fn left_out(&self, names: &[&'static str], what: &str) {
+        for name in names {
+            if let Some(param) = self.get(name) {
+                self.said.once(param.at, format!("`{name}` has no counterpart: {what}"));
+            }
+        }
+    }
+
+    /// Warns of parameters that nobody asked for.
+    pub fn finish(&self, what: &str) {
+        for param in self.list[..self.own].iter().filter(|param| !param.used.get()) {
+            let warning = Diagnostic::warning(format!("{what} has no parameter `{}`: it is left out", param.name));
+            let help = meant(&param.name, self.asked.borrow().iter().copied());
+            self.said.push(Diagnostic { help, ..warning.code("unknown-word").at(param.at) });
+        }
+    }
+}

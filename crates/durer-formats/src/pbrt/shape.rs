@@ -1,0 +1,247 @@
+//! Shapes.
+
+use super::language::Language;
+use super::made::Opacity;
+use super::params::{Kind, Param, Params};
+use super::state::{Reader, SHAPE};
+use super::{curve, mesh, net, round, subdivision};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::{MatrixOp, Node, Object};
+use durer_scene::shape::{Disc, MeshData, Sphere};
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+use std::f32::consts::PI;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Triangles that all shapes together become which are written by few numbers, and from how many on
+/// curves have fewer sides. Tests make them all.
+const MAX_GROWN: usize = if cfg!(test) { 1 << 18 } else { 1 << 24 };
+const MANY: usize = 1 << 20;
+
+/// A shape where it is written, before it has a place and a material.
+struct Made {
+    node: Node,
+    /// Area in the world of all of it, and of how many lights it is.
+    area: f32,
+    lights: usize,
+    /// Where it is in the world.
+    map: DAffine3,
+}
+
+/// An object in its place.
+pub(crate) fn placed(map: DAffine3, inner: Object) -> Object {
+    if map == DAffine3::IDENTITY {
+        return inner;
+    }
+    let matrix = DMat4::from(map).transpose().to_cols_array().map(|x| x as f32);
+    let (material, span) = (inner.material, inner.span);
+    Object { node: Node::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(inner)), material, span }
+}
+
+impl Reader<'_> {
+    pub fn shape(&mut self, kind: &str, at: Span, list: Vec<Rc<Param>>) {
+        let params = self.params(list, Some(SHAPE), at);
+        let opacity = self.opacity(&params);
+        let map = self.map(at);
+        // The sides of a quadric are told in its own space, those of a triangle in the world.
+        let flipped = self.state.reversed != (map.matrix3.determinant() < 0.0);
+        let third = self.language == Language::Third;
+        let made = match kind {
+            "sphere" => self.sphere(&params, map, flipped),
+            "disk" => self.disk(&params, map, flipped),
+            "cylinder" => {
+                let data = mesh::cylinder(&params, flipped);
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            "trianglemesh" => {
+                let data = mesh::triangles(&params, self.state.reversed);
+                data.and_then(|data| self.mesh(None, Arc::new(data), map, at))
+            }
+            "bilinearmesh" => {
+                let data = mesh::bilinear(&params, self.state.reversed);
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            "loopsubdiv" => {
+                let data = subdivision::smooth(&params, self.state.reversed, MAX_GROWN - self.grown);
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            "plymesh" => self.ply(&params, map, at),
+            "curve" => {
+                let data = curve::mesh(&params, self.state.reversed, self.grown > MANY);
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            "cone" | "paraboloid" | "hyperboloid" | "heightfield" | "nurbs" if third => {
+                let data = match kind {
+                    "cone" => Some(round::cone(&params, flipped)),
+                    "paraboloid" => round::paraboloid(&params, flipped),
+                    "hyperboloid" => round::hyperboloid(&params, flipped),
+                    "heightfield" => net::heights(&params, self.state.reversed),
+                    _ => net::nurbs(&params, self.state.reversed),
+                };
+                data.and_then(|data| self.grown(data, map, at))
+            }
+            other => {
+                let mut known = vec![
+                    "sphere",
+                    "disk",
+                    "cylinder",
+                    "trianglemesh",
+                    "plymesh",
+                    "bilinearmesh",
+                    "loopsubdiv",
+                    "curve",
+                ];
+                if third {
+                    known.extend(["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"]);
+                }
+                let mut help = meant(other, known);
+                if ["cone", "hyperboloid", "paraboloid", "heightfield", "nurbs"].contains(&other) {
+                    help = Some("this is of pbrt-v3: pbrt-v4 has it no more".into());
+                }
+                return self.said.bad_with(at, format!("there is no shape `{other}`"), help);
+            }
+        };
+        params.known(&["alpha"]);
+        if third {
+            params.left_out(&["shadowalpha"], "shadows are as what is seen");
+        }
+        params.finish(&format!("the shape `{kind}`"));
+        if let Some(made) = made {
+            self.show(made, &opacity, at);
+        }
+    }
+
+    /// Gives a shape its material and light, and puts it in its place.
+    fn show(&mut self, made: Made, opacity: &Opacity, at: Span) {
+        let light = self.state.area.clone();
+        let light = light.filter(|light| {
+            let inside = self.defining.is_some();
+            if inside {
+                self.said.once(light.at, "objects that are shown several times do not shine, as in pbrt");
+            }
+            !inside
+        });
+        let material = self.filled();
+        let radiance = light.as_ref().map(|light| (&**light, radiance(light, &made)));
+        let Some(material) = self.number(material, radiance, opacity) else {
+            if light.is_some() {
+                self.said.once(at, "what is not there (`interface`) does not shine");
+            }
+            return;
+        };
+        if self.room_for(0, at) {
+            let inner = Object { node: made.node, material: Some(material), span: at };
+            self.add(placed(made.map, inner));
+        }
+    }
+
+    fn opacity(&mut self, params: &Params) -> Opacity {
+        let (share, picture) = self.pictured(params, "alpha", 1.0, |share| share);
+        Opacity { share, picture }
+    }
+
+    fn sphere(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+        let radius = params.positive("radius").unwrap_or(1.0);
+        let ends = round::ends(params, [-radius, radius]);
+        if round::turn(params) < 360.0 || ends[0] > -radius || ends[1] < radius {
+            let data = round::sphere(params, radius, ends, flipped)?;
+            return self.grown(data, map, params.at);
+        }
+        if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
+            self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards");
+        }
+        let world = radius * map.transform_vector3(DVec3::X).length() as f32;
+        let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
+            // pbrt's poles are on z, and u begins at x; ours are on y, and u = 1/2 is at -z.
+            _ if self.is_pictured() || params.get("alpha").is_some_and(|param| param.kind == Kind::Texture) => {
+                let turned = DMat3::from_cols(DVec3::NEG_Y, DVec3::Z, DVec3::X);
+                (Vec3::ZERO, map * DAffine3::from_mat3(turned))
+            }
+            true => (map.translation.as_vec3(), DAffine3::IDENTITY),
+            false => (Vec3::ZERO, map),
+        };
+        let node = Node::Primitive(Sphere { center, radius }.into());
+        Some(Made { node, area: 4.0 * PI * world * world, lights: 1, map })
+    }
+
+    fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
+        let radius = params.positive("radius").unwrap_or(1.0);
+        let inner_radius = params.float("innerradius").unwrap_or(0.0).max(0.0);
+        let height = params.float("height").unwrap_or(0.0);
+        if inner_radius >= radius {
+            self.said.bad(params.place("innerradius"), "`innerradius` must be less than `radius`");
+            return None;
+        }
+        if round::turn(params) < 360.0 {
+            let data = round::disk(params, [inner_radius, radius], height, flipped);
+            return self.grown(data, map, params.at);
+        }
+        let normal = if flipped { Vec3::NEG_Z } else { Vec3::Z };
+        let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
+        let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
+        let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
+        Some(Made { node, area, lights: 1, map })
+    }
+
+    /// A mesh that is made of few numbers. All of a file may have so many triangles and no more.
+    fn grown(&mut self, data: MeshData, map: DAffine3, at: Span) -> Option<Made> {
+        self.grown = self.grown.saturating_add(data.triangles.len());
+        if self.grown > MAX_GROWN {
+            self.grown = MAX_GROWN;
+            let what =
+                format!("round shapes, curves and smooth surfaces of more than {MAX_GROWN} triangles are left out");
+            self.said.once(at, what);
+            return None;
+        }
+        self.mesh(None, Arc::new(data), map, at)
+    }
+
+    /// A mesh with a name of its own, or one that it shares.
+    fn mesh(&mut self, name: Option<String>, data: Arc<MeshData>, map: DAffine3, at: Span) -> Option<Made> {
+        if data.triangles.is_empty() {
+            return None;
+        }
+        let corner = |i: u32| map.transform_point3(data.positions[i as usize].as_dvec3());
+        let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
+        // Only what has a power asks.
+        let asked = self.state.area.as_ref().is_some_and(|light| light.power.is_some());
+        let area = if asked { 0.5 * data.triangles.iter().map(twice).sum::<f64>() as f32 } else { 1.0 };
+        let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
+        let lights = data.triangles.len();
+        let node = self.scene.add_mesh(&name, data, at);
+        Some(Made { node, area, lights, map })
+    }
+
+    fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<Made> {
+        params.left_out(&["displacement"], "the surface stays as it is");
+        params.known(&["edgelength"]);
+        let Some(name) = params.text("filename").map(str::to_string) else {
+            self.said.bad(at, "a `plymesh` needs a `filename`");
+            return None;
+        };
+        let reversed = self.state.reversed;
+        let key = (name.clone(), reversed);
+        let data = match self.meshes.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let place = params.get("filename").map_or(at, |param| param.values_at);
+                let data = Arc::new(mesh::file(self.input, self.said, &name, place, reversed)?);
+                self.meshes.insert(key, data.clone());
+                data
+            }
+        };
+        let asset = if reversed { format!("{name}#reversed") } else { name };
+        self.mesh(Some(asset), data, map, at)
+    }
+}
+
+/// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of
+/// a mesh.
+fn radiance(light: &super::made::AreaLight, made: &Made) -> Color {
+    let Some(power) = light.power else { return light.radiance };
+    let sides = if light.two_sided { 2.0 } else { 1.0 };
+    let strength = power / (sides * PI * made.area / made.lights as f32);
+    if strength.is_finite() { light.radiance * strength } else { Color::ZERO }
+}

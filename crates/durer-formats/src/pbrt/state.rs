@@ -1,0 +1,184 @@
+//! What the directives change, and what comes of them.
+
+use super::language::{Decided, Language};
+use super::lexer::Lexer;
+use super::made::{AreaLight, Infinite, Made, Medium, Texture};
+use super::params::{Param, Params};
+use super::spectrum::Space;
+use super::transform::Transforms;
+use crate::model::Input;
+use crate::said::Said;
+use durer_diag::Span;
+use durer_scene::scene::{Group, Object, Scene};
+use durer_scene::shape::MeshData;
+use glam::DAffine3;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Objects of a scene, those of instances counted each time.
+const MAX_OBJECTS: usize = 1 << 20;
+
+/// What `Attribute` may be said of: places in [`State::given`].
+pub(super) const SHAPE: usize = 0;
+pub(super) const LIGHT: usize = 1;
+pub(super) const MATERIAL: usize = 2;
+pub(super) const MEDIUM: usize = 3;
+pub(super) const TEXTURE: usize = 4;
+
+/// What `AttributeBegin` keeps.
+#[derive(Clone, Default)]
+pub(super) struct State {
+    pub transforms: Transforms,
+    pub reversed: bool,
+    /// Number of the current material.
+    pub material: usize,
+    pub area: Option<Rc<AreaLight>>,
+    /// Names of the media inside and outside of shapes.
+    pub inside: Option<String>,
+    pub outside: Option<String>,
+    /// What `Attribute` gives shapes, lights, materials, media and textures.
+    pub given: [Vec<Rc<Param>>; 5],
+    pub space: Space,
+}
+
+/// What a directive opened, and so what must close it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scope {
+    Attribute,
+    Transform,
+    Object,
+    /// A file that is imported.
+    Import,
+}
+
+/// A directive that counts when all are read.
+pub(super) struct Asked {
+    pub kind: String,
+    pub list: Vec<Rc<Param>>,
+    pub at: Span,
+    pub transforms: Transforms,
+    pub space: Space,
+}
+
+/// A file that is being read.
+pub(super) struct Open {
+    pub text: Lexer,
+    pub name: String,
+    /// Where it is asked for.
+    pub at: Span,
+    /// Whether it is imported: its end closes all that it opened.
+    pub imported: bool,
+}
+
+/// A file on its way to a scene.
+pub(super) struct Reader<'a> {
+    pub input: &'a Input<'a>,
+    pub said: &'a Said,
+    pub language: Language,
+    /// The word that says so.
+    pub decided_by: Option<Span>,
+    pub texts: Vec<Open>,
+    pub state: State,
+    pub stack: Vec<(Scope, State, Span)>,
+    pub systems: BTreeMap<String, [DAffine3; 2]>,
+    pub materials: Vec<Made>,
+    pub named_materials: BTreeMap<String, usize>,
+    /// Numbers in the scene of materials as shapes need them.
+    pub numbers: BTreeMap<(usize, String), Option<u32>>,
+    pub textures: BTreeMap<(bool, String), Texture>,
+    /// Media by name; `None`: one without counterpart.
+    pub media: BTreeMap<String, Option<Medium>>,
+    /// Numbers of materials with what is inside.
+    pub filled: BTreeMap<(usize, String), usize>,
+    pub objects: BTreeMap<String, Rc<Group>>,
+    /// The object that is being defined.
+    pub defining: Option<(String, Group)>,
+    pub count: usize,
+    /// Triangles that were made of few numbers.
+    pub grown: usize,
+    /// Files that were included.
+    pub included: usize,
+    pub camera: Option<Asked>,
+    pub film: Option<Asked>,
+    /// The first directive that needs a world, if there was none yet.
+    pub early: Option<Span>,
+    pub in_world: bool,
+    pub infinite: Vec<Infinite>,
+    pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
+    pub scene: Scene,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(input: &'a Input<'a>, decided: Decided, said: &'a Said) -> Self {
+        let text = Lexer::new(input.bytes.clone(), input.file);
+        let at = Span { file: input.file, start: 0, end: 0 };
+        Reader {
+            input,
+            said,
+            language: decided.language,
+            decided_by: decided.by,
+            texts: vec![Open { text, name: input.name.to_string(), at, imported: false }],
+            state: State::default(),
+            stack: Vec::new(),
+            systems: BTreeMap::new(),
+            materials: vec![Made::usual()],
+            named_materials: BTreeMap::new(),
+            numbers: BTreeMap::new(),
+            textures: BTreeMap::new(),
+            media: BTreeMap::new(),
+            filled: BTreeMap::new(),
+            objects: BTreeMap::new(),
+            defining: None,
+            count: 0,
+            grown: 0,
+            included: 0,
+            camera: None,
+            film: None,
+            early: None,
+            in_world: false,
+            infinite: Vec::new(),
+            meshes: BTreeMap::new(),
+            scene: Scene::default(),
+        }
+    }
+
+    /// The parameters of a directive, with those that `Attribute` gives its kind.
+    pub fn params(&self, list: Vec<Rc<Param>>, given: Option<usize>, at: Span) -> Params<'a> {
+        let given = given.map_or(&[][..], |kind| &self.state.given[kind]);
+        Params::new(list, given, at, (self.input, self.said), (self.language, self.state.space))
+    }
+
+    /// The parameters of a directive that was kept.
+    pub fn params_of(&self, asked: &Asked) -> Params<'a> {
+        Params::new(asked.list.clone(), &[], asked.at, (self.input, self.said), (self.language, asked.space))
+    }
+
+    /// From the coordinates of what is written now to the world. What moves stands as when the
+    /// shutter opens.
+    pub fn map(&self, at: Span) -> DAffine3 {
+        if self.state.transforms.moves() {
+            self.said.once(at, "motion has no counterpart: all stands as when the shutter opens");
+        }
+        self.state.transforms.maps[0]
+    }
+
+    /// Adds an object to the scene, or to what is being defined.
+    pub fn add(&mut self, object: Object) {
+        self.count += 1;
+        match &mut self.defining {
+            Some((_, group)) => group.objects.push(object),
+            None => self.scene.root.get_or_insert_default().objects.push(object),
+        }
+    }
+
+    /// Whether so many objects more are allowed.
+    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
+        self.count = self.count.saturating_add(more);
+        if self.count > MAX_OBJECTS {
+            self.said.bad(at, format!("more than {MAX_OBJECTS} objects, those of instances counted, are too many"));
+            return false;
+        }
+        true
+    }
+}

@@ -1,0 +1,39 @@
+//! pbrt's language: what is read of it, conventions in closed form, and errors with their places.
+
+mod conventions;
+mod language;
+mod shapes;
+mod third;
+mod third_materials;
+
+use crate::testing::{self, folder};
+use durer::{LoadOptions, load_text};
+use durer_diag::{Diagnostics, Files};
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::scene::{Material, Scene};
+use std::path::Path;
+
+/// Reads a text in a folder; see [`testing`].
+fn read_in(folder: &Path, text: &str) -> (Option<Scene>, Vec<String>) {
+    testing::read_in(folder, "scene.pbrt", text)
+}
+
+fn read(text: &str) -> (Option<Scene>, Vec<String>) {
+    read_in(&std::env::temp_dir(), text)
+}
+
+/// A text of which nothing is to be said.
+fn clean(text: &str) -> Scene {
+    let (scene, told) = read(text);
+    assert_eq!(told, [""; 0], "{text}");
+    scene.unwrap()
+}
+
+/// A scene with a sphere of a material.
+fn material(text: &str) -> (PrincipledMaterial, Vec<String>) {
+    let (scene, told) = read(&format!("Camera \"perspective\" WorldBegin {text} Shape \"sphere\""));
+    let scene = scene.unwrap_or_else(|| panic!("{text}: {told:?}"));
+    let number = scene.root.as_ref().unwrap().objects[0].material.unwrap() as usize;
+    let Material::Principled(layers) = &scene.materials[number].value else { panic!("no layers: {text}") };
+    ((**layers).clone(), told)
+}

@@ -1,0 +1,517 @@
+use super::super::environment::{equal_area, of_equal_area};
+use super::super::named;
+use super::super::spectrum::{Space, Spectrum, conductor, metal, sum};
+use super::*;
+use durer_diag::Diagnostic;
+use durer_render::compile::testing;
+use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
+use durer_render::render::Job;
+use durer_render::world::World;
+use durer_scene::bsdf::microfacet::Ggx;
+use durer_scene::camera::{CameraBasis, CameraSample, Projection};
+use durer_scene::dialect::Dialect;
+use durer_scene::light::Light;
+use durer_scene::math::random::Random;
+use durer_scene::math::{Vec2, Vec3, fp};
+use durer_scene::sampler::SampleId;
+use durer_scene::spectrum::Lanes;
+
+/// The ray of a scene's camera through a point of the picture, -1 to 1 across its larger side.
+fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
+    let camera = scene.camera.as_ref().unwrap();
+    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+    let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
+    let ray = camera.ray(&frame, &sample).unwrap();
+    let mut found = Vec::new();
+    camera.project(&frame, ray.at(7.0), Vec2::splat(0.5), &mut |point| found.push(point));
+    assert!(found.iter().any(|point| (*point - Vec2::new(x, y)).length() < 1e-4), "{found:?} for {x} {y}");
+    (ray.origin, ray.dir)
+}
+
+fn close(a: Vec3, b: Vec3) {
+    assert!((a - b).length() < 1e-5, "{a} is not {b}");
+}
+
+fn camera(text: &str, size: [u32; 2]) -> Scene {
+    let [w, h] = size;
+    clean(&format!(
+        "Film \"rgb\" \"integer xresolution\" {w} \"integer yresolution\" {h} {text} WorldBegin Shape \"sphere\""
+    ))
+}
+
+#[test]
+fn cameras_look_where_pbrt_s_do() {
+    // Without a transform pbrt looks along +z, with +x to the right: coordinates of the left hand.
+    let scene = camera("Camera \"perspective\" \"float fov\" 90", [200, 100]);
+    close(ray(&scene, 0.0, 0.0).1, Vec3::Z);
+    // The field of view is that of the shorter side: half a unit of the larger one is 45 degrees
+    // up.
+    close(ray(&scene, 0.0, 0.5).1, Vec3::new(0.0, 1.0, 1.0).normalize());
+    close(ray(&scene, 1.0, 0.0).1, Vec3::new(2.0, 0.0, 1.0).normalize());
+    let tall = camera("Camera \"perspective\" \"float fov\" 90", [100, 200]);
+    close(ray(&tall, 0.5, 1.0).1, Vec3::new(1.0, 2.0, 1.0).normalize());
+    // A mirror image of that is what somebody sees in coordinates of the right hand.
+    let flipped = camera("Scale -1 1 1 LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
+    close(ray(&flipped, 1.0, 0.0).1, Vec3::new(1.0, 0.0, -1.0).normalize());
+    let plain = camera("LookAt 0 0 5 0 0 0 0 1 0 Camera \"perspective\" \"float fov\" 90", [100, 100]);
+    close(ray(&plain, 1.0, 0.0).1, Vec3::new(-1.0, 0.0, -1.0).normalize());
+    close(ray(&plain, 0.3, 0.0).0, Vec3::new(0.0, 0.0, 5.0));
+    // Screen windows: a quarter of the picture, whose middle lies aside.
+    let part = camera("Camera \"perspective\" \"float fov\" 90 \"float screenwindow\" [ 0 1 0 1 ]", [100, 100]);
+    close(ray(&part, -1.0, -1.0).1, Vec3::Z);
+    close(ray(&part, 1.0, 0.0).1, Vec3::new(1.0, 0.5, 1.0).normalize());
+}
+
+#[test]
+fn lenses_and_other_cameras() {
+    let text = "LookAt 0 0 5 0 0 0 0 1 0 Camera \"orthographic\" \"float screenwindow\" [ -2 2 -1 1 ]";
+    let flat = camera(text, [200, 100]);
+    let (origin, dir) = ray(&flat, 1.0, 0.25);
+    close(origin, Vec3::new(-2.0, 0.5, 5.0));
+    close(dir, Vec3::NEG_Z);
+    // u = 0 is +x, u = 1/4 is +z, the upper edge is +y; the middle is -x.
+    let around = camera("Camera \"spherical\" \"string mapping\" \"equirectangular\"", [200, 100]);
+    close(ray(&around, 0.0, 0.0).1, Vec3::NEG_X);
+    close(ray(&around, -0.5, 0.0).1, Vec3::Z);
+    close(ray(&around, 0.5, 0.0).1, Vec3::NEG_Z);
+    // All rays of a point of the picture meet at the distance of focus.
+    let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
+    let scene = camera(text, [100, 100]);
+    let lens = scene.camera.unwrap();
+    let frame = CameraBasis::of(&lens, Dialect::Durer.rules());
+    for place in [Vec2::new(0.1, 0.9), Vec2::new(0.99, 0.5)] {
+        let sample = CameraSample { lens: place, ..CameraSample::at(Vec2::new(0.5, 0.25)) };
+        let ray = lens.ray(&frame, &sample).unwrap();
+        close(ray.at((4.0 - ray.origin.z) / ray.dir.z), Vec3::new(2.0, 1.0, 4.0));
+        assert!(ray.origin.length() > 0.1 && ray.origin.length() < 0.5);
+    }
+}
+
+/// The light that a point gets from above, by one sample.
+fn irradiance(world: &World, point: Vec3) -> Vec3 {
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    let paths = Paths::new(world, settings, Transport::default());
+    paths.irradiance(point.as_dvec3(), Vec3::Y, SampleId::new(0, (3, 5), 7), &mut ())
+}
+
+fn world(name: &str, text: &str) -> World {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let options = LoadOptions::default();
+    let loaded = load_text(Path::new(name), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
+    let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    world.unwrap_or_else(|| panic!("{:?}", diagnostics.iter().collect::<Vec<&Diagnostic>>()))
+}
+
+#[test]
+fn a_light_through_pbrt_is_the_same_light_in_our_words_to_the_bit() {
+    let ours = |lights: &str, group: &str| {
+        testing::read(&format!(
+            "PerspectiveCamera {{ center 0 0 0 direction 0 0 1 up 0 1 0 angle 90 }} Background {{ color 0 0 0 }}\n\
+             Lights {{ {lights} }} Materials {{ PrincipledMaterial {{ baseColor 0.5 0.5 0.5 specularWeight 0 specularRoughness 1\n\
+             emissionLuminance 8 emissionColor 1 0.5 0.25 }} }} Group {{ {group} }}"
+        ))
+    };
+    let pbrt = |text: &str| world("a.pbrt", &format!("Camera \"perspective\" WorldBegin {text}"));
+    let point = Vec3::new(0.25, 0.0, -0.5);
+    let sphere = "AreaLightSource \"diffuse\" \"rgb L\" [ 4 2 1 ] \"float scale\" 2 Translate 1 3 0.5 Shape \"sphere\" \"float radius\" 0.75";
+    let twin = ours("", "MaterialIndex 0 Sphere { center 1 3 0.5 radius 0.75 }");
+    let (a, b) = (irradiance(&pbrt(sphere), point), irradiance(&twin, point));
+    assert!(a == b && a.x > 0.1, "{a} {b}");
+    // Twice as long open, at four times the speed of the film.
+    let text = "Film \"rgb\" \"float iso\" 400 Camera \"perspective\" \"float shutterclose\" 2 WorldBegin ";
+    let longer = irradiance(&world("a.pbrt", &format!("{text}{sphere}")), point);
+    assert!((longer - 8.0 * a).length() < 1e-5 * longer.length(), "{longer} {a}");
+}
+
+#[test]
+fn lights_have_pbrt_s_units() {
+    let light = |text: &str| {
+        let scene = clean(&format!("Camera \"perspective\" WorldBegin LightSource {text} Shape \"sphere\""));
+        scene.lights.unwrap()[0].value.clone()
+    };
+    let pi = std::f32::consts::PI;
+    let Light::Point(point) = light("\"point\" \"rgb I\" [ 2 4 6 ] \"float scale\" 0.5 \"point3 from\" [ 1 2 3 ]")
+    else {
+        panic!()
+    };
+    // What a white matte surface shows at distance 1: intensity over pi.
+    close(point.color, Vec3::new(1.0, 2.0, 3.0) / pi);
+    assert_eq!((point.position, point.attenuation), (Vec3::new(1.0, 2.0, 3.0), Some(Vec3::Z)));
+    // A flux of 4 pi is an intensity of 1.
+    let Light::Point(point) = light("\"point\" \"float power\" 12.566371") else { panic!() };
+    close(point.color, Vec3::splat(1.0 / pi));
+    let Light::Directional(distant) =
+        light("\"distant\" \"float illuminance\" 10 \"point3 from\" [ 0 5 0 ] \"point3 to\" [ 0 0 0 ]")
+    else {
+        panic!()
+    };
+    close(distant.color, Vec3::splat(10.0 / pi));
+    close(distant.direction.normalize(), Vec3::NEG_Y);
+    let Light::Spot(spot) = light("\"spot\" \"float coneangle\" 40 \"float conedeltaangle\" 15") else { panic!() };
+    assert_eq!((spot.angle, spot.inner_angle, spot.direction), (40.0, 25.0, Vec3::Z));
+    // A power is that of each triangle: two of area 1/2, of 3 lumens each.
+    let (scene, _) = read(
+        "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"float power\" 3 Shape \"trianglemesh\"\n\
+         \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ 0 0 0 1 0 0 1 1 0 0 1 0 ]",
+    );
+    let Material::Principled(layers) = &scene.unwrap().materials[0].value else { panic!() };
+    assert!((layers.emission_luminance - 3.0 / (pi * 0.5)).abs() < 1e-5, "{}", layers.emission_luminance);
+    let sky = clean("Camera \"perspective\" WorldBegin LightSource \"infinite\" \"rgb L\" [ 1 2 3 ] Shape \"sphere\"");
+    assert_eq!((sky.background.color, sky.background.ambient_light), (Vec3::new(1.0, 2.0, 3.0), Vec3::ZERO));
+}
+
+#[test]
+fn surfaces_shine_to_pbrt_s_side() {
+    let lit = |text: &str, point: Vec3| {
+        let head = "Camera \"perspective\" WorldBegin AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]";
+        irradiance(&world("a.pbrt", &format!("{head} {text}")), point) != Vec3::ZERO
+    };
+    let below = Vec3::new(0.2, -1.0, 0.3);
+    // The corners go round counter-clockwise seen from below: (1, 0, 0) x (0, 0, 1) = -y.
+    let down = "Shape \"trianglemesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 ]";
+    assert!(lit(down, below));
+    assert!(!lit(&format!("ReverseOrientation {down}"), below));
+    assert!(lit(&format!("Scale 1 -1 1 ReverseOrientation {down}"), below));
+    assert!(!lit(&format!("Scale 1 -1 1 {down}"), below));
+    // Normals tell the side, whatever way the corners go round.
+    let normals = |y: i32| format!("{down} \"normal N\" [ 0 {y} 0 0 {y} 0 0 {y} 0 ]");
+    assert!(lit(&normals(-1), below) && !lit(&normals(1), below));
+    assert!(lit(&format!("ReverseOrientation {}", normals(1)), below));
+    // A disk shines along its own z; a mirrored one to the other side, as pbrt has it.
+    let disk = |text: &str| lit(&format!("Rotate 90 1 0 0 {text} Shape \"disk\""), below);
+    assert!(disk("") && !disk("ReverseOrientation") && !disk("Scale -1 1 1"));
+    let patch = "Shape \"bilinearmesh\" \"point3 P\" [ 0 0 0 1 0 0 0 0 1 1 0 1 ]";
+    assert!(lit(patch, below) && !lit(&format!("ReverseOrientation {patch}"), below));
+    let both = "AreaLightSource \"diffuse\" \"bool twosided\" true ReverseOrientation";
+    assert!(lit(&format!("{both} {down}"), below));
+}
+
+#[test]
+fn materials_are_told_in_openpbr_s_words() {
+    let (m, _) = material(
+        "Material \"coateddiffuse\" \"rgb reflectance\" [ 0.2 0.4 0.6 ] \"float roughness\" 0.16 \"float eta\" 1.4",
+    );
+    assert_eq!((m.base_color, m.coat_weight, m.coat_ior), (Vec3::new(0.2, 0.4, 0.6), 1.0, 1.4));
+    // alpha = sqrt(0.16); its root is our roughness.
+    assert!((m.coat_roughness - 0.4_f32.sqrt()).abs() < 1e-6 && m.coat_darkening == 1.0, "{}", m.coat_roughness);
+    let (m, _) = material(
+        "Material \"dielectric\" \"float roughness\" 0.04 \"bool remaproughness\" false \"spectrum eta\" \"glass-BK7\"",
+    );
+    assert_eq!((m.transmission_weight, m.specular_ior), (1.0, 1.5168));
+    assert!((m.specular_roughness - 0.2).abs() < 1e-6);
+    let (m, _) = material("Material \"conductor\" \"rgb reflectance\" [ 0.9 0.5 0.1 ]");
+    assert!((m.base_color - Vec3::new(0.9, 0.5, 0.1)).length() < 1e-5 && m.base_metalness == 1.0, "{}", m.base_color);
+    let scene = clean(
+        "Camera \"perspective\" WorldBegin MakeNamedMaterial \"a\" \"string type\" \"diffuse\"\n\
+         MakeNamedMaterial \"b\" \"string type\" \"conductor\"\n\
+         Material \"mix\" \"string materials\" [ \"a\" \"b\" ] \"float amount\" 0.25 Shape \"sphere\"",
+    );
+    assert!(matches!(&scene.materials[2].value, Material::Solid(durer_scene::material::Solid::Mix(mix), _)
+        if (mix.material1, mix.material2, mix.share) == (0, 1, 0.75)));
+    // What is not there is not shown.
+    let scene = read("Camera \"perspective\" WorldBegin Material \"interface\" Shape \"sphere\"").0.unwrap();
+    assert!(scene.root.is_none());
+}
+
+#[test]
+fn alphas_become_roughness_and_come_back() {
+    let mut random = Random(4);
+    for _ in 0..200 {
+        let [u, v] = [random.between(0.001, 1.0), random.between(0.001, 1.0)];
+        let [roughness, anisotropy, turn] = Ggx::parameters([u, v]);
+        let rest = 1.0 - anisotropy;
+        let along = roughness * roughness * (2.0 / (1.0 + rest * rest)).sqrt();
+        let (a, b) = if turn == 0.0 { (along, rest * along) } else { (rest * along, along) };
+        assert!((a - u).abs() < 1e-4 && (b - v).abs() < 1e-4, "{u} {v}: {a} {b}");
+    }
+}
+
+#[test]
+fn spectra_become_colours() {
+    // The rows sum to the same for all three: the equal-energy white, to what steps of 10 nm allow.
+    let white = sum(|_| 1.0);
+    assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
+    let even = Spectrum::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
+    assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);
+    // Lights have luminance 1: the colour of 6504 K is nearly white, that of 2856 K as CIE's
+    // illuminant A.
+    let luminance = Vec3::new(0.2126729, 0.7151522, 0.072175);
+    for light in [Spectrum::Blackbody(2856.0), Spectrum::Blackbody(6504.0), even.clone()] {
+        assert!((light.light().dot(luminance) - 1.0).abs() < 1e-3, "{:?}", light.light());
+    }
+    let warm = Spectrum::Blackbody(2856.0).light();
+    assert!((warm - named::spectrum("stdillum-A").unwrap().light()).abs().max_element() < 0.02, "{warm}");
+    assert!((named::spectrum("stdillum-D65").unwrap().light() - Vec3::ONE).abs().max_element() < 0.002);
+    // White is white in every space; red of a wider one is beyond ours.
+    for name in ["srgb", "dci-p3", "rec2020", "aces2065-1"] {
+        assert!(Space::named(name).is_some(), "{name}");
+    }
+    assert_eq!(Space::named("adobe"), None);
+    // A metal by its spectrum: gold of three wavelengths as of three colours.
+    let at = |c: [f32; 3]| {
+        Spectrum::Curve(vec![[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]])
+    };
+    let [f0, f82] = metal(&at([0.2, 0.4, 1.5]), &at([3.4, 2.4, 1.7]), 1.0);
+    let [g0, g82] = metal(&Spectrum::Rgb(Vec3::new(0.2, 0.4, 1.5)), &Spectrum::Rgb(Vec3::new(3.4, 2.4, 1.7)), 1.0);
+    assert!((f0 - g0).abs().max_element() < 0.12 && (f82 - g82).abs().max_element() < 0.12, "{f0} {g0} {f82} {g82}");
+}
+
+#[test]
+fn metals_reflect_what_fresnel_says() {
+    // At right angles ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2); without k the equations of glass.
+    for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
+        let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
+        assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
+    }
+    for cosine in [0.05, 0.3, 0.8] {
+        let glass = durer_scene::bsdf::fresnel::dielectric(cosine, 1.5);
+        assert!((conductor(cosine, 1.5, 0.0) - glass).abs() < 1e-6);
+    }
+    // Under D65 silver and copper as in tables of their spectra.
+    for (name, wanted) in [("Ag", [0.972, 0.96, 0.915]), ("Cu", [0.955, 0.638, 0.538]), ("Al", [0.913, 0.922, 0.924])] {
+        let of = |which: &str| named::spectrum(&format!("metal-{name}-{which}")).unwrap();
+        let f0 = metal(&of("eta"), &of("k"), 1.0)[0];
+        assert!((f0 - Vec3::from_array(wanted)).abs().max_element() < 0.002, "{name} {f0}");
+    }
+    assert_eq!(named::names().filter(|name| named::spectrum(name).is_none()).count(), 0);
+}
+
+#[test]
+fn the_square_of_equal_areas_is_the_sphere() {
+    let mut random = Random(9);
+    for _ in 0..2000 {
+        let place = Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0));
+        let dir = of_equal_area(place);
+        assert!((dir.length() - 1.0).abs() < 1e-5);
+        assert!((equal_area(dir) - place).length() < 1e-3, "{place} {dir} {}", equal_area(dir));
+    }
+    // The middle is +z, the corners -z; equal areas: half of all places look up.
+    close(of_equal_area(Vec2::splat(0.5)), Vec3::Z);
+    close(of_equal_area(Vec2::ZERO), Vec3::NEG_Z);
+    close(of_equal_area(Vec2::new(1.0, 0.5)), Vec3::X);
+    close(of_equal_area(Vec2::new(0.5, 1.0)), Vec3::Y);
+    let n = 200;
+    let up = (0..n * n).filter(|i| {
+        let place = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
+        of_equal_area(place).z > 0.5
+    });
+    assert!((up.count() as f32 / (n * n) as f32 - 0.25).abs() < 2e-3);
+}
+
+#[test]
+fn a_picture_of_all_directions_shines_from_where_pbrt_has_it() {
+    // A square that is bright where +x points, in the light's own coordinates.
+    let n = 32;
+    let pixels: Vec<Vec3> = (0..n * n)
+        .map(|i| {
+            let place = Vec2::new((i % n) as f32 + 0.5, (i / n) as f32 + 0.5) / n as f32;
+            if of_equal_area(place).x > 0.9 { Vec3::new(3.0, 2.0, 1.0) } else { Vec3::ZERO }
+        })
+        .collect();
+    let image = durer_image::Image::from_pixels(n, n, pixels).unwrap();
+    let mut bytes = Vec::new();
+    let layers = [durer_image::Layer::data("", image)];
+    durer_image::format_for("a.pfm").unwrap().write(&layers, &Default::default(), &mut bytes).unwrap();
+    let folder = folder(&[("sky.pfm", &bytes)]);
+    let look = |turn: &str, dir: Vec3| {
+        let text = format!(
+            "Camera \"perspective\" WorldBegin AttributeBegin {turn}\n\
+             LightSource \"infinite\" \"string filename\" \"sky.pfm\" \"float scale\" 2 AttributeEnd Shape \"sphere\""
+        );
+        world(folder.path().join("a.pbrt").to_str().unwrap(), &text).sky(dir)
+    };
+    close(look("", Vec3::X), Vec3::new(6.0, 4.0, 2.0));
+    close(look("", Vec3::NEG_X), Vec3::ZERO);
+    close(look("Rotate 90 0 0 1", Vec3::Y), Vec3::new(6.0, 4.0, 2.0));
+    close(look("Rotate 90 0 1 0", Vec3::NEG_Z), Vec3::new(6.0, 4.0, 2.0));
+    let wide = durer_image::Image::from_pixels(3, 2, vec![Vec3::ONE; 6]).unwrap();
+    let mut bytes = Vec::new();
+    durer_image::format_for("a.pfm")
+        .unwrap()
+        .write(&[durer_image::Layer::data("", wide)], &Default::default(), &mut bytes)
+        .unwrap();
+    std::fs::write(folder.path().join("sky.pfm"), bytes).unwrap();
+    let text =
+        "Camera \"perspective\" WorldBegin LightSource \"infinite\" \"string filename\" \"sky.pfm\" Shape \"sphere\"";
+    let (_, told) = read_in(folder.path(), text);
+    assert!(told[0].contains("3 x 2 pixels are no picture of all directions"), "{told:?}");
+}
+
+#[test]
+fn textures_lie_as_pbrt_has_them() {
+    let picture: &[u8] = b"P6 2 2 255\n\xff\x00\x00\x00\xff\x00\x00\x00\xff\xff\xff\xff";
+    let folder = folder(&[("t.ppm", picture)]);
+    let seen = |texture: &str, uv: Vec2| {
+        let text = format!(
+            "Camera \"perspective\" WorldBegin Texture \"t\" \"spectrum\" {texture}\n\
+             Material \"diffuse\" \"texture reflectance\" \"t\"\n\
+             Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ] \"point3 P\" [ 0 0 2 1 0 2 1 1 2 0 1 2 ]\n\
+             \"point2 uv\" [ 0 0 1 0 1 1 0 1 ]"
+        );
+        let world = world(folder.path().join("a.pbrt").to_str().unwrap(), &text);
+        let ray = durer_scene::math::Ray::new(Vec3::new(uv.x, uv.y, 0.0), Vec3::Z);
+        let at = world.intersect(&ray, &mut ()).unwrap();
+        world.shading(&at, 1.0, &Lanes::Rgb).eval(Vec3::NEG_Z).0.truncate() * std::f32::consts::PI
+    };
+    let map = "\"imagemap\" \"string filename\" \"t.ppm\" \"string filter\" \"point\"";
+    // v goes up: the upper left texel is red.
+    close(seen(map, Vec2::new(0.2, 0.8)), Vec3::X);
+    close(seen(map, Vec2::new(0.8, 0.7)), Vec3::Y);
+    close(seen(map, Vec2::new(0.2, 0.3)), Vec3::Z);
+    close(seen(&format!("{map} \"float scale\" 0.5"), Vec2::new(0.8, 0.3)), Vec3::splat(0.5));
+    close(seen(&format!("{map} \"float uscale\" 2 \"float vdelta\" 0.5"), Vec2::new(0.3, 0.3)), Vec3::Y);
+    let check = "\"checkerboard\" \"rgb tex1\" [ 1 0 0 ] \"rgb tex2\" [ 0 0 1 ] \"float uscale\" 4 \"float vscale\" 2";
+    // Fields are a quarter wide and half high; where both are even is the first.
+    close(seen(check, Vec2::new(0.1, 0.2)), Vec3::X);
+    close(seen(check, Vec2::new(0.3, 0.2)), Vec3::Z);
+    close(seen(check, Vec2::new(0.3, 0.8)), Vec3::X);
+    close(seen(check, Vec2::new(0.6, 0.8)), Vec3::Z);
+}
+
+#[test]
+fn pictures_lie_on_spheres_as_pbrt_has_them() {
+    // Four columns: the quarters of u, which begins at +x and grows towards +y; v grows from -z to
+    // +z.
+    let picture: &[u8] =
+        b"P6 4 2 255\n\x00\x00\x00\x00\x00\x33\x00\x00\x66\x00\x00\x99\xff\x00\x00\xff\x00\x33\xff\x00\x66\xff\x00\x99";
+    let folder = folder(&[("t.ppm", picture)]);
+    let text = "Camera \"perspective\" WorldBegin Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"t.ppm\"\n\
+                \"string filter\" \"point\" Material \"diffuse\" \"texture reflectance\" \"t\"\n\
+                Translate 1 2 3 Shape \"sphere\" \"float radius\" 2";
+    let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
+    for (x, y, column) in [(1.0, 0.7, 0), (-0.6, 1.0, 1), (-1.0, -0.2, 2), (0.3, -1.0, 3)] {
+        for z in [-0.5, 0.5] {
+            let dir = Vec3::new(x, y, z).normalize();
+            let ray = durer_scene::math::Ray::new(Vec3::new(1.0, 2.0, 3.0) + 5.0 * dir, -dir);
+            let at = world.intersect(&ray, &mut ()).unwrap();
+            let color = world.shading(&at, 1.0, &Lanes::Rgb).eval(dir).0.truncate() * std::f32::consts::PI;
+            let blue = durer_image::decode_srgb(0x33 * column);
+            close(color, Vec3::new(if z < 0.0 { 1.0 } else { 0.0 }, 0.0, blue));
+        }
+    }
+}
+
+#[test]
+fn roughness_and_heights_come_from_pictures() {
+    let folder = folder(&[("t.ppm", b"P6 1 1 255\n\x80\x80\x80")]);
+    let text = "Camera \"perspective\" WorldBegin Texture \"t\" \"float\" \"imagemap\" \"string filename\" \"t.ppm\" \"float scale\" 0.5\n\
+                Material \"conductor\" \"texture roughness\" \"t\" \"texture displacement\" \"t\"\n\
+                Translate 0 0 5 Shape \"sphere\"";
+    let world = world(folder.path().join("a.pbrt").to_str().unwrap(), text);
+    let ray = durer_scene::math::Ray::new(Vec3::ZERO, Vec3::Z);
+    let at = world.intersect(&ray, &mut ()).unwrap();
+    let durer_render::world::Material::Phong(phong) = &world.materials()[at.material as usize] else { panic!() };
+    let own = phong.principled.as_ref().unwrap();
+    // pbrt takes the root of what is written for alpha, whose root is our roughness.
+    let expected = (0.5 * durer_image::decode_srgb(128)).sqrt().sqrt();
+    let found = world.parameters_at(own, &at).specular_roughness;
+    assert!((found - expected).abs() < 2.0 / 255.0, "{found} {expected}");
+    assert_eq!((own.maps.bump.is_some(), own.maps.bump_height), (true, 0.5));
+}
+
+#[test]
+fn a_body_of_several_meshes_is_one_piece_of_glass() {
+    // A cube about the origin: its lid is a mesh of its own, mirrored.
+    let side = |turn: &str| {
+        format!(
+            "AttributeBegin {turn} Translate 0 0 1 Shape \"trianglemesh\" \"integer indices\" [ 0 1 2 0 2 3 ]\n\
+             \"point3 P\" [ -1 -1 0 1 -1 0 1 1 0 -1 1 0 ] AttributeEnd\n"
+        )
+    };
+    let turns = ["", "Rotate 90 0 1 0", "Rotate 180 0 1 0", "Rotate 270 0 1 0", "Rotate 90 1 0 0"];
+    let lid = side("Scale -1 1 1 Rotate -90 1 0 0");
+    let sides: String = turns.iter().map(|turn| side(turn)).collect();
+    let text = format!("Camera \"perspective\" WorldBegin Material \"dielectric\" {sides}{lid}");
+    let scene = clean(&text);
+    assert_eq!((scene.root.unwrap().objects.len(), scene.assets.meshes.len()), (1, 1));
+    let world = world("a.pbrt", &text);
+    let mut random = Random(2);
+    for _ in 0..200 {
+        let dir = random.direction();
+        let ray = durer_scene::math::Ray::new(5.0 * dir, -dir);
+        let surface = world.intersect(&ray, &mut ()).unwrap().surface;
+        assert!(surface.n_geo.dot(dir) > 0.0, "{dir} {}", surface.n_geo);
+    }
+}
+
+#[test]
+fn grids_of_densities_lie_as_their_transform_says_and_end_in_nothing() {
+    // Two cells along y of a box from (0, 0, 0) to (2, 4, 2), whose y is the world's z.
+    let text = |third: bool| {
+        let kind = if third { "heterogeneous" } else { "uniformgrid" };
+        format!(
+            "Camera \"perspective\" WorldBegin AttributeBegin Rotate 90 1 0 0 Scale 2 4 2\n\
+             MakeNamedMedium \"smoke\" \"string type\" \"{kind}\" \"integer ny\" 2 \"float density\" [ 1 3 ] \
+             \"rgb sigma_a\" [ 0 0 0 ] \"rgb sigma_s\" [ 0.5 0.25 1 ] AttributeEnd\n\
+             MediumInterface \"smoke\" \"\" Material \"{}\" Shape \"sphere\" \"float radius\" 9",
+            if third { "none" } else { "interface" }
+        )
+    };
+    for third in [false, true] {
+        let world = world("smoke.pbrt", &text(third));
+        let medium = world.medium(Some(0)).unwrap();
+        let at = |x, y, z| medium.scattering(glam::DVec3::new(x, y, z), &durer_scene::spectrum::Lanes::Rgb).truncate();
+        let sigma = Vec3::new(0.5, 0.25, 1.0);
+        // In the middles of cells, halfway, at the end, and behind it, where bodies end.
+        for (y, density) in [(1.0, 1.0), (3.0, 3.0), (2.0, 2.0), (4.0, 1.5), (0.0, 0.5), (5.0, 0.0), (7.0, 0.0)] {
+            close(at(1.0, -1.0, y), density * sigma);
+        }
+        close(at(2.0, -1.0, 3.0), 1.5 * sigma);
+    }
+    for (grid, expected) in [
+        ("", "error this medium needs a `density`"),
+        ("\"float density\" [ 1 2 ]", "error `density` needs 1 x 1 x 1 numbers, by `nx`, `ny` and `nz`: found 2"),
+        ("\"float density\" [ -1 ]", "error density 1 is -1: it must be 0 or more"),
+        ("\"integer nx\" -1 \"float density\" [ 1 ]", "error `density` needs -1 x 1 x 1 numbers"),
+    ] {
+        let (_, told) = read(&format!(
+            "Camera \"perspective\" WorldBegin MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" {grid} Shape \"sphere\""
+        ));
+        assert!(told.iter().any(|told| told.contains(expected)), "{told:?}");
+    }
+}
+
+#[test]
+fn media_fill_shapes_and_surround_the_camera() {
+    let smoke = "MakeNamedMedium \"smoke\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [ 0.5 0.25 1 ] \
+                 \"rgb sigma_s\" [ 0 0 0 ] \"float scale\" 0.5";
+    // Through the middle of a ball of radius 1 without a skin e^(-2 sigma) is left.
+    let text = format!(
+        "Camera \"perspective\" WorldBegin {smoke} LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n\
+         AttributeBegin MediumInterface \"smoke\" \"\" Material \"interface\" Translate 0 0 5 Shape \"sphere\" AttributeEnd\n\
+         Translate 9 0 5 Material \"interface\" Shape \"sphere\""
+    );
+    let inside = world("smoke.pbrt", &text);
+    assert_eq!(inside.objects().len(), 1);
+    let settings = Settings { bounces: 4, ..Job::default().settings };
+    let through = |world: &World| {
+        let paths = Paths::new(world, settings, Transport::default());
+        let ray = durer_scene::math::Ray::new(Vec3::ZERO, Vec3::Z);
+        paths.radiance(&ray, SampleId::new(0, (3, 5), 7), &mut ())
+    };
+    close(through(&inside), Vec3::new(-0.5, -0.25, -1.0).map(fp::exp));
+    // Around the camera it is fog; of colours that it thins otherwise the strongest counts.
+    let text = format!("{smoke} MediumInterface \"\" \"smoke\" Camera \"perspective\" WorldBegin Shape \"sphere\"");
+    let fog = world("fog.pbrt", &text).fog().cloned().unwrap();
+    close(fog.extinction, Vec3::splat(0.5));
+    assert!(fog.place.is_none() && !fog.scatters());
+    // The defaults of a body below a skin, and a sheet that scatters to both sides.
+    let text = "Camera \"perspective\" WorldBegin Material \"subsurface\" Shape \"sphere\"\n\
+                Material \"diffusetransmission\" \"rgb reflectance\" [ 0.3 0.3 0.3 ] \"rgb transmittance\" [ 0.1 0.1 0.1 ] \
+                Shape \"sphere\"";
+    let world = world("skin.pbrt", text);
+    let medium = |object: u32| world.medium(Some(object)).map(|medium| (medium.extinction, medium.albedo));
+    let (extinction, albedo) = medium(0).unwrap();
+    close(extinction, Vec3::new(2.5511, 3.2124, 3.784));
+    close(albedo * extinction, Vec3::new(2.55, 3.21, 3.77));
+    assert!(medium(1).is_none());
+    let sheet = world.materials().iter().find_map(|material| match material {
+        durer_render::world::Material::Phong(phong) => {
+            phong.principled.as_ref().filter(|own| own.written.subsurface_weight > 0.0)
+        }
+        durer_render::world::Material::Solid(..) => None,
+    });
+    let sheet = &sheet.unwrap().written;
+    close(sheet.subsurface_color, Vec3::splat(0.4));
+    assert!((sheet.subsurface_scatter_anisotropy + 0.5).abs() < 1e-6);
+}

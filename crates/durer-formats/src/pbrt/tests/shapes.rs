@@ -1,0 +1,215 @@
+//! Shapes that become triangles, against closed forms.
+
+use super::*;
+use durer_scene::math::{Vec3, fp};
+use durer_scene::shape::MeshData;
+use std::f64::consts::PI;
+
+/// The only mesh of a text of pbrt-v3.
+fn mesh(text: &str) -> MeshData {
+    let scene = clean(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
+    assert_eq!(scene.assets.meshes.len(), 1, "{text}");
+    (**scene.assets.meshes.values().next().unwrap()).clone()
+}
+
+fn area(data: &MeshData) -> f64 {
+    let corner = |i: u32| data.positions[i as usize].as_dvec3();
+    let twice = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length();
+    0.5 * data.triangles.iter().map(twice).sum::<f64>()
+}
+
+/// Whether all triangles face the side of their normals.
+fn faced(data: &MeshData) -> bool {
+    data.triangles.iter().zip(&data.triangle_normals).all(|(triangle, normals)| {
+        let [a, b, c] = triangle.map(|i| data.positions[i as usize].as_dvec3());
+        let normal: Vec3 = normals.iter().map(|&i| data.normals[i as usize]).sum();
+        (b - a).cross(c - a).dot(normal.as_dvec3()) > -1e-12
+    })
+}
+
+#[test]
+fn parts_of_round_shapes_have_their_areas() {
+    let turn = |degrees: f64| degrees.to_radians();
+    for (text, wanted) in [
+        // 2 pi r h, of a part of a turn.
+        ("\"sphere\" \"float radius\" 2 \"float zmin\" -0.5 \"float zmax\" 1.5", 2.0 * PI * 2.0 * 2.0),
+        ("\"sphere\" \"float zmin\" 0.6 \"float phimax\" 90", turn(90.0) * 0.4),
+        ("\"sphere\" \"float phimax\" 250", turn(250.0) * 2.0),
+        (
+            "\"cylinder\" \"float radius\" 0.5 \"float zmin\" 1 \"float zmax\" 4 \"float phimax\" 120",
+            turn(120.0) * 0.5 * 3.0,
+        ),
+        ("\"disk\" \"float radius\" 2 \"float innerradius\" 1 \"float phimax\" 300", turn(300.0) / 2.0 * 3.0),
+        ("\"cone\" \"float radius\" 3 \"float height\" 4", PI * 3.0 * 5.0),
+        // Of z = r^2: pi / 6 ((1 + 4 z)^(3/2) - 1).
+        ("\"paraboloid\" \"float radius\" 2 \"float zmax\" 4", PI / 6.0 * (17.0 * 17_f64.sqrt() - 1.0)),
+        (
+            "\"paraboloid\" \"float radius\" 2 \"float zmin\" 1 \"float zmax\" 4",
+            PI / 6.0 * (17.0 * 17_f64.sqrt() - 5.0 * 5_f64.sqrt()),
+        ),
+        // A line that meets the axis at its level makes a ring, one along it a cylinder.
+        ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 2 0 0 ]", 3.0 * PI),
+        ("\"hyperboloid\" \"point p1\" [ 1 0 0 ] \"point p2\" [ 1 0 3 ]", 6.0 * PI),
+    ] {
+        let data = mesh(&format!("Shape {text}"));
+        assert!((area(&data) / wanted - 1.0).abs() < 2e-3, "{text}: {} is not {wanted}", area(&data));
+        assert!(faced(&data), "{text}");
+    }
+}
+
+#[test]
+fn round_shapes_face_outwards_and_have_pbrt_s_coordinates() {
+    for (text, outwards) in [
+        ("\"sphere\" \"float zmax\" 0.5", 1.0),
+        ("\"cylinder\" \"float phimax\" 200", 1.0),
+        ("\"cone\"", 1.0),
+        ("\"paraboloid\"", 1.0),
+    ] {
+        for (head, sign) in [("", 1.0), ("ReverseOrientation", -1.0), ("Scale 1 1 -1", -1.0)] {
+            let data = mesh(&format!("{head} Shape {text}"));
+            for (place, normal) in data.positions.iter().zip(&data.normals) {
+                let across = Vec3::new(place.x, place.y, 0.0);
+                assert!(sign * outwards * normal.dot(across) >= -1e-5, "{head} {text}: {place} {normal}");
+            }
+            assert!(faced(&data), "{head} {text}");
+        }
+    }
+    // u is the share of the turn, v goes up; of a disc it goes inwards.
+    let sphere = mesh("Shape \"sphere\" \"float zmin\" -0.5 \"float zmax\" 0.5 \"float phimax\" 180");
+    for (place, uv) in sphere.positions.iter().zip(&sphere.uvs) {
+        // Half a turn, and from the equator -30 to 30 degrees.
+        let (sin, cos) = fp::sin_cos_degrees(180.0 * f64::from(uv.x));
+        let (up, across) = fp::sin_cos_degrees(60.0 * f64::from(uv.y) - 30.0);
+        let wanted = glam::DVec3::new(across * cos, across * sin, up);
+        assert!((place.as_dvec3() - wanted).length() < 1e-5, "{place} {uv}");
+    }
+    let disk = mesh("Shape \"disk\" \"float innerradius\" 0.5 \"float phimax\" 90 \"float height\" 2");
+    for (place, uv) in disk.positions.iter().zip(&disk.uvs) {
+        assert!((place.truncate().length() - (1.0 - 0.5 * uv.y)).abs() < 1e-5 && place.z == 2.0, "{place} {uv}");
+    }
+    assert!(disk.normals.iter().all(|normal| *normal == Vec3::Z));
+}
+
+const CUBE: &str = "\"integer indices\" [ 0 2 1 0 3 2 4 5 6 4 6 7 0 1 5 0 5 4 2 3 7 2 7 6 1 2 6 1 6 5 0 4 7 0 7 3 ]";
+
+#[test]
+fn loop_s_surfaces_lie_where_endless_subdivision_has_them() {
+    // An octahedron: each corner has four neighbours whose mean is the middle, so its limit is nearer
+    // by 1 - 4 / (4 + 3 / (8 beta)), with beta = 3 / 32.
+    let text = "Shape \"loopsubdiv\" \"point P\" [ 1 0 0 -1 0 0 0 1 0 0 -1 0 0 0 1 0 0 -1 ]\n\
+                \"integer indices\" [ 0 2 4 2 1 4 1 3 4 3 0 4 2 0 5 1 2 5 3 1 5 0 3 5 ]";
+    for levels in 0..4 {
+        let data = mesh(&format!("{text} \"integer levels\" {levels}"));
+        assert_eq!(data.triangles.len(), 8 << (2 * levels));
+        assert!((data.positions[4] - Vec3::new(0.0, 0.0, 0.5)).length() < 1e-6, "{levels}: {}", data.positions[4]);
+        assert!((data.normals[4] - Vec3::Z).length() < 1e-6 && faced(&data), "{levels}");
+    }
+    // Three times is what is asked for where nothing is said, and normals are those of the surface.
+    let data = mesh(text);
+    assert_eq!(data.triangles.len(), 512);
+    for triangle in &data.triangles {
+        let [a, b, c] = triangle.map(|i| data.positions[i as usize]);
+        let normal: Vec3 = triangle.iter().map(|&i| data.normals[i as usize]).sum();
+        let cosine = (b - a).cross(c - a).normalize().dot(normal.normalize());
+        assert!(cosine > 0.95, "{cosine} {triangle:?}");
+    }
+    // What is flat stays flat.
+    let flat = mesh(
+        "Shape \"loopsubdiv\" \"integer levels\" 2 \"point P\" [ 0 0 0 1 0 0 2 0 0 0 1 0 1 1 0 2 1 0 0 2 0 1 2 0 2 2 0 ]\n\
+         \"integer indices\" [ 0 1 4 0 4 3 1 2 5 1 5 4 3 4 7 3 7 6 4 5 8 4 8 7 ]",
+    );
+    assert!(flat.positions.iter().all(|p| p.z == 0.0) && flat.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-6));
+    // The middle of a side stays where it is; the corners of the border are rounded off.
+    assert!(
+        flat.positions[1] == Vec3::X && area(&flat) < 4.0 && area(&flat) > 3.6,
+        "{} {}",
+        flat.positions[1],
+        area(&flat)
+    );
+    // Three triangles at an edge have no ring: they stay.
+    let fan = "Shape \"loopsubdiv\" \"integer levels\" 1 \"point P\" [ 0 0 0 0 0 1 1 0 0 0 1 0 -1 0 0 ] \"integer indices\" [ 0 1 2 0 1 3 0 1 4 ]";
+    assert_eq!(mesh(fan).positions[0], Vec3::ZERO);
+    let cube = mesh(&format!(
+        "Shape \"loopsubdiv\" {CUBE} \"point P\" [ -1 -1 -1 1 -1 -1 1 1 -1 -1 1 -1 -1 -1 1 1 -1 1 1 1 1 -1 1 1 ]"
+    ));
+    assert!(faced(&cube) && cube.positions.iter().all(|p| p.length() < 1.3 && p.length() > 0.5));
+}
+
+#[test]
+fn curves_are_as_wide_as_they_are_written() {
+    let line = "\"point P\" [ 0 0 0 1 0 0 2 0 0 3 0 0 ]";
+    // The mean of the circles around and within a tube's polygon.
+    let tube = mesh(&format!("Shape \"curve\" \"string type\" \"cylinder\" \"float width\" 0.5 {line}"));
+    assert!((area(&tube) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.01, "{}", area(&tube));
+    for (place, normal) in tube.positions.iter().zip(&tube.normals) {
+        let across = Vec3::new(0.0, place.y, place.z);
+        assert!((across.length() - 0.25).abs() < 0.01 && across.normalize().dot(*normal) > 0.999);
+    }
+    let cone =
+        mesh(&format!("Shape \"curve\" \"string type\" \"cylinder\" \"float width0\" 0.4 \"float width1\" 0 {line}"));
+    assert!((area(&cone) / (PI * 0.2 * 3.0) - 1.0).abs() < 0.01, "{}", area(&cone));
+    let ribbon = mesh(&format!(
+        "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 \"normal N\" [ 0 0 1 0 0 1 ] {line}"
+    ));
+    assert!(
+        (area(&ribbon) - 1.5).abs() < 1e-5 && ribbon.positions.iter().all(|p| p.z.abs() < 1e-6 && p.y.abs() < 0.2501)
+    );
+    assert!(ribbon.normals.iter().all(|n| (*n - Vec3::Z).length() < 1e-5));
+    // A quarter turn of the ribbon leads its middle half way.
+    let turned = mesh(&format!(
+        "Shape \"curve\" \"string type\" \"ribbon\" \"float width\" 0.5 \"normal N\" [ 0 0 1 0 1 0 ] {line}"
+    ));
+    let middle = turned.positions.iter().zip(&turned.normals).find(|(p, _)| (p.x - 1.5).abs() < 1e-4).unwrap().1;
+    assert!((*middle - Vec3::new(0.0, 1.0, 1.0).normalize()).length() < 1e-3, "{middle}");
+    // A B-spline of equal steps is a straight line from the second point to the last but one.
+    let spline = mesh(&format!(
+        "Shape \"curve\" \"string type\" \"cylinder\" \"string basis\" \"bspline\" \"float width\" 0.1 {line}"
+    ));
+    let ends = spline.positions.iter().fold((9.0_f32, -9.0_f32), |(a, b), p| (a.min(p.x), b.max(p.x)));
+    assert!((ends.0 - 1.0).abs() < 1e-5 && (ends.1 - 2.0).abs() < 1e-5, "{ends:?}");
+    // A parabola by both degrees.
+    let text = |points: &str, degree: u32| {
+        mesh(&format!(
+            "Shape \"curve\" \"string type\" \"cylinder\" \"integer degree\" {degree} \"float width\" 0.1 \"point P\" [ {points} ]"
+        ))
+    };
+    let (second, third) =
+        (text("0 0 0 1 2 0 2 0 0", 2), text("0 0 0 0.66666667 1.3333333 0 1.3333333 1.3333333 0 2 0 0", 3));
+    assert_eq!(second.positions.len(), third.positions.len());
+    let far = second.positions.iter().zip(&third.positions).map(|(a, b)| (*a - *b).length()).fold(0.0, f32::max);
+    assert!(far < 1e-4, "{far}");
+}
+
+#[test]
+fn nets_are_surfaces() {
+    let heights = mesh("Shape \"heightfield\" \"integer nu\" 3 \"integer nv\" 2 \"float Pz\" [ 0 1 2 3 4 5 ]");
+    assert_eq!((heights.positions[1], heights.positions[5]), (Vec3::new(0.5, 0.0, 1.0), Vec3::new(1.0, 1.0, 5.0)));
+    assert_eq!(heights.triangles.len(), 4);
+    // A quarter of a cylinder, exactly: weights 1, 1 / sqrt 2 and 1.
+    let w = std::f32::consts::FRAC_1_SQRT_2;
+    let cylinder = mesh(&format!(
+        "Shape \"nurbs\" \"integer nu\" 3 \"integer nv\" 2 \"integer uorder\" 3 \"integer vorder\" 2\n\
+         \"float uknots\" [ 0 0 0 1 1 1 ] \"float vknots\" [ 0 0 1 1 ]\n\
+         \"float Pw\" [ 1 0 0 1  {w} {w} 0 {w}  0 1 0 1   1 0 2 1  {w} {w} {z} {w}  0 1 2 1 ]",
+        z = 2.0 * w
+    ));
+    assert!((area(&cylinder) / PI - 1.0).abs() < 1e-3 && faced(&cylinder), "{}", area(&cylinder));
+    for (place, normal) in cylinder.positions.iter().zip(&cylinder.normals) {
+        let across = Vec3::new(place.x, place.y, 0.0);
+        assert!((across.length() - 1.0).abs() < 1e-5 && (across - *normal).length() < 1e-4, "{place} {normal}");
+    }
+}
+
+#[test]
+fn few_numbers_do_not_become_any_number_of_triangles() {
+    // A ball in part has 128 x 64 x 2 triangles at most: of 20 some are left out, with the limit of tests.
+    let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
+    let (scene, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
+    assert!(told.len() == 1 && told[0].contains("triangles are left out"), "{told:?}");
+    let triangles: usize = scene.unwrap().assets.meshes.values().map(|mesh| mesh.triangles.len()).sum();
+    assert!(triangles <= 1 << 18 && triangles > 1 << 17, "{triangles}");
+    let surface =
+        "Shape \"loopsubdiv\" \"integer levels\" 16 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]";
+    let (_, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
+    assert!(told.len() == 1 && told[0].contains("triangles are too many: it is subdivided 7 times"), "{told:?}");
+}

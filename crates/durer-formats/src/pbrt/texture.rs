@@ -1,0 +1,334 @@
+//! Textures: one value everywhere, or a picture.
+
+use super::language::Language;
+use super::made::Texture;
+use super::params::{Kind, Param, Params};
+use super::state::{Reader, TEXTURE};
+use crate::pictures::{self, Pictures};
+use crate::said::meant;
+use durer_diag::Span;
+use durer_image::decode_srgb;
+use durer_scene::describe::FileName;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::texture::{Mapping, Wrap};
+use std::rc::Rc;
+
+impl Texture {
+    fn scaled(self, by: Color) -> Texture {
+        match self {
+            Texture::Even(color) => Texture::Even(color * by),
+            Texture::Picture(picture, scale) => Texture::Picture(picture, scale * by),
+        }
+    }
+
+    pub fn even(&self) -> Option<Color> {
+        if let Texture::Even(color) = self { Some(*color) } else { None }
+    }
+}
+
+impl Reader<'_> {
+    pub fn texture(
+        &mut self,
+        name: String,
+        (kind, kind_at): (&str, Span),
+        (class, at): (&str, Span),
+        list: Vec<Rc<Param>>,
+    ) {
+        let third = self.language == Language::Third;
+        if kind != "float" && kind != "spectrum" && !(third && kind == "color") {
+            let help = meant(kind, ["float", "spectrum"]);
+            return self.said.bad_with(kind_at, format!("textures are `float` or `spectrum`, not `{kind}`"), help);
+        }
+        let params = self.params(list, Some(TEXTURE), at);
+        let (is_color, said) = (kind != "float", self.said);
+        let instead = |what: &str| said.once(at, format!("the texture `{class}` has no counterpart: {what}"));
+        let of = |name: &'static str, usual: f32| self.pattern(&params, name, is_color, Vec3::splat(usual));
+        let both = |texture: &Texture, other: &Texture, share: f32| match (texture.even(), other.even()) {
+            (Some(a), Some(b)) => Some(Texture::Even(a.lerp(b, share))),
+            _ => None,
+        };
+        let made = match class {
+            "constant" => of("value", 1.0),
+            "scale" if third => match (of("tex1", 1.0), of("tex2", 1.0)) {
+                (texture, Texture::Even(by)) | (Texture::Even(by), texture) => texture.scaled(by),
+                (texture, other) => self.together([&texture, &other], at, |a, b| a * b).unwrap_or_else(|| {
+                    instead("of two pictures that lie otherwise the first is shown");
+                    texture
+                }),
+            },
+            "uv" if third => self.corners([Vec3::ZERO, Vec3::Y, Vec3::X, Vec3::new(1.0, 1.0, 0.0)], &params),
+            "scale" => {
+                let scale = self.pattern(&params, "scale", false, Vec3::ONE);
+                match (of("tex", 1.0), scale) {
+                    (texture, Texture::Even(by)) => texture.scaled(by),
+                    (Texture::Even(by), texture) => texture.scaled(by),
+                    (texture, _) => {
+                        instead("of two pictures the first is shown");
+                        texture
+                    }
+                }
+            }
+            "mix" | "directionmix" => {
+                let (first, second) = (of("tex1", 0.0), of("tex2", 1.0));
+                let amount = self.pattern(&params, "amount", false, Vec3::splat(0.5)).even().map(|c| c.x);
+                params.known(&["dir"]);
+                let share = amount.unwrap_or_else(|| {
+                    instead("its amount is no picture, one half is taken");
+                    0.5
+                });
+                let mixed = || self.together([&first, &second], at, |a, b| a.lerp(b, share));
+                both(&first, &second, share).or_else(mixed).unwrap_or_else(|| {
+                    instead("pictures that lie otherwise are not mixed, the first is shown");
+                    if first.even().is_some() { second } else { first }
+                })
+            }
+            "imagemap" => self.imagemap(&params, is_color).unwrap_or(Texture::Even(Vec3::splat(0.5))),
+            "checkerboard" => {
+                let (odd, even) = (of("tex2", 0.0), of("tex1", 1.0));
+                match (even.even(), odd.even(), params.whole("dimension").unwrap_or(2)) {
+                    (Some(a), Some(b), 2) => self.checkerboard(a, b, &params),
+                    _ => {
+                        instead("the mean of its two sides is taken");
+                        both(&even, &odd, 0.5).unwrap_or(even)
+                    }
+                }
+            }
+            "bilerp" => {
+                let corners = [of("v00", 0.0), of("v01", 1.0), of("v10", 0.0), of("v11", 1.0)];
+                match corners.each_ref().map(Texture::even) {
+                    [Some(a), Some(b), Some(c), Some(d)] => self.corners([a, b, c, d], &params),
+                    all => {
+                        instead("the mean of its corners is taken");
+                        Texture::Even(all.into_iter().flatten().sum::<Color>() / 4.0)
+                    }
+                }
+            }
+            "dots" => {
+                instead("its outside is taken");
+                params.known(&["inside"]);
+                of("outside", 0.0)
+            }
+            "fbm" | "wrinkled" | "windy" | "marble" | "ptex" => {
+                instead("a middle value is taken");
+                params.known(&["octaves", "roughness", "scale", "variation", "filename", "encoding"]);
+                Texture::Even(Vec3::splat(0.5))
+            }
+            other => {
+                let known = [
+                    "bilerp",
+                    "checkerboard",
+                    "constant",
+                    "directionmix",
+                    "dots",
+                    "fbm",
+                    "imagemap",
+                    "marble",
+                    "mix",
+                    "ptex",
+                    "scale",
+                    "windy",
+                    "wrinkled",
+                ];
+                return self.said.bad_with(at, format!("there is no texture `{other}`"), meant(other, known));
+            }
+        };
+        if third {
+            params.known(&["aamode", "dimension"]);
+        }
+        params.known(&["mapping", "uscale", "vscale", "udelta", "vdelta", "v1", "v2"]);
+        params.finish("this texture");
+        self.textures.insert((is_color, name), made);
+    }
+
+    /// A parameter that may be a texture.
+    pub fn pattern(&self, params: &Params, name: &'static str, is_color: bool, usual: Color) -> Texture {
+        let Some(param) = params.get(name) else { return Texture::Even(usual) };
+        if param.kind == Kind::Texture {
+            if let Some(texture) = self.textures.get(&(is_color, param.text().to_string())) {
+                return texture.clone();
+            }
+            let known = self.textures.keys().filter(|key| key.0 == is_color).map(|key| key.1.as_str());
+            let what = if is_color { "spectrum" } else { "float" };
+            let message = format!("there is no texture `{}` of type `{what}`", param.text());
+            self.said.bad_with(param.values_at, message, meant(param.text(), known));
+            return Texture::Even(usual);
+        }
+        Texture::Even(match is_color {
+            true => params.spectrum(name).map_or(usual, |spectrum| spectrum.albedo()),
+            false => params.float(name).map_or(usual, Vec3::splat),
+        })
+    }
+
+    /// A number that may be a texture: of a picture the mean is taken.
+    pub fn value(&self, params: &Params, name: &'static str, usual: f32) -> f32 {
+        match self.pattern(params, name, false, Vec3::splat(usual)) {
+            Texture::Even(color) => color.x,
+            Texture::Picture(picture, scale) => {
+                self.mean_of(params, name, &picture).map_or(usual, |mean| mean * scale.x)
+            }
+        }
+    }
+
+    /// The mean of the picture that a parameter is, where only a number has a counterpart.
+    pub fn mean_of(&self, params: &Params, name: &'static str, picture: &Picture) -> Option<f32> {
+        let at = params.place(name);
+        self.said.once(at, format!("`{name}` by a picture has no counterpart: its mean is taken"));
+        self.pictures().mean(picture, at)
+    }
+
+    /// The mean of a picture of numbers that the scene has.
+    pub fn mean_of_asset(&self, name: &FileName, at: Span) -> Option<f32> {
+        self.pictures().mean(self.scene.assets.pictures.get(&name.path)?, at)
+    }
+
+    /// A picture that a number is, with its values made others; `None` where it is no picture.
+    pub fn changed(
+        &mut self,
+        params: &Params,
+        name: &'static str,
+        is_color: bool,
+        change: impl Fn(f32) -> f32,
+    ) -> Option<FileName> {
+        let Texture::Picture(picture, scale) = self.pattern(params, name, is_color, Vec3::ZERO) else { return None };
+        let at = params.place(name);
+        let mean = |p: Color| (p.x + p.y + p.z) / 3.0;
+        let picture = self.pictures().changed(&picture, at, decode_srgb, |p| change(scale.x * mean(p)))?;
+        Some(self.asset(picture, at))
+    }
+
+    /// A number that may be a picture: what a change makes of it, or 1 and the picture so changed.
+    pub fn pictured(
+        &mut self,
+        params: &Params,
+        name: &'static str,
+        usual: f32,
+        change: impl Fn(f32) -> f32,
+    ) -> (f32, Option<FileName>) {
+        match self.changed(params, name, false, &change) {
+            Some(picture) => (1.0, Some(picture)),
+            None => (change(self.value(params, name, usual)), None),
+        }
+    }
+
+    /// A parameter that is a colour or a picture: the colour that multiplies, and the picture's
+    /// name.
+    pub fn colored(&mut self, params: &Params, name: &'static str, usual: f32) -> (Color, Option<FileName>) {
+        match self.pattern(params, name, true, Vec3::splat(usual)) {
+            Texture::Even(color) => (color, None),
+            Texture::Picture(picture, scale) => (scale, Some(self.asset(picture, params.place(name)))),
+        }
+    }
+
+    /// A name for a picture.
+    pub fn asset(&mut self, picture: Picture, span: Span) -> FileName {
+        pictures::asset(&mut self.scene, picture, span)
+    }
+
+    fn pictures(&self) -> Pictures<'_> {
+        Pictures { input: self.input, said: self.said }
+    }
+
+    /// A file as a picture of eight bits, which other formats become.
+    pub fn eight_bits(&self, name: &str, at: Span) -> Option<PictureBytes> {
+        self.pictures().eight_bits(name, at)
+    }
+
+    fn imagemap(&self, params: &Params, is_color: bool) -> Option<Texture> {
+        let Some(name) = params.text("filename") else {
+            self.said.bad(params.at, "an `imagemap` needs a `filename`");
+            return None;
+        };
+        let at = params.get("filename").map_or(params.at, |param| param.values_at);
+        let mut mapping = self.mapping(params);
+        match params.text("wrap").unwrap_or("repeat") {
+            "repeat" => {}
+            "clamp" => mapping.wrap = [Wrap::Clamp; 2],
+            "black" => {
+                self.said.once(params.place("wrap"), "the wrapping `black` has no counterpart: `clamp` is taken");
+                mapping.wrap = [Wrap::Clamp; 2];
+            }
+            other => {
+                let help = meant(other, ["repeat", "clamp", "black"]);
+                self.said.bad_with(params.place("wrap"), format!("there is no wrapping `{other}`"), help);
+            }
+        }
+        mapping.nearest = params.text("filter") == Some("point");
+        mapping.mipmaps = matches!(params.text("filter"), Some("trilinear" | "ewa" | "EWA"));
+        if self.language == Language::Third {
+            // Its own default are smaller versions of the picture, which sampling does not need.
+            params.known(&["trilinear", "maxanisotropy"]);
+            let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
+            let plain = params.truth("gamma") == Some(false);
+            let bytes = self.eight_bits(name, at)?;
+            let picture = Picture { bytes, mapping };
+            let curved = if plain { self.pictures().curved(&picture, at) } else { None };
+            return Some(Texture::Picture(curved.unwrap_or(picture), scale));
+        }
+        if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
+            self.said
+                .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");
+        }
+        if params.truth("invert") == Some(true) {
+            self.said.once(params.place("invert"), "inverted pictures have no counterpart: it is shown as it is");
+        }
+        params.known(&["maxanisotropy", "trilinear"]);
+        let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
+        let bytes = self.eight_bits(name, at)?;
+        Some(Texture::Picture(Picture { bytes, mapping }, scale))
+    }
+
+    fn mapping(&self, params: &Params) -> Mapping {
+        if let Some(other) = params.text("mapping").filter(|mapping| *mapping != "uv") {
+            let what = format!("the mapping `{other}` has no counterpart: the surface's own coordinates are taken");
+            self.said.once(params.place("mapping"), what);
+        }
+        let number = |name: &'static str, usual: f32| params.float(name).unwrap_or(usual);
+        let (su, sv) = (number("uscale", 1.0), number("vscale", 1.0));
+        let (du, dv) = (number("udelta", 0.0), number("vdelta", 0.0));
+        // Both have v upwards; a picture's rows go down.
+        Mapping { transform: [[su, 0.0, du], [0.0, sv, 1.0 - sv - dv]], ..Mapping::default() }
+    }
+
+    /// What lies between the values at (0, 0), (0, 1), (1, 0) and (1, 1), as a picture of four texels.
+    fn corners(&self, [v00, v01, v10, v11]: [Color; 4], params: &Params) -> Texture {
+        let mut mapping = self.mapping(params);
+        // From the middle of a texel to that of the next; rows go down.
+        let [[su, _, du], [_, sv, dv]] = mapping.transform;
+        mapping.transform = [[0.5 * su, 0.0, 0.25 + 0.5 * du], [0.0, 0.5 * sv, 0.25 + 0.5 * dv]];
+        mapping.wrap = [Wrap::Clamp; 2];
+        match pictures::four([v01, v11, v00, v10]) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.25 * (v00 + v01 + v10 + v11)),
+        }
+    }
+
+    /// One picture of two textures, texel by texel; `None` where both are pictures that lie otherwise.
+    fn together(&self, textures: [&Texture; 2], at: Span, join: impl Fn(Color, Color) -> Color) -> Option<Texture> {
+        let pictures = self.pictures();
+        let (picture, most) = match textures {
+            [Texture::Picture(a, by), Texture::Even(b)] => pictures.remade([a, a], at, |a, _| join(*by * a, *b)),
+            [Texture::Even(a), Texture::Picture(b, by)] => pictures.remade([b, b], at, |b, _| join(*a, *by * b)),
+            [Texture::Picture(a, by), Texture::Picture(b, other)] => {
+                pictures.remade([a, b], at, |a, b| join(*by * a, *other * b))
+            }
+            _ => None,
+        }?;
+        Some(Texture::Picture(picture, Vec3::splat(most)))
+    }
+
+    /// Two fields and two more, as a picture of four texels.
+    fn checkerboard(&self, even: Color, odd: Color, params: &Params) -> Texture {
+        let mut mapping = self.mapping(params);
+        // A texel is a unit of the surface's coordinates; their origin is the lower left corner of
+        // an even one.
+        let [[su, _, du], [_, sv, _]] = mapping.transform;
+        let dv = params.float("vdelta").unwrap_or(0.0);
+        mapping.transform = [[0.5 * su, 0.0, 0.5 * du], [0.0, 0.5 * sv, 1.0 - 0.5 * sv - 0.5 * dv]];
+        mapping.nearest = true;
+        match pictures::checkerboard(odd, even) {
+            Some((bytes, most)) => Texture::Picture(Picture { bytes, mapping }, Vec3::splat(most)),
+            None => Texture::Even(0.5 * (even + odd)),
+        }
+    }
+}

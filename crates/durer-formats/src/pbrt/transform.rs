@@ -1,0 +1,115 @@
+//! The current transform, as the directives change it.
+
+use super::lexer::{Lexer, Token};
+use super::params::number;
+use crate::said::Said;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::math::fp;
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+
+/// From the coordinates of what follows to the world, or of the camera's directives from the world
+/// to the camera: when the shutter opens and when it closes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Transforms {
+    pub maps: [DAffine3; 2],
+    /// Which of the two are changed.
+    pub active: [bool; 2],
+}
+
+impl Default for Transforms {
+    fn default() -> Self {
+        Transforms { maps: [DAffine3::IDENTITY; 2], active: [true; 2] }
+    }
+}
+
+impl Transforms {
+    /// Multiplies from the right: what is written last is applied first.
+    pub fn apply(&mut self, map: DAffine3) {
+        self.change(|now| now * map);
+    }
+
+    pub fn change(&mut self, change: impl Fn(DAffine3) -> DAffine3) {
+        for (map, active) in self.maps.iter_mut().zip(self.active) {
+            if active {
+                *map = change(*map);
+            }
+        }
+    }
+
+    /// Whether things move while the shutter is open.
+    pub fn moves(&self) -> bool {
+        self.maps[0] != self.maps[1]
+    }
+}
+
+/// So many numbers after a directive, in brackets or not.
+pub(super) fn numbers<const N: usize>(text: &mut Lexer, directive: Span, said: &Said) -> Option<[f64; N]> {
+    let open = text.peek(said).filter(|found| found.token == Token::Open).map(|found| found.at);
+    if open.is_some() {
+        text.next(said);
+    }
+    let mut all = [0.0; N];
+    for (i, value) in all.iter_mut().enumerate() {
+        let Some(found) = text.peek(said).filter(|found| found.token == Token::Word).cloned() else {
+            let message = format!("{} needs {N} numbers, found {i}", text.shown(directive));
+            said.push(Diagnostic::error(message).code("bad-value").at(directive));
+            return None;
+        };
+        text.next(said);
+        *value = number(text, found.at, said)?;
+    }
+    if let Some(open) = open
+        && text.next(said).is_none_or(|found| found.token != Token::Close)
+    {
+        let message = format!("these brackets must hold {N} numbers and be closed");
+        said.push(Diagnostic::error(message).code("unclosed").at(open));
+        return None;
+    }
+    Some(all)
+}
+
+/// The matrix of 16 numbers, column by column.
+pub(super) fn matrix(m: [f64; 16], at: Span, said: &Said) -> Option<DAffine3> {
+    let matrix = DMat4::from_cols_array(&m);
+    let [a, b, c, d] = [m[3], m[7], m[11], m[15]];
+    if d == 0.0 || [a, b, c].iter().any(|x| (x / d).abs() > 1e-9) {
+        said.bad(at, "this matrix is a projection: its columns must end in 0 0 0 1");
+        return None;
+    }
+    let map = DAffine3::from_mat4(matrix * (1.0 / d));
+    sound(map, at, said)
+}
+
+/// A map that can be undone.
+pub(super) fn sound(map: DAffine3, at: Span, said: &Said) -> Option<DAffine3> {
+    let determinant = map.matrix3.determinant();
+    if determinant == 0.0 || !determinant.is_finite() || !map.inverse().is_finite() {
+        said.push(
+            Diagnostic::error("this transform flattens space, or leaves the range of numbers")
+                .code("flat-transform")
+                .at(at),
+        );
+        return None;
+    }
+    Some(map)
+}
+
+/// Turns about an axis of any length, in degrees.
+pub(super) fn rotation([degrees, x, y, z]: [f64; 4]) -> Option<DAffine3> {
+    let axis = DVec3::new(x, y, z).try_normalize()?;
+    let (sin, cos) = fp::sin_cos_degrees(degrees);
+    let column = |v: DVec3| v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos));
+    Some(DAffine3::from_mat3(DMat3::from_cols(column(DVec3::X), column(DVec3::Y), column(DVec3::Z))))
+}
+
+/// From the world to a camera at a place that looks at another along its z; x is to the right, in
+/// coordinates of the left hand.
+///
+/// Source: *Physically Based Rendering*, 4th edition, section 3.9.7.
+pub(super) fn look_at([ex, ey, ez, lx, ly, lz, ux, uy, uz]: [f64; 9]) -> Option<DAffine3> {
+    let (eye, at, up) = (DVec3::new(ex, ey, ez), DVec3::new(lx, ly, lz), DVec3::new(ux, uy, uz));
+    let forward = (at - eye).try_normalize()?;
+    let right = up.try_normalize()?.cross(forward).try_normalize()?;
+    let map = DAffine3 { matrix3: DMat3::from_cols(right, forward.cross(right), forward), translation: eye };
+    Some(map.inverse())
+}

@@ -1,0 +1,317 @@
+//! EULUMDAT files (`.ldt`): measured light of lamps, as it is exchanged in Europe.
+//!
+//! One value a line, in an order that never changes: what the lamp is, how its planes are
+//! symmetric, its lamps and their flux, the angles, and candela for each 1000 lumen of that flux.
+//!
+//! Source: A. W. Stockmar, *EULUMDAT: ein Leuchtendatenformat für den europäischen
+//! Beleuchtungsplaner*, Licht '90; the order of lines as Paul Bourke and Lighting Sciences publish
+//! it.
+
+use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
+use durer_scene::light::photometric::{Profile, ProfileKind};
+
+/// More angles than any photometer has, as the format says: planes, and angles in each.
+const MAX_PLANES: usize = 721;
+const MAX_ANGLES: usize = 361;
+
+/// How the light distribution repeats itself.
+#[derive(Clone, Copy)]
+enum Symmetry {
+    None,
+    /// All planes are alike.
+    Axis,
+    /// To the plane of C = 0 and 180 degrees.
+    C0,
+    /// To that of 90 and 270 degrees.
+    C90,
+    /// To both.
+    Both,
+}
+
+struct Lines<'t> {
+    text: &'t str,
+    at: usize,
+    file: u32,
+}
+
+type Found<T> = Result<T, Box<Diagnostic>>;
+
+impl<'t> Lines<'t> {
+    fn error(&self, start: usize, end: usize, message: impl Into<String>) -> Box<Diagnostic> {
+        let span = Span { file: self.file, start: start as u32, end: end.max(start) as u32 };
+        Box::new(Diagnostic::error(message).code("bad-file").at(span))
+    }
+
+    /// The next line without spaces around it, and where it starts.
+    fn next(&mut self, what: &str) -> Found<(&'t str, usize)> {
+        if self.at >= self.text.len() {
+            return Err(self.error(self.at, self.at, format!("the file ends where the {what} should be")));
+        }
+        let rest = &self.text[self.at..];
+        let line = rest.split_inclusive('\n').next().unwrap_or("");
+        let start = self.at + (line.len() - line.trim_start().len());
+        self.at += line.len();
+        Ok((line.trim(), start))
+    }
+
+    fn skip(&mut self, lines: usize, what: &str) -> Found<()> {
+        (0..lines).try_for_each(|_| self.next(what).map(drop))
+    }
+
+    /// A number; a comma is as good as a point.
+    fn number(&mut self, what: &str) -> Found<(f64, usize, usize)> {
+        let (line, start) = self.next(what)?;
+        let end = start + line.len();
+        match line.replace(',', ".").parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok((number, start, end)),
+            _ => Err(self.error(start, end, format!("`{line}` is no number: the {what} should be here"))),
+        }
+    }
+
+    fn whole(&mut self, what: &str, from: usize, to: usize) -> Found<usize> {
+        let (number, start, end) = self.number(what)?;
+        match number.fract() == 0.0 && (from as f64..=to as f64).contains(&number) {
+            true => Ok(number as usize),
+            false => Err(self.error(start, end, format!("the {what} must be a whole number from {from} to {to}"))),
+        }
+    }
+
+    fn not_negative(&mut self, what: &str) -> Found<f64> {
+        let (number, start, end) = self.number(what)?;
+        if number < 0.0 {
+            return Err(self.error(start, end, format!("the {what} must not be less than 0")));
+        }
+        Ok(number)
+    }
+
+    /// Angles that rise from 0 on.
+    fn angles(&mut self, count: usize, what: &str, most: f64) -> Found<Vec<f32>> {
+        let mut angles: Vec<f32> = Vec::with_capacity(count);
+        for _ in 0..count {
+            let (angle, start, end) = self.number(what)?;
+            if angles.last().is_some_and(|last| angle as f32 <= *last) {
+                return Err(self.error(start, end, format!("the {what}s must rise")));
+            }
+            if !(0.0..=most).contains(&angle) {
+                return Err(self.error(start, end, format!("a {what} must lie between 0 and {most} degrees")));
+            }
+            angles.push(angle as f32);
+        }
+        Ok(angles)
+    }
+}
+
+/// Whether a text begins as such a file does: the kind of lamp and its symmetry stand in the second
+/// and the third line, as whole numbers.
+pub(super) fn recognise(text: &str) -> bool {
+    let mut lines = text.lines().map(str::trim).skip(1);
+    let mut is_whole = || lines.next().is_some_and(|line| line.parse::<u32>().is_ok());
+    is_whole() && is_whole()
+}
+
+pub fn read(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
+    parse(text, file, diagnostics).map_err(|error| diagnostics.push(*error)).ok()
+}
+
+fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile> {
+    let mut lines = Lines { text, at: 0, file };
+    lines.skip(2, "maker and kind of lamp")?;
+    let symmetry = match lines.whole("symmetry", 0, 4)? {
+        0 => Symmetry::None,
+        1 => Symmetry::Axis,
+        2 => Symmetry::C0,
+        3 => Symmetry::C90,
+        _ => Symmetry::Both,
+    };
+    let count = lines.whole("number of C planes", 1, MAX_PLANES)?;
+    lines.skip(1, "distance between C planes")?;
+    let verticals = lines.whole("number of intensities in each plane", 1, MAX_ANGLES)?;
+    lines.skip(1, "distance between intensities")?;
+    lines.skip(5, "names and date of the lamp")?;
+    lines.skip(9, "size of the lamp")?;
+    lines.skip(2, "downward flux and light output ratio")?;
+    let factor = lines.not_negative("conversion factor")?;
+    lines.skip(1, "tilt")?;
+    let sets = lines.whole("number of sets of lamps", 1, 20)?;
+    // Sets stand for each other: the light is that of the first.
+    lines.skip(2, "number and kind of the lamps")?;
+    let flux = lines.not_negative("flux of the lamps")?;
+    lines.skip(3 + 6 * (sets - 1), "colour and watts of the lamps")?;
+    lines.skip(10, "direct ratios")?;
+    let around = lines.at;
+    let planes = lines.angles(count, "C angle", 360.0)?;
+    let angles = around..lines.at;
+    let vertical = lines.angles(verticals, "gamma angle", 180.0)?;
+    let horizontal = lines.kept(symmetry, planes, angles.clone())?;
+    let scale = factor * flux / 1000.0;
+    let all = horizontal.len() * verticals;
+    let mut candela = Vec::with_capacity(all);
+    for i in 0..all {
+        let value = lines.not_negative(&format!("intensity number {} of {all}", i + 1))?;
+        let value = (scale * value) as f32;
+        if !value.is_finite() {
+            return Err(lines.error(lines.at, lines.at, "so many candela are no number that can be held"));
+        }
+        candela.push(value);
+    }
+    let mut profile = Profile { kind: ProfileKind::C, vertical, horizontal, candela };
+    match symmetry {
+        // From the last plane it leads back to the first.
+        Symmetry::None if count > 1 && profile.horizontal[count - 1] < 360.0 => {
+            profile.horizontal.push(360.0);
+            profile.candela.extend_from_within(..verticals);
+        }
+        // From 270 over 0 to 90: as IES has it, from 90 to 270.
+        Symmetry::C90 => turned(&mut profile),
+        _ => {}
+    }
+    if profile.candela.iter().all(|candela| *candela == 0.0) {
+        let error = lines.error(angles.start, angles.end, "this lamp is dark: its flux or all its intensities are 0");
+        diagnostics.push(Diagnostic { severity: Severity::Warning, ..*error });
+    }
+    Ok(profile)
+}
+
+impl Lines<'_> {
+    /// The planes of which intensities follow, of all that are named.
+    fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> Found<Vec<f32>> {
+        let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
+        let (kept, ends): (Vec<f32>, _) = match symmetry {
+            Symmetry::Axis => return Ok(planes[..1].to_vec()),
+            Symmetry::None => (planes, [0.0, f32::NAN]),
+            Symmetry::C0 => (within(0.0, 180.0), [0.0, 180.0]),
+            Symmetry::C90 => {
+                // They follow each other from 270 to 360, and from 0 to 90.
+                let below = planes.iter().filter(|c| **c >= 270.0 && **c < 360.0).map(|c| c - 360.0);
+                (below.chain(within(0.0, 90.0)).collect(), [-90.0, 90.0])
+            }
+            Symmetry::Both => (within(0.0, 90.0), [0.0, 90.0]),
+        };
+        // All around there is no last one.
+        let [first, last] = ends;
+        if kept.first() == Some(&first) && (last.is_nan() || kept.last() == Some(&last)) {
+            return Ok(kept);
+        }
+        let first = if first < 0.0 { first + 360.0 } else { first };
+        let named =
+            if last.is_nan() { format!("a C plane at {first}") } else { format!("C planes at {first} and {last}") };
+        Err(self.error(at.start, at.end, format!("with this symmetry there must be {named} degrees")))
+    }
+}
+
+/// Mirrors what is from -90 to 90 degrees to the other half of the circle.
+fn turned(profile: &mut Profile) {
+    let verticals = profile.vertical.len();
+    profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
+    profile.candela = profile.candela.chunks(verticals).rev().flatten().copied().collect();
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use durer_diag::Files;
+    use durer_scene::math::{Vec3, fp};
+
+    /// A file: symmetry, number of planes in a turn, the flux of its lamps, and intensities by
+    /// plane and gamma angle, of those planes that are written.
+    fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
+        let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
+        let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);
+        let mut lines = vec!["Maker".to_string(), "1".into(), symmetry.to_string(), count.to_string()];
+        lines.push((360.0 / count as f64).to_string());
+        lines.extend(["37", "5", "No. 7", "Lamp", "7", "lamp.ldt", "2026-11-26"].map(String::from));
+        lines.extend((0..9).map(|i| (100 * i).to_string()));
+        lines.extend(["50", "80,5", "1.0", "0", "1", "-1", "LED", flux, "3000", "80", "20"].map(String::from));
+        lines.extend((0..10).map(|i| format!("0.{i}")));
+        lines.extend(planes.chain(gammas.iter().copied()).map(|angle| angle.to_string()));
+        lines.extend(
+            written.iter().flat_map(|&c| gammas.iter().map(move |&g| (c, g))).map(|(c, g)| value(c, g).to_string()),
+        );
+        lines.join("\r\n") + "\r\n"
+    }
+
+    fn parsed(text: &str) -> Result<Profile, String> {
+        let mut files = Files::default();
+        let file = files.add("lamp.ldt", text.as_bytes().into());
+        let mut diagnostics = Diagnostics::default();
+        let profile = super::super::read(text.as_bytes(), file, &mut diagnostics);
+        let told = diagnostics.iter().next().map(|told| {
+            let (line, column) = files.position(told.span.unwrap()).unwrap();
+            format!("{line}:{column} {}", told.message)
+        });
+        match (profile, told) {
+            (Some(profile), None) => Ok(profile),
+            (_, told) => Err(told.unwrap()),
+        }
+    }
+
+    #[test]
+    fn every_symmetry_fills_the_circle() {
+        // Candela for each 1000 lumen, of 2000; each function has the symmetry that is told.
+        let cos = |degrees: f64| fp::sin_cos_degrees(degrees).1;
+        let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
+        let all: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
+        let some = |from: usize, to: usize| all[from..=to].to_vec();
+        let right = [some(18, 23), some(0, 6)].concat();
+        type Value = fn(f64, f64) -> f64;
+        let cases: [(u32, Vec<f64>, Value); 5] = [
+            (0, all.clone(), |x, y| 90.0 + 20.0 * x + 30.0 * y),
+            (1, vec![0.0], |_, _| 90.0),
+            (2, some(0, 12), |x, _| 90.0 + 20.0 * x),
+            (3, right, |_, y| 90.0 + 30.0 * y),
+            (4, some(0, 6), |x, y| 90.0 + 20.0 * x * x + 30.0 * y * y),
+        ];
+        for (symmetry, written, value) in cases {
+            let text = file(symmetry, 24, "2000", &written, |c, g| value(cos(c), sin(c)) * (1.0 + cos(g)));
+            let profile = parsed(&text).unwrap();
+            for degrees in 0..72 {
+                let c = 5.0 * f64::from(degrees);
+                for g in [10.0, 60.0, 130.0] {
+                    let flat = sin(g);
+                    let dir = Vec3::new((flat * cos(c)) as f32, (flat * sin(c)) as f32, cos(g) as f32);
+                    let expected = 2.0 * value(cos(c), sin(c)) * (1.0 + cos(g));
+                    let found = f64::from(profile.at(dir));
+                    // Between planes it is linear.
+                    assert!(
+                        (found - expected).abs() < 0.006 * expected,
+                        "{symmetry}, {c}, {g}: {found}, not {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn the_flux_of_an_even_lamp_is_four_pi_its_candela() {
+        let even = parsed(&file(1, 1, "1000", &[0.0], |_, _| 100.0)).unwrap();
+        assert!((even.flux() / (400.0 * std::f64::consts::PI) - 1.0).abs() < 1e-3, "{}", even.flux());
+    }
+
+    #[test]
+    fn broken_files_are_refused_at_their_place() {
+        let good = file(4, 4, "1000", &[0.0, 90.0], |_, _| 100.0);
+        let line = |number: usize, with: &str| {
+            let mut lines: Vec<&str> = good.lines().collect();
+            lines[number - 1] = with;
+            lines.join("\n")
+        };
+        assert!(parsed(&good).is_ok());
+        for (text, told) in [
+            (line(3, "5"), "3:1 the symmetry must be a whole number from 0 to 4"),
+            (line(4, "four"), "4:1 `four` is no number: the number of C planes should be here"),
+            (line(4, "1e9"), "4:1 the number of C planes must be a whole number from 1 to 721"),
+            (line(24, "-1"), "24:1 the conversion factor must not be less than 0"),
+            (line(29, "nan"), "29:1 `nan` is no number: the flux of the lamps should be here"),
+            (line(44, " 0"), "44:2 the C angles must rise"),
+            (line(44, "80"), "43:1 with this symmetry there must be C planes at 0 and 90 degrees"),
+            (line(29, "0"), "43:1 this lamp is dark: its flux or all its intensities are 0"),
+            (line(90, "-1"), "90:1 the intensity number 7 of 74 must not be less than 0"),
+            (
+                good.lines().take(100).collect::<Vec<_>>().join("\n"),
+                "100:4 the file ends where the intensity number 18 of 74 should be",
+            ),
+        ] {
+            assert_eq!(parsed(&text).unwrap_err(), told);
+        }
+    }
+}

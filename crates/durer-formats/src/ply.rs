@@ -1,0 +1,52 @@
+//! Stanford `.ply`: text and binary, in either byte order, with whatever elements and properties.
+
+mod body;
+mod fixed;
+mod header;
+mod rows;
+mod values;
+mod write;
+
+use super::report::Report;
+use super::{MeshFormat, as_it_is};
+use body::Body;
+use durer_diag::Diagnostics;
+use durer_scene::scene::Axis;
+use durer_scene::shape::mesh::MeshData;
+use header::{Encoding, read_header};
+use values::{AsciiValues, BinaryValues};
+use write::write;
+pub(super) use write::write_whole;
+
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat =
+    MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, known: as_it_is, write, up: Axis::Y };
+
+/// Whether a file begins as files of this format do.
+fn recognise(bytes: &[u8]) -> bool {
+    matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
+}
+
+/// Reads a file; see [`read_mesh`](super::read_mesh).
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let mesh = read_reporting(bytes, &mut report).unwrap_or_default();
+    if mesh.triangles.is_empty() && !report.has_errors() {
+        report.warning(0..0, "the mesh has no triangles");
+    }
+    report.finish(diagnostics, mesh)
+}
+
+fn read_reporting(bytes: &[u8], report: &mut Report) -> Option<MeshData> {
+    let header = read_header(bytes, report)?;
+    let (start, elements) = (header.body, header.elements);
+    let mesh = match header.encoding {
+        Encoding::Ascii => Body::new(bytes, AsciiValues::new(bytes, start), report).read(&elements),
+        Encoding::LittleEndian => Body::new(bytes, BinaryValues::<false>::new(bytes, start), report).read(&elements),
+        Encoding::BigEndian => Body::new(bytes, BinaryValues::<true>::new(bytes, start), report).read(&elements),
+    };
+    Some(MeshData { flat: header.flat, ..mesh? })
+}
+
+#[cfg(test)]
+mod tests;

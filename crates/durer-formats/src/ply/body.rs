@@ -1,0 +1,189 @@
+//! The rows of a PLY file: which of them are read, and in which order.
+
+use super::header::{Element, Property};
+use super::values::{ValueError, Values};
+use crate::number::{NumberError, report_number};
+use crate::polygon::Cutter;
+use crate::report::{Report, counted, shown};
+use durer_scene::shape::mesh::MeshData;
+use std::ops::Range;
+
+/// Reading cannot go on; why has been reported.
+pub(super) struct Stop;
+
+/// Reads the rows of all elements.
+pub(super) struct Body<'a, 'r, V> {
+    pub bytes: &'a [u8],
+    pub report: &'r mut Report,
+    pub values: V,
+    pub mesh: MeshData,
+    pub cutter: Cutter,
+    /// Corners of the face or strip that is being read.
+    pub corners: Vec<u32>,
+}
+
+impl<'a, 'r, V: Values> Body<'a, 'r, V> {
+    pub fn new(bytes: &'a [u8], values: V, report: &'r mut Report) -> Self {
+        let cutter = Cutter::new(bytes.len());
+        Body { bytes, report, values, mesh: MeshData::default(), cutter, corners: Vec::new() }
+    }
+
+    /// Reads all elements: the vertices first, wherever they stand.
+    pub fn read(mut self, elements: &[Element]) -> Option<MeshData> {
+        self.read_elements(elements).ok()?;
+        Some(self.mesh)
+    }
+
+    fn read_elements(&mut self, elements: &[Element]) -> Result<(), Stop> {
+        let mut has_vertices = false;
+        // Faces that come before the vertices are passed over and read at the end.
+        let mut later: Vec<(&Element, V)> = Vec::new();
+        for element in elements {
+            self.check_rows(element)?;
+            match &self.bytes[element.name.clone()] {
+                b"vertex" if has_vertices => {
+                    self.report.error(element.name.clone(), "a second element `vertex`");
+                    return Err(Stop);
+                }
+                b"vertex" => {
+                    self.read_vertices(element)?;
+                    has_vertices = true;
+                }
+                b"face" | b"tristrips" if has_vertices => self.read_faces(element)?,
+                b"face" | b"tristrips" => {
+                    later.push((element, self.values.clone()));
+                    self.skip_rows(element)?;
+                }
+                _ => self.skip_rows(element)?,
+            }
+        }
+        if !has_vertices {
+            let first = elements.first().map_or(0..0, |element| element.name.clone());
+            self.report.error(first, "the file has no element `vertex`");
+            return Err(Stop);
+        }
+        self.check_remainder();
+        for (element, values) in later {
+            self.values = values;
+            self.read_faces(element)?;
+        }
+        let MeshData { uvs, normals, triangles, triangle_uvs, triangle_normals, .. } = &mut self.mesh;
+        // Vertices carry their texture coordinates and normals themselves.
+        if !uvs.is_empty() {
+            triangle_uvs.clone_from(triangles);
+        }
+        if !normals.is_empty() {
+            triangle_normals.clone_from(triangles);
+        }
+        Ok(())
+    }
+
+    /// Refuses at once what can never be there.
+    fn check_rows(&mut self, element: &Element) -> Result<(), Stop> {
+        let sizes = element.properties.iter().map(|p| p.count.map_or(V::fixed_size(p.scalar), |_| None));
+        let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
+        let left = self.values.remainder().len();
+        if (left as u64) < element.rows.saturating_mul(size as u64) {
+            let what = shown(&self.bytes[element.name.clone()]);
+            let message = format!(
+                "the header promises {} {what} rows of {size} bytes, but only {left} bytes follow",
+                element.rows
+            );
+            let end = self.bytes.len();
+            let here = self.report.span(element.name.clone());
+            self.report.error(end..end, message).related = Some((here, "promised here".into()));
+            return Err(Stop);
+        }
+        Ok(())
+    }
+
+    /// As many rows as are promised, but no more than can be there: for reserving memory.
+    pub fn likely_rows(&self, element: &Element) -> usize {
+        // An empty list still has a length; a value in text is a digit and a blank.
+        let smallest = |p: &Property| V::fixed_size(p.count.unwrap_or(p.scalar)).unwrap_or(2);
+        let row = element.properties.iter().map(smallest).sum::<usize>().max(1);
+        element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
+    }
+
+    fn skip_rows(&mut self, element: &Element) -> Result<(), Stop> {
+        // Rows of nothing take no bytes, and any number of them may be promised.
+        if element.properties.is_empty() {
+            return Ok(());
+        }
+        for row in 0..element.rows {
+            for property in &element.properties {
+                self.skip_property(element, row, property)?;
+            }
+        }
+        Ok(())
+    }
+
+    pub fn skip_property(&mut self, element: &Element, row: u64, property: &Property) -> Result<(), Stop> {
+        let count = match property.count {
+            Some(_) => self.list_length(element, row, property)?,
+            None => 1,
+        };
+        self.values.skip(property.scalar, count).map_err(|error| self.fail(error, element, row))
+    }
+
+    /// Reads how many values of a list follow: never more than there can be.
+    pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, Stop> {
+        let Some(scalar) = property.count else { return Ok(1) };
+        let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
+        let most = self.values.most_left(property.scalar);
+        match usize::try_from(length) {
+            Ok(length) if length <= most => Ok(length),
+            Ok(_) => {
+                let message = format!("the list should have {length} values, but the file ends before");
+                self.report.error(self.values.last(), message);
+                Err(Stop)
+            }
+            Err(_) => {
+                self.report.error(self.values.last(), format!("a list cannot have {length} values"));
+                Err(Stop)
+            }
+        }
+    }
+
+    /// Reports a missing or wrong value after which reading cannot go on.
+    pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> Stop {
+        let at = self.values.last();
+        match error {
+            ValueError::End => {
+                let name = shown(&self.bytes[element.name.clone()]);
+                let rows = counted(element.rows as usize, "row", "rows");
+                let message = format!("the file ends in row {} of {name}, which should have {rows}", row + 1);
+                let promised = self.report.span(element.name.clone());
+                self.report.error(at, message).related = Some((promised, "promised here".into()));
+            }
+            ValueError::Number(error) => self.wrong_number(error, at),
+        }
+        Stop
+    }
+
+    /// Reports a wrong value; reading goes on after it while errors are collected.
+    pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), Stop> {
+        let stop = self.fail(error, element, row);
+        if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }
+    }
+
+    fn wrong_number(&mut self, error: NumberError, at: Range<usize>) {
+        let value = &self.bytes[at.clone()];
+        // The bytes of a binary value say nothing to people.
+        if V::fixed_size(super::header::Scalar::U8).is_some() {
+            self.report.error(at, "expected a finite number, found an infinite one or none").help =
+                Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());
+        } else {
+            report_number(self.report, error, at.clone(), value);
+        }
+    }
+
+    fn check_remainder(&mut self) {
+        let rest = self.values.remainder();
+        if !rest.is_empty() {
+            let bytes = counted(rest.len(), "byte", "bytes");
+            self.report.warning(rest.start..rest.start + 1, format!("{bytes} left out after the last row")).help =
+                Some("the header may promise too few rows or properties".into());
+        }
+    }
+}

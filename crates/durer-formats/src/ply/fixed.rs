@@ -1,0 +1,189 @@
+//! Binary rows of one size, many at once: what nearly all large files have.
+//!
+//! Rows that are not sound, or not all of one size, are left to the reader of single rows, which
+//! knows what to say of them.
+
+use super::body::Body;
+use super::header::{Element, Scalar};
+use super::rows::COLUMNS;
+use super::values::Values;
+use durer_scene::math::{Vec2, Vec3};
+use rayon::prelude::*;
+
+/// Rows that one thread reads at a time: they stay in its cache while their columns are read one
+/// after the other.
+const BLOCK: usize = 1 << 11;
+
+/// Columns of numbers in binary rows.
+struct Rows<'a> {
+    bytes: &'a [u8],
+    /// Bytes of a row.
+    size: usize,
+    big_endian: bool,
+}
+
+/// Goes along a column of numbers of a type; whether all are found good.
+macro_rules! column {
+    ($rows:expr, $at:expr, $number:ty, |$i:ident, $value:ident| $is_good:expr) => {{
+        let (rows, mut good) = ($rows, true);
+        for ($i, row) in rows.bytes.chunks_exact(rows.size).enumerate() {
+            let Some(&bytes) = row[$at..].first_chunk() else { return false };
+            let $value =
+                if rows.big_endian { <$number>::from_be_bytes(bytes) } else { <$number>::from_le_bytes(bytes) };
+            good &= $is_good;
+        }
+        good
+    }};
+}
+
+/// The type of a number, and where in its row it is.
+type Place = (Scalar, usize);
+
+impl Rows<'_> {
+    /// Some numbers of each row; `None` where one is not finite.
+    fn gather<const N: usize>(&self, places: [Place; N]) -> Option<Vec<[f32; N]>> {
+        let mut all = vec![[0.0; N]; self.bytes.len() / self.size];
+        let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
+        let sound = blocks.map(|(block, bytes)| {
+            let rows = Rows { bytes, ..*self };
+            (0..N).all(|k| rows.each(places[k], |i, value| block[i][k] = value))
+        });
+        sound.all(|sound| sound).then_some(all)
+    }
+
+    /// The same where the rows may lack them: then there are none.
+    fn all<const N: usize>(&self, places: &[Option<Place>]) -> Option<Vec<[f32; N]>> {
+        let places: Option<Vec<Place>> = places.iter().copied().collect();
+        match places.and_then(|places| places.try_into().ok()) {
+            Some(places) => self.gather::<N>(places),
+            None => Some(Vec::new()),
+        }
+    }
+
+    /// Hands on one number of each row; whether all are finite.
+    fn each(&self, (scalar, at): Place, mut put: impl FnMut(usize, f32)) -> bool {
+        macro_rules! read {
+            ($number:ty) => {
+                column!(self, at, $number, |i, number| {
+                    let value = number as f32;
+                    put(i, value);
+                    value.is_finite()
+                })
+            };
+        }
+        match scalar {
+            Scalar::I8 => read!(i8),
+            Scalar::U8 => read!(u8),
+            Scalar::I16 => read!(i16),
+            Scalar::U16 => read!(u16),
+            Scalar::I32 => read!(i32),
+            Scalar::U32 => read!(u32),
+            Scalar::F32 => read!(f32),
+            Scalar::F64 => read!(f64),
+        }
+    }
+
+    /// Three corners of each row, whose list begins at a place; `None` where a list has another
+    /// length, or a corner that is not among so many vertices.
+    fn triangles(&self, count: Place, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
+        let mut all = vec![[0; 3]; self.bytes.len() / self.size];
+        let first = count.1 + count.0.size();
+        let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
+        let sound = blocks.map(|(block, bytes)| {
+            let rows = Rows { bytes, ..*self };
+            let mut corner = |k: usize| {
+                rows.whole((corners, first + k * corners.size()), |i, corner| {
+                    block[i][k] = corner as u32;
+                    (0..vertices as i64).contains(&corner)
+                })
+            };
+            rows.whole(count, |_, length| length == 3) && (0..3).all(&mut corner)
+        });
+        sound.all(|sound| sound).then_some(all)
+    }
+
+    /// Hands on one whole number of each row; whether all are found good.
+    fn whole(&self, (scalar, at): Place, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
+        macro_rules! read {
+            ($number:ty) => {
+                column!(self, at, $number, |i, number| is_good(i, number.into()))
+            };
+        }
+        match scalar {
+            Scalar::I8 => read!(i8),
+            Scalar::U8 => read!(u8),
+            Scalar::I16 => read!(i16),
+            Scalar::U16 => read!(u16),
+            Scalar::I32 => read!(i32),
+            Scalar::U32 => read!(u32),
+            Scalar::F32 | Scalar::F64 => false,
+        }
+    }
+}
+
+impl<V: Values> Body<'_, '_, V> {
+    /// The rows of an element, if they have one size, `size`, and are all there.
+    fn rows(&self, element: &Element, size: usize) -> Option<Rows<'_>> {
+        let big_endian = V::BIG_ENDIAN?;
+        let left = &self.bytes[self.values.remainder()];
+        let length = usize::try_from(element.rows).ok()?.checked_mul(size)?;
+        Some(Rows { bytes: left.get(..length).filter(|_| size > 0)?, size, big_endian })
+    }
+
+    /// Reads all vertices, whose columns are known; `None` where they must be read one by one.
+    pub(super) fn fixed_vertices(&mut self, element: &Element, columns: &[Option<usize>]) -> Option<()> {
+        let mut places = [None; COLUMNS.len()];
+        let mut size = 0;
+        for (property, column) in element.properties.iter().zip(columns) {
+            if property.count.is_some() {
+                return None;
+            }
+            if let Some(column) = column {
+                places[*column] = Some((property.scalar, size));
+            }
+            size += property.scalar.size();
+        }
+        // Colours are few, and more than numbers.
+        if places[8..12].iter().any(Option::is_some) {
+            return None;
+        }
+        let rows = self.rows(element, size)?;
+        let positions = rows.gather([places[0]?, places[1]?, places[2]?])?;
+        let normals = rows.all(&places[3..6])?;
+        let uvs = rows.all(&places[6..8])?;
+        let (colors, second_uvs, tangents) =
+            (rows.all(&places[12..16])?, rows.all(&places[16..18])?, rows.all(&places[18..22])?);
+        let length = rows.bytes.len();
+        self.mesh.positions = positions.into_iter().map(Vec3::from_array).collect();
+        self.mesh.normals = normals.into_iter().map(Vec3::from_array).collect();
+        self.mesh.uvs = uvs.into_iter().map(Vec2::from_array).collect();
+        self.mesh.second_uvs = second_uvs.into_iter().map(Vec2::from_array).collect();
+        (self.mesh.colors, self.mesh.tangents) = (colors, tangents);
+        self.values.skip(Scalar::U8, length).ok()
+    }
+
+    /// Reads all faces, if they are triangles; `None` where they must be read one by one.
+    pub(super) fn fixed_faces(&mut self, element: &Element, list: usize) -> Option<()> {
+        let mut size = 0;
+        let mut found = None;
+        for (i, property) in element.properties.iter().enumerate() {
+            match property.count {
+                Some(count) if i == list => {
+                    found = Some(((count, size), property.scalar));
+                    size += count.size() + 3 * property.scalar.size();
+                }
+                Some(_) => return None,
+                None => size += property.scalar.size(),
+            }
+        }
+        let (count, corners) = found?;
+        let rows = self.rows(element, size)?;
+        let triangles = rows.triangles(count, corners, self.mesh.positions.len())?;
+        let length = rows.bytes.len();
+        match self.mesh.triangles.is_empty() {
+            true => self.mesh.triangles = triangles,
+            false => self.mesh.triangles.extend(triangles),
+        }
+        self.values.skip(Scalar::U8, length).ok()
+    }
+}

@@ -1,0 +1,271 @@
+//! The header of a PLY file: what the rows of numbers after it mean.
+
+use crate::number::parse_integer;
+use crate::report::{Report, shown};
+use durer_diag::did_you_mean;
+use std::ops::Range;
+
+/// How the rows are written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+const ENCODINGS: [(&str, Encoding); 3] = [
+    ("ascii", Encoding::Ascii),
+    ("binary_little_endian", Encoding::LittleEndian),
+    ("binary_big_endian", Encoding::BigEndian),
+];
+
+/// The type of a single value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+/// The names of the types, old and new.
+const SCALARS: [(&str, &str, Scalar); 8] = [
+    ("char", "int8", Scalar::I8),
+    ("uchar", "uint8", Scalar::U8),
+    ("short", "int16", Scalar::I16),
+    ("ushort", "uint16", Scalar::U16),
+    ("int", "int32", Scalar::I32),
+    ("uint", "uint32", Scalar::U32),
+    ("float", "float32", Scalar::F32),
+    ("double", "float64", Scalar::F64),
+];
+
+impl Scalar {
+    /// Bytes in a binary file.
+    pub fn size(self) -> usize {
+        match self {
+            Scalar::I8 | Scalar::U8 => 1,
+            Scalar::I16 | Scalar::U16 => 2,
+            Scalar::I32 | Scalar::U32 | Scalar::F32 => 4,
+            Scalar::F64 => 8,
+        }
+    }
+
+    /// The greatest value of the type where colours are whole numbers; 1 where they are not.
+    pub fn greatest(self) -> f32 {
+        match self {
+            Scalar::I8 => 127.0,
+            Scalar::U8 => 255.0,
+            Scalar::I16 => 32767.0,
+            Scalar::U16 => 65535.0,
+            Scalar::I32 => i32::MAX as f32,
+            Scalar::U32 => u32::MAX as f32,
+            Scalar::F32 | Scalar::F64 => 1.0,
+        }
+    }
+
+    pub fn is_integer(self) -> bool {
+        !matches!(self, Scalar::F32 | Scalar::F64)
+    }
+}
+
+/// One column of an element.
+pub(super) struct Property {
+    /// Where its name stands.
+    pub name: Range<usize>,
+    /// The type of the value, or of the values of a list.
+    pub scalar: Scalar,
+    /// The type of the number of values, where it is a list.
+    pub count: Option<Scalar>,
+}
+
+/// A table of rows.
+pub(super) struct Element {
+    /// Where its name stands.
+    pub name: Range<usize>,
+    /// How many rows the header promises.
+    pub rows: u64,
+    pub properties: Vec<Property>,
+}
+
+/// Everything before the rows.
+pub(super) struct Header {
+    pub encoding: Encoding,
+    pub elements: Vec<Element>,
+    /// Whether triangles without normals are flat, whatever is usual: a word of ours.
+    pub flat: bool,
+    /// Where the rows begin.
+    pub body: usize,
+}
+
+const KEYWORDS: [&str; 6] = ["format", "element", "property", "comment", "obj_info", "end_header"];
+
+/// What `obj_info` may say.
+pub(super) const FLAT: &[u8] = b"flat";
+
+/// Reads a header. Errors are reported, and then there is none.
+pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
+    let mut lines = Lines { bytes, at: 0 };
+    let first = lines.next_line().unwrap_or(0..0);
+    if &bytes[first.clone()] != b"ply" {
+        let message = format!("expected `ply` in the first line, found {}", shown(&bytes[first.clone()]));
+        report.error(first, message);
+        return None;
+    }
+    let mut reader = HeaderReader { bytes, report, encoding: None, elements: Vec::new(), flat: false };
+    while let Some(line) = lines.next_line() {
+        let words: Vec<Range<usize>> = split_words(bytes, line).take(6).collect();
+        let Some(keyword) = words.first().cloned() else { continue };
+        match &bytes[keyword.clone()] {
+            b"obj_info" if words.get(1).is_some_and(|word| &bytes[word.clone()] == FLAT) => reader.flat = true,
+            b"comment" | b"obj_info" => {}
+            b"format" => reader.format(&words),
+            b"element" => reader.element(&words),
+            b"property" => reader.property(&words),
+            b"end_header" => return reader.finish(keyword, lines.at),
+            _ => reader.unknown("a header line", keyword, KEYWORDS),
+        }
+        if reader.report.is_full() {
+            return None;
+        }
+    }
+    reader.report.error(bytes.len()..bytes.len(), "the file ends within the header: `end_header` is missing");
+    None
+}
+
+struct HeaderReader<'a, 'r> {
+    bytes: &'a [u8],
+    report: &'r mut Report,
+    encoding: Option<Encoding>,
+    elements: Vec<Element>,
+    flat: bool,
+}
+
+impl<'a> HeaderReader<'a, '_> {
+    fn text(&self, at: &Range<usize>) -> &'a str {
+        std::str::from_utf8(&self.bytes[at.clone()]).unwrap_or("\u{fffd}")
+    }
+
+    fn unknown<'c>(&mut self, what: &str, at: Range<usize>, known: impl IntoIterator<Item = &'c str>) {
+        let help = did_you_mean(self.text(&at), known).map(|meant| format!("did you mean `{meant}`?"));
+        self.report.error(at.clone(), format!("expected {what}, found {}", shown(&self.bytes[at]))).help = help;
+    }
+
+    /// Reports a line that has not the words it should have.
+    fn incomplete(&mut self, words: &[Range<usize>], form: &str) {
+        let line = words[0].start..words[words.len() - 1].end;
+        self.report.error(line, format!("expected `{form}`"));
+    }
+
+    fn format(&mut self, words: &[Range<usize>]) {
+        let [_, encoding, version] = words else {
+            return self.incomplete(words, "format ascii|binary_little_endian|binary_big_endian 1.0");
+        };
+        match ENCODINGS.iter().find(|(name, _)| *name == self.text(encoding)) {
+            Some(&(_, known)) => self.encoding = Some(known),
+            None => {
+                // Reading goes on, to find what else is wrong.
+                self.encoding = Some(Encoding::Ascii);
+                let names = ENCODINGS.map(|(name, _)| name);
+                self.unknown(&format!("one of `{}`", names.join("`, `")), encoding.clone(), names);
+            }
+        }
+        if self.text(version) != "1.0" {
+            let message = format!("expected version 1.0, found {}", shown(&self.bytes[version.clone()]));
+            self.report.error(version.clone(), message);
+        }
+    }
+
+    fn element(&mut self, words: &[Range<usize>]) {
+        let [_, name, rows] = words else {
+            self.incomplete(words, "element <name> <number of rows>");
+            // The properties that follow are still looked at.
+            return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
+        };
+        let found = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
+        if found.is_none() {
+            let message = format!("expected a number of rows, found {}", shown(&self.bytes[rows.clone()]));
+            self.report.error(rows.clone(), message);
+        }
+        let rows = found.unwrap_or(0) as u64;
+        self.elements.push(Element { name: name.clone(), rows, properties: Vec::new() });
+    }
+
+    fn property(&mut self, words: &[Range<usize>]) {
+        let (count, scalar, name) = match words {
+            [_, list, count, scalar, name] if self.text(list) == "list" => (Some(count), scalar, name),
+            [_, scalar, name] if self.text(scalar) != "list" => (None, scalar, name),
+            _ => return self.incomplete(words, "property <type> <name>` or `property list <type> <type> <name>"),
+        };
+        let (count, scalar) = (count.map(|count| self.scalar(count)), self.scalar(scalar));
+        let (Some(scalar), Some(count)) = (scalar, count.map_or(Some(None), |c| c.map(Some))) else { return };
+        if count.is_some_and(|count| !count.is_integer()) {
+            self.report.error(words[2].clone(), "the length of a list must be of an integer type");
+        }
+        match self.elements.last_mut() {
+            Some(element) => element.properties.push(Property { name: name.clone(), scalar, count }),
+            None => _ = self.report.error(words[0].clone(), "a property before the first `element`"),
+        }
+    }
+
+    fn scalar(&mut self, at: &Range<usize>) -> Option<Scalar> {
+        let text = self.text(at);
+        let found = SCALARS.iter().find(|(old, new, _)| *old == text || *new == text).map(|&(_, _, scalar)| scalar);
+        if found.is_none() {
+            let names = SCALARS.iter().flat_map(|&(old, new, _)| [old, new]);
+            self.unknown("a type such as `float` or `int`", at.clone(), names);
+        }
+        found
+    }
+
+    fn finish(self, end: Range<usize>, body: usize) -> Option<Header> {
+        if self.encoding.is_none() && !self.report.has_errors() {
+            self.report.error(end, "the header has no `format` line").help =
+                Some("the second line is `format ascii 1.0` or the like".into());
+        }
+        let encoding = self.encoding.filter(|_| !self.report.has_errors())?;
+        Some(Header { encoding, elements: self.elements, flat: self.flat, body })
+    }
+}
+
+/// The lines of the header, without their ends.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Lines<'_> {
+    fn next_line(&mut self) -> Option<Range<usize>> {
+        let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
+        let line = self.at..self.at + length;
+        // A carriage return alone ends a line only where the first line ends so: binary rows may
+        // begin with any byte.
+        let ending = match rest[length..] {
+            [b'\r', b'\n', ..] if !self.ends_with_return_alone() => 2,
+            [] => 0,
+            _ => 1,
+        };
+        self.at = line.end + ending;
+        Some(line)
+    }
+
+    fn ends_with_return_alone(&self) -> bool {
+        self.bytes.starts_with(b"ply\r") && !self.bytes.starts_with(b"ply\r\n")
+    }
+}
+
+fn split_words(bytes: &[u8], line: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let base = line.start;
+    let words = bytes[line].split(|byte| byte.is_ascii_whitespace());
+    let mut at = base;
+    words.filter_map(move |word| {
+        let range = at..at + word.len();
+        at = range.end + 1;
+        (!range.is_empty()).then_some(range)
+    })
+}

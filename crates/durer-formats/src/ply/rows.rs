@@ -1,0 +1,256 @@
+//! Vertices, faces and triangle strips of a PLY file.
+
+use super::body::{Body, Stop};
+use super::header::{Element, Property};
+use super::values::{ValueError, Values};
+use crate::number::NumberError;
+use crate::report::{counted, shown};
+use durer_diag::did_you_mean;
+use durer_image::decode_srgb;
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::shape::mesh::NO_INDEX;
+
+/// The properties of a vertex that are read, by all of their names, in the order of a [`Row`].
+///
+/// The last ten are words of ours, for what else a mesh may have.
+pub(super) const COLUMNS: [&[&str]; 22] = [
+    &["x"],
+    &["y"],
+    &["z"],
+    &["nx"],
+    &["ny"],
+    &["nz"],
+    &["u", "s", "texture_u", "texture_s"],
+    &["v", "t", "texture_v", "texture_t"],
+    &["red", "r", "diffuse_red"],
+    &["green", "g", "diffuse_green"],
+    &["blue", "b", "diffuse_blue"],
+    &["alpha", "a", "diffuse_alpha"],
+    &["linear_red"],
+    &["linear_green"],
+    &["linear_blue"],
+    &["linear_alpha"],
+    &["second_u"],
+    &["second_v"],
+    &["tangent_x"],
+    &["tangent_y"],
+    &["tangent_z"],
+    &["tangent_w"],
+];
+
+/// Position, normal, texture coordinates, colour and opacity; linear colour and opacity, second
+/// texture coordinates, tangent.
+type Row = [f32; COLUMNS.len()];
+
+const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
+impl<V: Values> Body<'_, '_, V> {
+    /// Which column of a [`Row`] each property is.
+    fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, Stop> {
+        let mut columns = vec![None; element.properties.len()];
+        let mut found: [Option<usize>; COLUMNS.len()] = [None; COLUMNS.len()];
+        for (i, property) in element.properties.iter().enumerate() {
+            let name = &self.bytes[property.name.clone()];
+            let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
+                continue;
+            };
+            // Lists by the names of colours are something else.
+            if property.count.is_some() && column >= 8 {
+                continue;
+            }
+            if property.count.is_some() {
+                self.report.error(property.name.clone(), format!("{} must be a number, not a list", shown(name)));
+            }
+            match found[column] {
+                // Files with two sets of texture coordinates exist; the first counts.
+                Some(_) if column >= 6 => continue,
+                Some(first) => {
+                    let first = self.report.span(element.properties[first].name.clone());
+                    let message = format!("a second property {}", shown(name));
+                    self.report.error(property.name.clone(), message).related = Some((first, "the first".into()));
+                }
+                None => found[column] = Some(i),
+            }
+            columns[i] = Some(column);
+        }
+        for (names, _) in COLUMNS[..3].iter().zip(found).filter(|(_, found)| found.is_none()) {
+            self.report.error(element.name.clone(), format!("the vertices have no property `{}`", names[0]));
+        }
+        if self.report.has_errors() { Err(Stop) } else { Ok(columns) }
+    }
+
+    pub(super) fn read_vertices(&mut self, element: &Element) -> Result<(), Stop> {
+        let columns = self.columns(element)?;
+        if self.fixed_vertices(element, &columns).is_some() {
+            return Ok(());
+        }
+        let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
+        let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
+        let (has_linear, has_second, has_tangents) = (has(12..16), has(16..18), has(18..22));
+        // Whole numbers are shares of the greatest of their type.
+        let most = |column: usize| {
+            let at = columns.iter().position(|found| *found == Some(column));
+            at.map_or(1.0, |at| element.properties[at].scalar.greatest())
+        };
+        let most: [f32; 4] = std::array::from_fn(|i| most(8 + i));
+        let rows = self.likely_rows(element);
+        self.mesh.positions.reserve_exact(rows);
+        self.mesh.normals.reserve_exact(if has_normals { rows } else { 0 });
+        self.mesh.uvs.reserve_exact(if has_uvs { rows } else { 0 });
+        self.mesh.colors.reserve_exact(if has_colors || has_linear { rows } else { 0 });
+        for row in 0..element.rows {
+            let mut values: Row = [0.0; COLUMNS.len()];
+            for (property, &column) in element.properties.iter().zip(&columns) {
+                let Some(column) = column else {
+                    self.skip_property(element, row, property)?;
+                    continue;
+                };
+                match self.values.float(property.scalar) {
+                    Ok(value) => values[column] = value,
+                    Err(ValueError::Number(NumberError::NotFinite)) if (8..12).contains(&column) => {
+                        values[column] = 1.0
+                    }
+                    Err(error) => self.tolerate(error, element, row)?,
+                }
+            }
+            let [x, y, z, nx, ny, nz, u, v, color @ ..] = values;
+            let [_, _, _, _, red, green, blue, alpha, second_u, second_v, tangent @ ..] = color;
+            self.mesh.positions.push(Vec3::new(x, y, z));
+            if has_normals {
+                self.mesh.normals.push(Vec3::new(nx, ny, nz));
+            }
+            if has_uvs {
+                self.mesh.uvs.push(Vec2::new(u, v));
+            }
+            if has_second {
+                self.mesh.second_uvs.push(Vec2::new(second_u, second_v));
+            }
+            if has_tangents {
+                self.mesh.tangents.push(tangent);
+            }
+            if has_linear {
+                self.mesh.colors.push([red, green, blue, alpha]);
+            } else if has_colors {
+                let share = |i: usize| (color[i] / most[i]).clamp(0.0, 1.0);
+                let light = |i: usize| decode_srgb((share(i) * 255.0 + 0.5) as u8);
+                let opacity = if columns.contains(&Some(11)) { share(3) } else { 1.0 };
+                self.mesh.colors.push([light(0), light(1), light(2), opacity]);
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads faces or strips of triangles, by the element's name.
+    pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), Stop> {
+        if element.rows == 0 {
+            return Ok(());
+        }
+        let strips = &self.bytes[element.name.clone()] == b"tristrips";
+        let list = self.corner_list(element)?;
+        if !strips && self.fixed_faces(element, list).is_some() {
+            return Ok(());
+        }
+        if !strips {
+            let likely = self.likely_rows(element);
+            self.mesh.triangles.reserve(likely);
+        }
+        for row in 0..element.rows {
+            for (i, property) in element.properties.iter().enumerate() {
+                if i != list {
+                    self.skip_property(element, row, property)?;
+                    continue;
+                }
+                // A wrong corner has been reported: the face is left out.
+                match self.read_corners(element, row, list, strips)? {
+                    true if strips => self.cut_strip(),
+                    true => self.cut_face()?,
+                    false => {}
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The property that lists the corners.
+    fn corner_list(&mut self, element: &Element) -> Result<usize, Stop> {
+        let named = |i: &usize| {
+            CORNER_LISTS.iter().any(|list| list.as_bytes() == &self.bytes[element.properties[*i].name.clone()])
+        };
+        let Some(list) = (0..element.properties.len()).find(named) else {
+            // A list by nearly that name is worth pointing at.
+            let text = |p: &Property| String::from_utf8_lossy(&self.bytes[p.name.clone()]);
+            let near = element.properties.iter().find(|p| did_you_mean(&text(p), CORNER_LISTS).is_some());
+            let help = near.map(|p| format!("rename {} to `vertex_indices`", shown(&self.bytes[p.name.clone()])));
+            let message =
+                format!("the element {} has no list `vertex_indices`", shown(&self.bytes[element.name.clone()]));
+            self.report.error(near.map_or(element.name.clone(), |p| p.name.clone()), message).help = help;
+            return Err(Stop);
+        };
+        let property = &element.properties[list];
+        if property.count.is_none() || !property.scalar.is_integer() {
+            self.report.error(property.name.clone(), "the corners must be a list of an integer type");
+            return Err(Stop);
+        }
+        Ok(list)
+    }
+
+    /// Reads one list of corners; `false` where one is wrong.
+    fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, Stop> {
+        let property = &element.properties[list];
+        let length = self.list_length(element, row, property)?;
+        let length_at = self.values.last();
+        self.corners.clear();
+        self.corners.reserve(length);
+        let vertices = self.mesh.positions.len();
+        let mut all_good = true;
+        for _ in 0..length {
+            match self.values.integer(property.scalar) {
+                Ok(index) if (0..vertices as i64).contains(&index) => self.corners.push(index as u32),
+                Ok(-1) if strips => self.corners.push(NO_INDEX),
+                Ok(index) => {
+                    all_good = false;
+                    let has = counted(vertices, "vertex", "vertices");
+                    let message = format!("there is no vertex {index}: the file has {has}, counted from 0");
+                    self.report.error(self.values.last(), message);
+                    if self.report.is_full() {
+                        return Err(Stop);
+                    }
+                }
+                Err(error) => {
+                    all_good = false;
+                    self.tolerate(error, element, row)?;
+                }
+            }
+        }
+        if length < 3 && !strips {
+            self.report.error(length_at, format!("a face needs at least 3 corners, found {length}"));
+            return if self.report.is_full() { Err(Stop) } else { Ok(false) };
+        }
+        Ok(all_good)
+    }
+
+    fn cut_face(&mut self) -> Result<(), Stop> {
+        let (corners, positions, triangles) = (&self.corners, &self.mesh.positions, &mut self.mesh.triangles);
+        let position = |i: usize| positions[corners[i] as usize];
+        let cut = self.cutter.cut(corners.len(), position, |triangle| triangles.push(triangle.map(|i| corners[i])));
+        cut.map_err(|_| {
+            let message = format!("a face of {} corners is too crooked to be cut", self.corners.len());
+            self.report.error(self.values.last(), message).help =
+                Some("cut it into triangles in a modelling program".into());
+            Stop
+        })
+    }
+
+    /// Every corner makes a triangle with the two before it; every other one winds the other way.
+    fn cut_strip(&mut self) {
+        for strip in self.corners.split(|&corner| corner == NO_INDEX) {
+            for (i, window) in strip.windows(3).enumerate() {
+                let [a, b, c] = [window[0], window[1], window[2]];
+                // Strips are joined by triangles of no area.
+                if a != b && b != c && a != c {
+                    self.mesh.triangles.push(if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                }
+            }
+        }
+    }
+}

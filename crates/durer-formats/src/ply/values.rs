@@ -1,0 +1,179 @@
+//! The values of a PLY file one after the other, as text or as bytes.
+
+use super::header::Scalar;
+use crate::number::{NumberError, parse_f32, parse_integer};
+use std::ops::Range;
+
+/// Why there is no usable value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum ValueError {
+    /// The file ends.
+    End,
+    /// It is no usable number.
+    Number(NumberError),
+}
+
+/// A position in the rows.
+pub(super) trait Values: Clone {
+    /// Whether numbers are bytes with the greatest first; `None`: they are text.
+    const BIG_ENDIAN: Option<bool>;
+    /// The bytes of the value that was read last, or of nothing at the end of the file.
+    fn last(&self) -> Range<usize>;
+    /// At most this many values of a type can still follow.
+    fn most_left(&self, scalar: Scalar) -> usize;
+    /// Reads a finite number.
+    fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError>;
+    /// Reads a whole number.
+    fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError>;
+    /// Passes over some values of a type, which need not be numbers.
+    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError>;
+    /// What is left when everything was read, without blanks.
+    fn remainder(&self) -> Range<usize>;
+    /// Bytes that a value of a type takes, where that is the same for all.
+    fn fixed_size(scalar: Scalar) -> Option<usize>;
+}
+
+/// Values as text, divided by blanks and line ends.
+#[derive(Clone)]
+pub(super) struct AsciiValues<'a> {
+    bytes: &'a [u8],
+    start: usize,
+    end: usize,
+}
+
+impl<'a> AsciiValues<'a> {
+    pub fn new(bytes: &'a [u8], start: usize) -> Self {
+        AsciiValues { bytes, start, end: start }
+    }
+
+    fn word(&mut self) -> Result<&'a [u8], ValueError> {
+        let rest = &self.bytes[self.end..];
+        let blanks = rest.iter().position(|byte| !byte.is_ascii_whitespace());
+        self.start = blanks.map_or(self.bytes.len(), |blanks| self.end + blanks);
+        let rest = &self.bytes[self.start..];
+        self.end = self.start + rest.iter().position(|byte| byte.is_ascii_whitespace()).unwrap_or(rest.len());
+        if self.start == self.end { Err(ValueError::End) } else { Ok(&self.bytes[self.start..self.end]) }
+    }
+}
+
+impl Values for AsciiValues<'_> {
+    const BIG_ENDIAN: Option<bool> = None;
+
+    fn last(&self) -> Range<usize> {
+        self.start..self.end
+    }
+
+    fn most_left(&self, _: Scalar) -> usize {
+        // A digit and a blank.
+        (self.bytes.len() - self.end).div_ceil(2)
+    }
+
+    fn float(&mut self, _: Scalar) -> Result<f32, ValueError> {
+        parse_f32(self.word()?).map_err(ValueError::Number)
+    }
+
+    fn integer(&mut self, _: Scalar) -> Result<i64, ValueError> {
+        parse_integer(self.word()?).ok_or(ValueError::Number(NumberError::NotWhole))
+    }
+
+    fn skip(&mut self, _: Scalar, count: usize) -> Result<(), ValueError> {
+        (0..count).try_for_each(|_| self.word().map(|_| ()))
+    }
+
+    fn remainder(&self) -> Range<usize> {
+        let mut rest = self.clone();
+        // Where there is no word, the range is empty.
+        _ = rest.word();
+        rest.start..self.bytes.len()
+    }
+
+    fn fixed_size(_: Scalar) -> Option<usize> {
+        None
+    }
+}
+
+/// Values as bytes.
+#[derive(Clone)]
+pub(super) struct BinaryValues<'a, const BIG_ENDIAN: bool> {
+    bytes: &'a [u8],
+    start: usize,
+    end: usize,
+}
+
+impl<'a, const BIG_ENDIAN: bool> BinaryValues<'a, BIG_ENDIAN> {
+    pub fn new(bytes: &'a [u8], start: usize) -> Self {
+        BinaryValues { bytes, start, end: start }
+    }
+
+    fn take<const N: usize>(&mut self) -> Result<[u8; N], ValueError> {
+        self.start = self.end;
+        let Some(&taken) = self.bytes[self.end..].first_chunk::<N>() else {
+            (self.start, self.end) = (self.bytes.len(), self.bytes.len());
+            return Err(ValueError::End);
+        };
+        self.end += N;
+        let mut taken = taken;
+        if BIG_ENDIAN {
+            taken.reverse();
+        }
+        Ok(taken)
+    }
+
+    fn real(&mut self, scalar: Scalar) -> Result<f64, ValueError> {
+        match scalar {
+            Scalar::F32 => Ok(f32::from_le_bytes(self.take()?) as f64),
+            Scalar::F64 => Ok(f64::from_le_bytes(self.take()?)),
+            integer => Ok(self.integer(integer)? as f64),
+        }
+    }
+}
+
+impl<const BIG_ENDIAN: bool> Values for BinaryValues<'_, BIG_ENDIAN> {
+    const BIG_ENDIAN: Option<bool> = Some(BIG_ENDIAN);
+
+    fn last(&self) -> Range<usize> {
+        self.start..self.end
+    }
+
+    fn most_left(&self, scalar: Scalar) -> usize {
+        (self.bytes.len() - self.end) / scalar.size()
+    }
+
+    fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError> {
+        let value = self.real(scalar)? as f32;
+        if value.is_finite() { Ok(value) } else { Err(ValueError::Number(NumberError::NotFinite)) }
+    }
+
+    fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError> {
+        Ok(match scalar {
+            Scalar::I8 => i8::from_le_bytes(self.take()?) as i64,
+            Scalar::U8 => u8::from_le_bytes(self.take()?) as i64,
+            Scalar::I16 => i16::from_le_bytes(self.take()?) as i64,
+            Scalar::U16 => u16::from_le_bytes(self.take()?) as i64,
+            Scalar::I32 => i32::from_le_bytes(self.take()?) as i64,
+            Scalar::U32 => u32::from_le_bytes(self.take()?) as i64,
+            Scalar::F32 | Scalar::F64 => {
+                self.real(scalar)?;
+                return Err(ValueError::Number(NumberError::NotWhole));
+            }
+        })
+    }
+
+    fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError> {
+        self.start = self.end;
+        if count > self.most_left(scalar) {
+            (self.start, self.end) = (self.bytes.len(), self.bytes.len());
+            return Err(ValueError::End);
+        }
+        self.end += count * scalar.size();
+        Ok(())
+    }
+
+    fn remainder(&self) -> Range<usize> {
+        self.end..self.bytes.len()
+    }
+
+    fn fixed_size(scalar: Scalar) -> Option<usize> {
+        Some(scalar.size())
+    }
+}

@@ -1,0 +1,234 @@
+//! Cutting polygons into triangles.
+//!
+//! A polygon of n corners becomes n - 2 triangles that wind as it does and use no other points.
+//! Strictly convex ones become fans; others lose their ears one by one in the plane that shows most
+//! of them. Source: Meisters, *Polygons have ears*, 1975; O'Rourke, *Computational Geometry in C*,
+//! chapter 1.
+
+use durer_scene::math::Vec3;
+use std::collections::VecDeque;
+
+/// The polygons of a file are too large and too crooked to be cut in reasonable time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TooComplex;
+
+/// Cuts the polygons of one file, with bounded work and memory that is used again.
+#[derive(Default)]
+pub(super) struct Cutter {
+    /// How many more tests of a point against a triangle may be made.
+    budget: u64,
+    /// The corners in their plane, counter-clockwise.
+    points: Vec<[f64; 2]>,
+    previous: Vec<u32>,
+    next: Vec<u32>,
+    /// Whether a corner is left and not strictly convex: only those can lie in an ear.
+    blocks: Vec<bool>,
+    blockers: Vec<u32>,
+    /// Corners that may be ears.
+    candidates: VecDeque<u32>,
+    waiting: Vec<bool>,
+}
+
+impl Cutter {
+    /// For a file of this many bytes: the work stays proportional to its size, and never takes
+    /// hours.
+    pub fn new(file_bytes: usize) -> Self {
+        Cutter { budget: (1 << 28) + 256 * file_bytes as u64, ..Cutter::default() }
+    }
+
+    /// Calls `emit` with the three corners of each triangle, counted from 0, of the polygon with
+    /// `count` corners.
+    pub fn cut(
+        &mut self,
+        count: usize,
+        corner: impl Fn(usize) -> Vec3,
+        mut emit: impl FnMut([usize; 3]),
+    ) -> Result<(), TooComplex> {
+        match count {
+            0..3 => {}
+            3 => emit([0, 1, 2]),
+            4 => {
+                let start = if splits_at_first([corner(0), corner(1), corner(2), corner(3)]) { 0 } else { 1 };
+                emit([start, start + 1, start + 2]);
+                emit([start, start + 2, (start + 3) % 4]);
+            }
+            _ => {
+                self.project(count, corner);
+                if self.is_strictly_convex() {
+                    (1..count - 1).for_each(|i| emit([0, i, i + 1]));
+                } else {
+                    self.cut_ears(&mut emit)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Drops the axis along which the polygon's normal is longest, such that the rest winds
+    /// counter-clockwise.
+    fn project(&mut self, count: usize, corner: impl Fn(usize) -> Vec3) {
+        // Newell's normal: the sum of the areas over the edges, seen from the first corner.
+        let origin = corner(0).as_dvec3();
+        let from_origin = |i: usize| corner(i).as_dvec3() - origin;
+        let normal = (1..count - 1).fold(glam::DVec3::ZERO, |n, i| n + from_origin(i).cross(from_origin(i + 1)));
+        let size = normal.abs();
+        let (axis, positive) = match () {
+            () if size.x >= size.y && size.x >= size.z => (0, normal.x >= 0.0),
+            () if size.y >= size.z => (1, normal.y >= 0.0),
+            () => (2, normal.z >= 0.0),
+        };
+        let (u, v) = if positive { ((axis + 1) % 3, (axis + 2) % 3) } else { ((axis + 2) % 3, (axis + 1) % 3) };
+        self.points.clear();
+        self.points.extend((0..count).map(|i| [from_origin(i)[u], from_origin(i)[v]]));
+    }
+
+    /// Whether all corners turn left and the outline goes round once.
+    fn is_strictly_convex(&self) -> bool {
+        let points = &self.points;
+        let count = points.len();
+        let at = |i: usize| points[i % count];
+        // A pentagram turns left everywhere too, but its edges change their horizontal sense four
+        // times.
+        let rightward = |i: usize| at(i + 1)[0] > at(i)[0] || at(i + 1)[0] == at(i)[0] && at(i + 1)[1] > at(i)[1];
+        let turns = (0..count).filter(|&i| rightward(i) != rightward(i + 1)).count();
+        turns <= 2 && (0..count).all(|i| area(at(i), at(i + 1), at(i + 2)) > 0.0)
+    }
+
+    fn cut_ears(&mut self, emit: &mut impl FnMut([usize; 3])) -> Result<(), TooComplex> {
+        let count = self.points.len() as u32;
+        self.start_ring(count);
+        let mut left = count;
+        while left > 3 {
+            let Some(tip) = self.next_ear(left)? else { continue };
+            let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
+            emit([before, tip, after].map(|i| i as usize));
+            // The tip leaves the ring; only its neighbours' corners change.
+            self.next[before as usize] = after;
+            self.previous[after as usize] = before;
+            self.next[tip as usize] = u32::MAX;
+            self.blocks[tip as usize] = false;
+            left -= 1;
+            for neighbour in [before, after] {
+                if self.blocks[neighbour as usize] {
+                    self.blocks[neighbour as usize] = !self.is_convex(neighbour);
+                }
+                if !self.waiting[neighbour as usize] {
+                    self.waiting[neighbour as usize] = true;
+                    self.candidates.push_back(neighbour);
+                }
+            }
+        }
+        let last = self.any_left();
+        emit([self.previous[last as usize], last, self.next[last as usize]].map(|i| i as usize));
+        Ok(())
+    }
+
+    fn start_ring(&mut self, count: u32) {
+        let refill = |list: &mut Vec<u32>, make: &dyn Fn(u32) -> u32| {
+            list.clear();
+            list.extend((0..count).map(make));
+        };
+        refill(&mut self.previous, &|i| (i + count - 1) % count);
+        refill(&mut self.next, &|i| (i + 1) % count);
+        self.blocks.clear();
+        for i in 0..count {
+            let convex = self.is_convex(i);
+            self.blocks.push(!convex);
+        }
+        self.blockers.clear();
+        self.blockers.extend((0..count).filter(|&i| self.blocks[i as usize]));
+        // Every other corner first: neighbouring ears would make slivers.
+        self.candidates.clear();
+        self.candidates.extend((0..count).step_by(2).chain((1..count).step_by(2)));
+        self.waiting.clear();
+        self.waiting.resize(count as usize, true);
+    }
+
+    /// The next corner to cut off, or `None` where the next candidate is no ear.
+    fn next_ear(&mut self, left: u32) -> Result<Option<u32>, TooComplex> {
+        let Some(tip) = self.candidates.pop_front() else {
+            // Outlines that cross themselves can run out of ears: cut off what harms least.
+            self.spend(self.points.len() as u64)?;
+            return Ok(Some(self.least_harm(left)));
+        };
+        self.waiting[tip as usize] = false;
+        let gone = self.next[tip as usize] == u32::MAX;
+        Ok((!gone && self.is_ear(tip)?).then_some(tip))
+    }
+
+    /// Whether a corner is strictly convex and no other corner lies in its triangle.
+    fn is_ear(&mut self, tip: u32) -> Result<bool, TooComplex> {
+        let [a, b, c] = self.triangle(tip);
+        if area(a, b, c) <= 0.0 {
+            return Ok(false);
+        }
+        let mut i = 0;
+        while i < self.blockers.len() {
+            self.spend(1)?;
+            let blocker = self.blockers[i] as usize;
+            if !self.blocks[blocker] {
+                self.blockers.swap_remove(i);
+                continue;
+            }
+            let p = self.points[blocker];
+            // Outlines with holes pass some points twice: one at a corner of the triangle does not
+            // lie in it.
+            let inside = area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
+            if inside && p != a && p != b && p != c {
+                return Ok(false);
+            }
+            i += 1;
+        }
+        Ok(true)
+    }
+
+    /// A corner of no area, else a convex one, else any.
+    fn least_harm(&self, left: u32) -> u32 {
+        let first = self.any_left();
+        let ring = || std::iter::successors(Some(first), |&i| Some(self.next[i as usize])).take(left as usize);
+        let area_at = |i: u32| {
+            let [a, b, c] = self.triangle(i);
+            area(a, b, c)
+        };
+        ring().find(|&i| area_at(i) == 0.0).or_else(|| ring().find(|&i| area_at(i) > 0.0)).unwrap_or(first)
+    }
+
+    fn any_left(&self) -> u32 {
+        self.next.iter().position(|&next| next != u32::MAX).unwrap_or(0) as u32
+    }
+
+    fn triangle(&self, tip: u32) -> [[f64; 2]; 3] {
+        let tip = tip as usize;
+        [self.previous[tip] as usize, tip, self.next[tip] as usize].map(|i| self.points[i])
+    }
+
+    fn is_convex(&self, tip: u32) -> bool {
+        let [a, b, c] = self.triangle(tip);
+        area(a, b, c) > 0.0
+    }
+
+    fn spend(&mut self, work: u64) -> Result<(), TooComplex> {
+        self.budget = self.budget.checked_sub(work).ok_or(TooComplex)?;
+        Ok(())
+    }
+}
+
+/// Whether a quadrilateral is cut from its first to its third corner: unless only the other cut
+/// stays inside.
+fn splits_at_first(corners: [Vec3; 4]) -> bool {
+    let [a, b, c, d] = corners.map(|p| p.as_dvec3());
+    let normal = (c - a).cross(d - b);
+    let turns_left = |p: glam::DVec3, q: glam::DVec3, r: glam::DVec3| (q - p).cross(r - q).dot(normal) > 0.0;
+    let first = turns_left(a, b, c) && turns_left(c, d, a);
+    let second = turns_left(b, c, d) && turns_left(d, a, b);
+    first || !second
+}
+
+/// Twice the area of a triangle, positive where it is counter-clockwise.
+fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
+#[cfg(test)]
+#[path = "polygon_tests.rs"]
+mod tests;

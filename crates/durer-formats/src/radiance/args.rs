@@ -1,0 +1,80 @@
+//! One thing of a file: its modifier, type, name and arguments.
+
+use super::words::{Word, Words};
+use crate::said::Said;
+use durer_diag::{Diagnostic, Span};
+use durer_scene::math::Vec3;
+use glam::DVec3;
+
+/// A thing as it is written.
+#[derive(Debug)]
+pub(super) struct Thing {
+    pub modifier: Word,
+    pub kind: Word,
+    pub name: Word,
+    pub texts: Vec<Word>,
+    pub numbers: Vec<f64>,
+}
+
+impl Thing {
+    /// The thing whose first word was read. `None` after an error: what follows cannot be known.
+    pub fn read(modifier: Word, words: &mut Words, said: &Said) -> Option<Thing> {
+        let start = modifier.at;
+        let mut next = || {
+            let word = words.next();
+            if word.is_none() {
+                let error = Diagnostic::error("the file ends before this thing does").code("incomplete");
+                said.push(error.at(start.to(words.end())));
+            }
+            word
+        };
+        let (kind, name) = (next()?, next()?);
+        if kind.text == "alias" {
+            return Some(Thing { modifier, kind, name, texts: vec![next()?], numbers: Vec::new() });
+        }
+        let texts = (0..next()?.count(said)?).map(|_| next()).collect::<Option<_>>()?;
+        let wholes = next()?;
+        if wholes.count(said)? != 0 {
+            said.bad(wholes.at, "nothing has whole numbers as arguments: this must be 0");
+            return None;
+        }
+        let count = next()?.count(said)?;
+        let mut numbers = Vec::new();
+        for _ in 0..count {
+            numbers.push(next()?.number(said)?);
+        }
+        Some(Thing { modifier, kind, name, texts, numbers })
+    }
+
+    /// Where it is written.
+    pub fn at(&self) -> Span {
+        self.kind.at.to(self.name.at)
+    }
+
+    /// Whether it has one of these counts of numbers; complains if not.
+    pub fn has(&self, counts: &[usize], said: &Said) -> bool {
+        let right = counts.contains(&self.numbers.len());
+        if !right {
+            let counts = counts.iter().map(usize::to_string).collect::<Vec<_>>().join(" or ");
+            let message = format!("a {} has {counts} numbers, and here are {}", self.kind.text, self.numbers.len());
+            said.bad(self.at(), message);
+        }
+        right
+    }
+
+    /// Three of its numbers as a place.
+    pub fn point(&self, first: usize) -> DVec3 {
+        let number = |i: usize| self.numbers.get(first + i).copied().unwrap_or(0.0);
+        DVec3::new(number(0), number(1), number(2))
+    }
+
+    /// Three of its numbers as a colour, none of them negative.
+    pub fn color(&self, first: usize) -> Vec3 {
+        self.point(first).as_vec3().max(Vec3::ZERO)
+    }
+
+    /// A number.
+    pub fn number(&self, i: usize) -> Option<f32> {
+        self.numbers.get(i).map(|x| *x as f32)
+    }
+}

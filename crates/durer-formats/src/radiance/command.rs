@@ -1,0 +1,258 @@
+//! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, also through pipes into
+//! `xform`. Nothing is run: what they would print is made here.
+
+use super::body::Facets;
+use super::gensky;
+use super::place::Place;
+use super::state::Reader;
+use super::words::{Word, Words};
+use super::xform::Transform;
+use crate::report::shown;
+use durer_diag::Diagnostic;
+use glam::{DAffine3, DVec3};
+use std::sync::Arc;
+
+/// Places where the output of a command goes.
+type Places = Vec<Place>;
+
+impl Reader<'_> {
+    /// Carries out a command.
+    pub(super) fn command(&mut self, mut words: Words, place: &Place) {
+        let mut stages: Vec<Vec<Word>> = vec![Vec::new()];
+        while let Some(word) = words.next() {
+            match word.text.as_str() {
+                "|" => stages.push(Vec::new()),
+                _ => stages.last_mut().into_iter().for_each(|stage| stage.push(word.clone())),
+            }
+        }
+        if let Some(empty) = stages.iter().position(Vec::is_empty) {
+            let what =
+                if stages.len() == 1 { "there is no command after `!`" } else { "there is no command beside `|`" };
+            let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
+            return self.said.bad(at, what);
+        }
+        // What is printed goes through the last stage last: its map is the outermost.
+        let mut places = vec![place.clone()];
+        for stage in stages[1..].iter().rev() {
+            if stage[0].text != "xform" {
+                return refuse(self, &stage[0]);
+            }
+            let Some((next, files, _)) = xform(self, &stage[1..], &places) else { return };
+            if let Some(file) = files.first() {
+                return self.said.bad(file.at, "behind a `|` `xform` reads what comes through it, and no files");
+            }
+            places = next;
+        }
+        let (name, args) = (&stages[0][0], &stages[0][1..]);
+        match name.text.as_str() {
+            "xform" => {
+                let Some((places, files, beside)) = xform(self, args, &places) else { return };
+                if files.is_empty() {
+                    self.said.bad(name.at, "`xform` needs a file here");
+                }
+                places.iter().for_each(|place| files.iter().for_each(|file| self.file(file, place, beside)));
+            }
+            "cat" => places.iter().for_each(|place| args.iter().for_each(|file| self.file(file, place, false))),
+            "genbox" => {
+                let facets = genbox(self, name, args);
+                build(self, facets, args, &places);
+            }
+            "genprism" => {
+                let facets = genprism(self, name, args, place);
+                build(self, facets, args, &places);
+            }
+            "gensky" => {
+                let Some(text) = gensky::text(self.said, name, args) else { return };
+                let bytes: Arc<[u8]> = text.into_bytes().into();
+                let file = self.input.files.borrow_mut().add("what gensky prints", bytes.clone());
+                places.iter().for_each(|place| self.text(&bytes, file, place));
+            }
+            _ => refuse(self, name),
+        }
+    }
+}
+
+/// Says that a command is not known, and what to do.
+fn refuse(reader: &Reader, name: &Word) {
+    let help = format!(
+        "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `{}`, keep what it prints in a \
+         file beside the scene, and write `!cat FILE` here",
+        name.text
+    );
+    let error = Diagnostic::error(format!("no command {} is run", name.shown())).code("no-command");
+    reader.said.push(Diagnostic { help: Some(help), ..error.at(name.at) });
+}
+
+/// The places of an `xform` in some places, the files that it names, and whether commands in those
+/// are run beside them.
+fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Places, &'w [Word], bool)> {
+    let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
+    let mut beside = true;
+    let mut rest = words;
+    while let Some(option) = rest.first().filter(|word| word.text.starts_with('-')) {
+        if transform.option(&mut rest, reader.said) {
+            continue;
+        }
+        let takes = match option.text.as_str() {
+            "-m" | "-n" => 1,
+            "-c" | "-e" => {
+                // Commands go on as they are, or are carried out.
+                beside = option.text == "-e";
+                0
+            }
+            "-I" => {
+                inverted = !inverted;
+                0
+            }
+            _ => {
+                reader.said.bad(option.at, format!("`xform` has no option {}", option.shown()));
+                return None;
+            }
+        };
+        if rest.len() <= takes {
+            let needs = if takes == 1 { "needs a name" } else { "stands alone: there is no file" };
+            reader.said.bad(option.at, format!("{} {needs}", option.shown()));
+            return None;
+        }
+        if option.text == "-m" {
+            modifier = Some(rest[1].clone());
+        }
+        rest = &rest[1 + takes..];
+    }
+    let Some(maps) = transform.places().filter(|maps| maps.len().saturating_mul(outer.len()) <= 1 << 20) else {
+        reader.said.bad(words[0].at, "these arrays have too many places");
+        return None;
+    };
+    let place = |outer: &Place, map: &DAffine3| Place {
+        map: outer.map * *map,
+        modifier: outer.modifier.clone().or_else(|| modifier.clone()),
+        inverted: outer.inverted != inverted,
+        ..outer.clone()
+    };
+    Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest, beside))
+}
+
+/// Polygons of the material that is a generator's first argument.
+fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[Place]) {
+    let Some(facets) = facets else { return };
+    for place in places {
+        let modifier = place.modifier.as_ref().unwrap_or(&args[0]);
+        for (i, corners) in facets.iter().enumerate() {
+            reader.facet(modifier, corners, &args[1], place, i == 0);
+        }
+    }
+}
+
+/// The numbers of a generator's arguments from one on, and where options begin.
+fn numbers(reader: &Reader, args: &[Word], count: usize) -> Option<Vec<f64>> {
+    args[..count].iter().map(|word| word.number(reader.said)).collect()
+}
+
+fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
+    if args.len() < 5 {
+        reader.said.bad(name.at, "`genbox` needs a material, a name and three sizes");
+        return None;
+    }
+    let size = numbers(reader, &args[2..], 3)?;
+    let mut inward = false;
+    let mut rest = &args[5..];
+    while let Some(option) = rest.first() {
+        rest = &rest[1..];
+        match option.text.as_str() {
+            "-i" => inward = true,
+            "-o" => {}
+            "-b" | "-r" | "-n" => {
+                reader
+                    .said
+                    .once(option.at, "bevelled and rounded edges of `genbox` have no counterpart: they are sharp");
+                rest = rest.get(1..).unwrap_or_default();
+            }
+            "-s" => {}
+            _ => {
+                reader.said.bad(option.at, format!("`genbox` has no option {}", option.shown()));
+                return None;
+            }
+        }
+    }
+    let corner = |i: usize| {
+        DVec3::new(
+            size[0] * f64::from(i as u8 & 1),
+            size[1] * f64::from((i as u8 >> 1) & 1),
+            size[2] * f64::from((i as u8 >> 2) & 1),
+        )
+    };
+    const SIDES: [[usize; 4]; 6] = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let negative = size.iter().filter(|x| **x < 0.0).count() % 2 == 1;
+    Some(SIDES.iter().map(|side| turned(side.map(corner).to_vec(), inward != negative)).collect())
+}
+
+/// Corners in the other order.
+fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
+    if other {
+        corners.reverse();
+    }
+    corners
+}
+
+fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> Option<Facets> {
+    if args.len() < 3 {
+        reader.said.bad(name.at, "`genprism` needs a material, a name and the corners of its base");
+        return None;
+    }
+    let (corners, mut rest) = match args[2].text.parse::<usize>() {
+        Ok(count) if (3..=args.len()).contains(&count) && args.len() >= 3 + 2 * count => {
+            (numbers(reader, &args[3..], 2 * count)?, &args[3 + 2 * count..])
+        }
+        Ok(_) => {
+            reader.said.bad(args[2].at, "the base has at least 3 corners, and two numbers for each follow");
+            return None;
+        }
+        Err(_) => {
+            let (bytes, file) = reader.open(&place.seen(&args[2]))?;
+            let mut words = Words::new(&bytes, file, 0..bytes.len());
+            let mut list = Vec::new();
+            while let Some(word) = words.next() {
+                list.push(word.number(reader.said)?);
+            }
+            if list.len() < 6 || list.len() % 2 != 0 {
+                let told = shown(args[2].text.as_bytes());
+                reader.said.bad(args[2].at, format!("{told} has no pairs of numbers for at least 3 corners"));
+                return None;
+            }
+            (list, &args[3..])
+        }
+    };
+    let (mut along, mut closed, mut ends) = (DVec3::Z, true, true);
+    while let Some((option, more)) = rest.split_first() {
+        rest = more;
+        match option.text.as_str() {
+            "-l" if more.len() >= 3 => {
+                let v = numbers(reader, more, 3)?;
+                (along, rest) = (DVec3::new(v[0], v[1], v[2]), &more[3..]);
+            }
+            "-c" => closed = false,
+            "-e" => ends = false,
+            "-r" if !more.is_empty() => {
+                reader.said.once(option.at, "rounded edges of `genprism` have no counterpart: they are sharp");
+                rest = &more[1..];
+            }
+            _ => {
+                reader.said.bad(option.at, format!("`genprism` has no option {} like this", option.shown()));
+                return None;
+            }
+        }
+    }
+    let base: Vec<DVec3> = corners.chunks_exact(2).map(|c| DVec3::new(c[0], c[1], 0.0)).collect();
+    let next = |i: usize| base[(i + 1) % base.len()];
+    let area: f64 = (0..base.len()).map(|i| base[i].x * next(i).y - next(i).x * base[i].y).sum();
+    // A base that winds about the way that it is pushed looks inwards as it is written.
+    let inward = (area > 0.0) == (along.z > 0.0);
+    let mut facets = Facets::new();
+    if ends {
+        facets.push(turned(base.clone(), inward));
+        facets.push(turned(base.iter().map(|p| *p + along).collect(), !inward));
+    }
+    let sides = base.iter().zip(base.iter().cycle().skip(1)).take(base.len() - usize::from(!closed));
+    facets.extend(sides.map(|(&a, &b)| turned(vec![a, a + along, b + along, b], inward)));
+    Some(facets)
+}

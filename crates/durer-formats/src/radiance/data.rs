@@ -1,0 +1,101 @@
+//! Tables of numbers over one or more coordinates.
+
+use super::words::{Start, Words};
+use crate::said::Said;
+
+/// Coordinates of a table.
+const MOST_DIMENSIONS: usize = 8;
+
+/// A table, the last coordinate fastest.
+#[derive(Debug, PartialEq)]
+pub(super) struct Table {
+    /// The values of each coordinate.
+    axes: Vec<Vec<f64>>,
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// Reads a file of data.
+    pub fn read(bytes: &[u8], file: u32, said: &Said) -> Option<Table> {
+        let mut words = Words::new(bytes, file, 0..bytes.len());
+        let end = words.end();
+        let mut next = || {
+            let word = match words.start() {
+                Some(Start::Word(word)) => Some(word),
+                _ => None,
+            };
+            if word.is_none() {
+                said.bad(end, "this table ends before all its numbers are there");
+            }
+            word
+        };
+        let first = next()?;
+        let dimensions = first.count(said)?;
+        if !(1..=MOST_DIMENSIONS).contains(&dimensions) {
+            said.bad(first.at, "a table has 1 to 8 coordinates");
+            return None;
+        }
+        let mut axes = Vec::new();
+        let mut total: usize = 1;
+        for _ in 0..dimensions {
+            let (from, to, count) = (next()?.number(said)?, next()?.number(said)?, next()?);
+            let places = count.count(said)?;
+            total = total.saturating_mul(places);
+            if places == 0 || total > bytes.len() {
+                said.bad(
+                    count.at,
+                    format!("the file has not so many numbers as {places} values of this coordinate need"),
+                );
+                return None;
+            }
+            axes.push(match from == to {
+                true => (0..places).map(|_| next()?.number(said)).collect::<Option<_>>()?,
+                false => {
+                    let step = (to - from) / (places.max(2) - 1) as f64;
+                    (0..places).map(|i| from + step * i as f64).collect()
+                }
+            });
+        }
+        let values = (0..total).map(|_| next()?.number(said)).collect::<Option<_>>()?;
+        Some(Table { axes, values })
+    }
+
+    /// The mean of all values.
+    pub fn mean(&self) -> f32 {
+        (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0) as f32
+    }
+
+    pub fn dimensions(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Between the values around, as many coordinates as it has; 0 beyond the ends.
+    pub fn at(&self, coordinates: &[f64]) -> f64 {
+        const SLACK: f64 = 1e-4;
+        // Of each coordinate the value before, and the way from there to the next.
+        let mut cells = [(0, 0.0); MOST_DIMENSIONS];
+        for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
+            let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));
+            if x < first - SLACK || x > last + SLACK {
+                return 0.0;
+            }
+            if axis.len() > 1 {
+                let rises = axis[0] <= axis[axis.len() - 1];
+                let after = axis.partition_point(|&value| (value <= x) == rises);
+                let i = after.clamp(1, axis.len() - 1) - 1;
+                let share = (x - axis[i]) / (axis[i + 1] - axis[i]);
+                *cell = (i, if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 });
+            }
+        }
+        let corner = |bits: u32| {
+            let (mut index, mut share) = (0, 1.0);
+            for (dimension, axis) in self.axes.iter().enumerate() {
+                let ((i, way), next) = (cells[dimension], (bits >> dimension & 1) as usize);
+                index = index * axis.len() + (i + next).min(axis.len() - 1);
+                share *= if next == 1 { way } else { 1.0 - way };
+            }
+            share * self.values[index]
+        };
+        (0..1 << self.axes.len()).map(corner).sum()
+    }
+}

@@ -1,0 +1,65 @@
+//! Surfaces that shine otherwise in each direction, as points that do.
+
+use super::made::{Kind, Made};
+use super::outline::Outline;
+use super::spread::Spread;
+use super::state::Reader;
+use durer_diag::Span;
+use durer_scene::describe::FileName;
+use durer_scene::light::photometric::PhotometricLight;
+use glam::DVec3;
+use std::rc::Rc;
+
+/// Points that stand for a surface.
+const POINTS: u32 = 16;
+
+/// Lamps with tables or directions of their own.
+const MOST_PROFILES: usize = 256;
+
+impl Reader<'_> {
+    /// Points all over a surface: light that depends on its direction has no counterpart that is a
+    /// surface.
+    pub fn lamp(&mut self, made: &Made, outline: &Outline, span: Span) {
+        let Kind::Aimed { radiance, spread, at } = &made.kind else { return };
+        let [down, front] = spread.axes();
+        let Some(file) = self.profile(spread, outline, span) else { return };
+        let places = outline.places(POINTS);
+        let what = "a lamp that shines otherwise in each direction is points all over it, and is not shown";
+        self.said.once(*at, what);
+        let color = *radiance * (outline.area() / places.len() as f64) as f32;
+        for place in places {
+            let light = PhotometricLight {
+                position: place.as_vec3(),
+                file: file.clone(),
+                direction: down.as_vec3(),
+                front: front.as_vec3(),
+                focal_length: spread.focal_length() as f32,
+                color,
+                ..PhotometricLight::default()
+            };
+            self.light(light.into(), span);
+        }
+    }
+
+    /// The name of the profile of a surface that shines so. Surfaces that show the same of
+    /// themselves in all directions share one.
+    fn profile(&mut self, spread: &Rc<Spread>, outline: &Outline, span: Span) -> Option<FileName> {
+        let facing = outline.facing();
+        let known = self.profiles.iter().position(|(own, axis)| Rc::ptr_eq(own, spread) && *axis == facing);
+        let number = known.unwrap_or(self.profiles.len());
+        let path = format!("lamp-{}.ies", number + 1);
+        if known.is_none() {
+            if self.profiles.len() >= MOST_PROFILES {
+                let message = format!(
+                    "more than {MOST_PROFILES} lamps that shine in directions of their own: the rest are left out"
+                );
+                self.said.warn_once("too-many-lamps", span, message);
+                return None;
+            }
+            let profile = spread.profile(|dir: DVec3| facing.shows(dir));
+            self.scene.assets.profiles.insert(path.clone(), profile.into());
+            self.profiles.push((spread.clone(), facing));
+        }
+        Some(FileName { path, span })
+    }
+}

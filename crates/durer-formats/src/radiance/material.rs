@@ -1,0 +1,298 @@
+//! Materials, in the words of OpenPBR.
+//!
+//! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH
+//! 1992, whose roughness is the mean slope of the surface, as GGX's alpha; alpha is the square of
+//! our roughness.
+
+use super::args::Thing;
+use super::made::{Below, Kind, Made};
+use super::spread::Spread;
+use super::state::Reader;
+use durer_diag::Span;
+use durer_scene::bsdf::fresnel::schlick_82;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::mix::Mix;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::{Color, LUMINANCE, Vec3, fp};
+use durer_scene::medium::Fog;
+use durer_scene::scene::{Material, Spanned};
+
+const TURNED: &str = "highlights are longer along the surface's own directions, not along those that are written";
+
+/// Matte, without a boundary.
+fn matte(base_color: Color) -> PrincipledMaterial {
+    let base_color = base_color.min(Vec3::ONE);
+    PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
+}
+
+/// Our roughness and anisotropy by Ward's along u and v.
+fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
+    let [u, v] = [u, v].map(|alpha| alpha.clamp(0.0, 1.0));
+    m.specular_roughness = (0.5 * (u * u + v * v)).sqrt().sqrt();
+    m.specular_anisotropy = if u == v { 0.0 } else { 1.0 - u.min(v) / u.max(v) };
+    m.specular_rotation = if v > u { 0.25 } else { 0.0 };
+}
+
+/// Plastic: a matte base below what reflects a share of all light.
+fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
+    let mut m = matte(color);
+    if specular > 0.0 {
+        let root = specular.min(0.9).sqrt();
+        (m.specular_weight, m.specular_ior) = (1.0, (1.0 + root) / (1.0 - root));
+        rough(&mut m, roughness);
+    }
+    m
+}
+
+/// Metal: the share that it reflects is the same in all directions.
+fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
+    let color = color.min(Vec3::ONE);
+    // The share at 82 degrees that Schlick's rule would have.
+    let specular_color = color / schlick_82(color).max(Vec3::splat(1e-6));
+    let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
+    if specular > 0.0 {
+        m.specular_weight = 1.0;
+    }
+    rough(&mut m, roughness);
+    m
+}
+
+/// A sheet through which light comes scattered and straight.
+fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [f32; 2]) -> PrincipledMaterial {
+    let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
+    let through = transmitted * straight;
+    let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
+    // What goes straight through is reflected at both sides of a sheet, 2 F / (1 + F), all else
+    // once, F. This F, and this share of the sheet, leave what is written for each at right angles.
+    let specular = specular.min(0.9);
+    let once = specular / (1.0 + (1.0 - specular) * through);
+    let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
+    let mut m = plastic(color, once, roughness);
+    if specular == 0.0 && through > 0.0 {
+        // Without a boundary there is a roughness for what goes through.
+        m.specular_ior = 1.0;
+        rough(&mut m, roughness);
+    }
+    PrincipledMaterial {
+        transmission_weight: sheet,
+        transmission_color: color,
+        subsurface_weight: 1.0,
+        subsurface_color: color,
+        subsurface_scatter_anisotropy: ((forth - back) / (forth + back).max(1e-6)).clamp(-0.999, 0.999),
+        walls: Walls::Thin,
+        ..m
+    }
+}
+
+/// A body with an index, of which a share of light is left at depth 1.
+fn body(left: Color, index: f32) -> PrincipledMaterial {
+    let m = PrincipledMaterial {
+        transmission_weight: 1.0,
+        specular_ior: index,
+        specular_roughness: 0.0,
+        ..PrincipledMaterial::default()
+    };
+    match left.min_element() >= 1.0 {
+        true => m,
+        false => PrincipledMaterial {
+            transmission_color: left.clamp(Vec3::splat(1e-6), Vec3::ONE),
+            transmission_depth: 1.0,
+            ..m
+        },
+    }
+}
+
+/// What shines and is black else.
+fn shining(radiance: Color) -> PrincipledMaterial {
+    let most = radiance.max_element();
+    let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
+    PrincipledMaterial { emission_luminance: most, emission_color, ..matte(Vec3::ZERO) }
+}
+
+impl Reader<'_> {
+    pub fn add_material(&mut self, m: PrincipledMaterial, at: Span) -> u32 {
+        self.scene.materials.push(Spanned { value: Material::Principled(Box::new(m)), span: at });
+        (self.scene.materials.len() - 1) as u32
+    }
+
+    /// What a material becomes below the patterns that are above it.
+    pub fn material(&mut self, number: usize, thing: &Thing, above: &Below) -> Made {
+        let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
+        let counts: &[usize] = match kind {
+            "plastic" | "metal" | "dielectric" => &[5],
+            "plastic2" | "metal2" => &[6],
+            "trans" => &[7],
+            "trans2" | "interface" | "ashik2" => &[8],
+            "glass" => &[3, 4],
+            "mirror" | "light" | "illum" => &[3],
+            "glow" => &[4],
+            "spotlight" => &[7],
+            "mist" => &[0, 3, 6, 7],
+            _ => &[],
+        };
+        if !counts.is_empty() && !thing.has(counts, said) {
+            return Made::nothing();
+        }
+        let value = |i: usize| thing.number(i).unwrap_or(0.0).max(0.0);
+        let both = |i: usize| [value(i); 2];
+        let color = thing.color(0) * above.tint;
+        let instead = |what: &str| said.once(at, format!("`{kind}` has no counterpart: {what}"));
+        if matches!(kind, "plastic" | "plastic2") && value(3) > 0.0 {
+            let roughness = if kind == "plastic" { both(4) } else { [value(4), value(5)] };
+            if roughness[0] != roughness[1] {
+                said.once(at, TURNED);
+            }
+            if roughness != [0.0; 2] {
+                return self.rough_plastic(color, value(3).min(1.0), roughness, at);
+            }
+        }
+        let m = match kind {
+            "plastic" => plastic(color, value(3), both(4)),
+            "metal" => metal(color, value(3), both(4)),
+            "trans" => trans(color, [value(3), value(5), value(6)], both(4)),
+            "plastic2" => plastic(color, value(3), [value(4), value(5)]),
+            "metal2" => metal(color, value(3), [value(4), value(5)]),
+            "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
+            "ashik2" => {
+                // A power of the cosine of the half vector is a slope of the root of 2 / (power +
+                // 2).
+                let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
+                let specular = thing.color(3);
+                plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
+            }
+            "plasfunc" | "plasdata" => {
+                instead("plastic of that colour and share, of roughness 0.1, is taken");
+                plastic(color, value(3), [0.1; 2])
+            }
+            "metfunc" | "metdata" => {
+                instead("metal of that colour and share, of roughness 0.1, is taken");
+                metal(color, value(3), [0.1; 2])
+            }
+            "transfunc" | "transdata" => {
+                instead("a sheet of that colour and shares (`trans`), of roughness 0.1, is taken");
+                trans(color, [value(3), value(4), value(5)], [0.1; 2])
+            }
+            "BRTDfunc" => {
+                instead("the matte colour of its front is taken");
+                matte(color)
+            }
+            "BSDF" | "aBSDF" | "WGMDfunc" => {
+                instead("matte grey is taken");
+                matte(Vec3::splat(0.5) * above.tint)
+            }
+            "prism1" | "prism2" => {
+                instead("a clear sheet that does not turn light is taken");
+                sheet(Vec3::ONE, 1.0)
+            }
+            "mirror" if thing.texts.is_empty() => metal(color, 1.0, [0.0; 2]),
+            "glass" => sheet(color, thing.number(3).unwrap_or(1.52)),
+            "dielectric" => {
+                if thing.number(4) != Some(0.0) {
+                    said.once(at, "Hartmann's constant has no counterpart: colours are not spread");
+                }
+                let inside = self.add_material(body(color, value(3)), at);
+                let bubble = self.add_material(body(Vec3::ONE, 1.0), at);
+                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(bubble) }, ..Made::nothing() };
+            }
+            "interface" => {
+                let inside = self.add_material(body(color, value(3)), at);
+                let outside = self.add_material(body(thing.color(4), value(7)), at);
+                return Made { number: Some(inside), kind: Kind::Glass { outside: Some(outside) }, ..Made::nothing() };
+            }
+            "mist" => return self.mist(thing),
+            "antimatter" => {
+                instead("it cuts nothing away, and is not shown");
+                return Made::nothing();
+            }
+            "illum" | "mirror" if thing.texts.first().is_some_and(|name| kind == "mirror" || name.text != "void") => {
+                instead(match kind {
+                    "illum" => "what it stands for is taken: light comes through that by itself",
+                    _ => "what is shown instead of it is taken, which mirrors no lamps",
+                });
+                let other = self.modifiers[number].others[0];
+                return match other {
+                    Some(other) => {
+                        let made = self.made(other);
+                        Made { number: made.number, ..Made::nothing() }
+                    }
+                    None => Made::nothing(),
+                };
+            }
+            "light" | "glow" | "illum" => {
+                if kind == "illum" {
+                    instead("its light is taken, and it is seen");
+                }
+                if kind == "glow" && thing.number(3).is_some_and(|reach| reach != 0.0) {
+                    said.once(at, "the reach of a `glow` has no counterpart: it lights what is around it, however far");
+                }
+                if let Some(spread) = above.spread.clone() {
+                    return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
+                }
+                let number = Some(self.add_material(shining(color), at));
+                let patterns = Below { sky: above.sky.clone(), ..Below::default() };
+                return Made { number, kind: Kind::Shining { radiance: color }, patterns };
+            }
+            "spotlight" => {
+                let focus = self.modifiers[number].map.transform_vector3(thing.point(4));
+                let direction = focus.normalize_or_zero();
+                if direction == glam::DVec3::ZERO {
+                    said.bad(at, "a spotlight needs a direction");
+                }
+                let degrees = f64::from(0.5 * value(3).clamp(0.01, 360.0));
+                let spread = Spread::Cone { aim: direction, degrees, focus: focus.length() }.into();
+                return Made { kind: Kind::Aimed { radiance: color, spread, at }, ..Made::nothing() };
+            }
+            _ => matte(color),
+        };
+        if matches!(kind, "plastic2" | "metal2" | "trans2" | "ashik2") && m.specular_anisotropy > 0.0 {
+            said.once(at, TURNED);
+        }
+        Made { number: Some(self.add_material(m, at)), ..Made::nothing() }
+    }
+
+    /// Rough plastic gives back the same share as a highlight in all directions, in white, and
+    /// scatters the rest: only smooth plastic reflects more at an angle.
+    fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> Made {
+        let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
+        let material2 = self.add_material(matte(color), at);
+        let mix = Material::Solid(Mix { material1, material2, share, share_texture: None }.into(), Vec::new());
+        self.scene.materials.push(Spanned { value: mix, span: at });
+        Made { number: Some((self.scene.materials.len() - 1) as u32), ..Made::nothing() }
+    }
+
+    /// Mist in a body: it does not bend light.
+    fn mist(&mut self, thing: &Thing) -> Made {
+        let extinction = thing.color(0);
+        let most = extinction.max_element();
+        if thing.numbers.is_empty() || most <= 0.0 {
+            return Made::nothing();
+        }
+        let albedo = if thing.numbers.len() >= 6 { thing.color(3).min(Vec3::ONE) } else { Vec3::ZERO };
+        let anisotropy = thing.number(6).unwrap_or(0.0).clamp(-0.99, 0.99);
+        let depth = 1.0 / most;
+        let m = PrincipledMaterial {
+            transmission_depth: depth,
+            transmission_color: extinction.map(|sigma| fp::exp(-sigma * depth)),
+            transmission_scatter: depth * albedo * extinction,
+            transmission_scatter_anisotropy: anisotropy,
+            ..body(Vec3::ONE, 1.0)
+        };
+        let number = self.add_material(m, thing.at());
+        // What is in the air thins light by its brightness.
+        let mean = extinction.dot(LUMINANCE);
+        let color = (albedo * extinction / mean).min(Vec3::ONE);
+        self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
+        let number = Some(number);
+        Made { number, kind: Kind::Glass { outside: None }, ..Made::nothing() }
+    }
+}
+
+/// A pane: what its inside does not absorb goes straight through, or is reflected.
+fn sheet(left: Color, index: f32) -> PrincipledMaterial {
+    PrincipledMaterial {
+        transmission_color: left.min(Vec3::ONE),
+        transmission_depth: 1.0,
+        walls: Walls::Thin,
+        ..body(Vec3::ONE, index)
+    }
+}

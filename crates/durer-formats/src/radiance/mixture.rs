@@ -1,0 +1,87 @@
+//! Mixtures of two materials.
+
+use super::args::Thing;
+use super::made::{Below, Kind, Made};
+use super::state::Reader;
+use crate::number::parse_f32;
+use durer_scene::material::Solid;
+use durer_scene::material::mix::Mix;
+use durer_scene::scene::{Material, Spanned};
+use std::collections::BTreeMap;
+
+impl Reader<'_> {
+    /// Two materials in the same proportion everywhere.
+    pub fn mixture(&mut self, number: usize, thing: &Thing, patterns: &Below) -> Made {
+        let (at, kind) = (thing.at(), thing.kind.text.as_str());
+        if thing.texts.len() < 4 {
+            self.said.bad(at, format!("a `{kind}` needs two modifiers, and what mixes them"));
+            return Made::nothing();
+        }
+        let constant = parse_f32(thing.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
+        let share = match (kind, constant) {
+            (_, Some(share)) => share.clamp(0.0, 1.0),
+            // Letters are few beside what is around them.
+            ("mixtext", _) => {
+                self.said.once(at, "letters have no counterpart: the modifier around them is taken");
+                0.0
+            }
+            _ => {
+                self.said.once(
+                    at,
+                    format!("`{kind}` has no counterpart: both modifiers are mixed half and half everywhere"),
+                );
+                0.5
+            }
+        };
+        let [first, second] = self.modifiers[number].others.map(|other| other.map(|other| self.below(other, patterns)));
+        let numbers = [&first, &second].map(|made| made.as_ref().and_then(|made| made.number));
+        let glass = [&first, &second].iter().any(|made| made.as_ref().is_some_and(|made| made.is_glass()));
+        let number = match numbers {
+            [_, second] if share == 0.0 => second,
+            [first, _] if share == 1.0 => first,
+            [Some(_), Some(_)] if glass => {
+                self.said.once(at, "bodies of glass are not mixed: the first modifier is taken");
+                numbers[0]
+            }
+            [Some(material1), Some(material2)] => {
+                let solid = Solid::from(Mix { material1, material2, share, share_texture: None });
+                self.scene.materials.push(Spanned { value: Material::Solid(solid, Vec::new()), span: at });
+                Some((self.scene.materials.len() - 1) as u32)
+            }
+            [first, second] if glass => {
+                self.said.once(at, "bodies of glass are not there in part: they are whole");
+                first.or(second)
+            }
+            // Where nothing is mixed in, it is seen through.
+            [first, second] => {
+                let share = if first.is_some() { share } else { 1.0 - share };
+                first.or(second).map(|number| self.there_in_part(number, share, &mut BTreeMap::new()))
+            }
+        };
+        let kind = if glass { Kind::Glass { outside: None } } else { Kind::Plain };
+        Made { number, kind, ..Made::nothing() }
+    }
+
+    /// A material of which only a share is there.
+    fn there_in_part(&mut self, number: u32, share: f32, made: &mut BTreeMap<u32, u32>) -> u32 {
+        if let Some(made) = made.get(&number) {
+            return *made;
+        }
+        if self.is_full(self.scene.materials[number as usize].span) {
+            return number;
+        }
+        let Spanned { mut value, span } = self.scene.materials[number as usize].clone();
+        match &mut value {
+            Material::Principled(layers) => layers.opacity *= share,
+            Material::Solid(Solid::Mix(mix), _) => {
+                mix.material1 = self.there_in_part(mix.material1, share, made);
+                mix.material2 = self.there_in_part(mix.material2, share, made);
+            }
+            _ => {}
+        }
+        self.scene.materials.push(Spanned { value, span });
+        let faded = (self.scene.materials.len() - 1) as u32;
+        made.insert(number, faded);
+        faded
+    }
+}

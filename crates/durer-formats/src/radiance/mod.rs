@@ -1,0 +1,86 @@
+//! Scenes of Radiance: `.rad` (geometry and materials), `.rif` (which files, seen from where),
+//! `.vf` (views).
+//!
+//! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
+//! xform, genbox, genprism, gensky, rad and rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in
+//! Radiance's own pictures; times 179 that is luminance in cd/m².
+
+mod args;
+mod body;
+mod chain;
+mod command;
+mod data;
+mod gensky;
+mod lamp;
+mod made;
+mod material;
+mod mixture;
+mod outline;
+mod pattern;
+mod place;
+mod rif;
+mod sky;
+mod source;
+mod spread;
+mod standard;
+mod state;
+mod surface;
+mod used;
+mod view;
+mod words;
+mod xform;
+
+#[cfg(test)]
+mod tests;
+
+use super::model::{Input, SceneFormat};
+use super::said::Said;
+use super::too_large;
+use durer_diag::{Diagnostic, Diagnostics};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Axis, Scene};
+use place::Place;
+use state::Reader;
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "Radiance",
+    extensions: &["rad", "rif"],
+    // Its first word could be anything: only the name tells.
+    recognise: |_| false,
+    read,
+    write: None,
+    up: Axis::Z,
+    whole: true,
+    shines: Some("give a surface the material `light`, or a `source` with `glow`"),
+};
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(Diagnostic { message: error.message.replace("mesh file", "scene"), help: None, ..error });
+        return None;
+    }
+    let said = Said::default();
+    let mut reader = Reader::new(input, &said);
+    match input.name.to_lowercase().ends_with(".rif") {
+        true => reader.rif(),
+        false => reader.text(input.bytes, input.file, &Place::default()),
+    }
+    let mut scene = reader.finish();
+    // As rtrace's manual has it: 179 lm/W, and the weights of its colours.
+    scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    sound.then_some(scene)
+}
+
+/// Gives a scene the camera of a file of views: its last.
+pub(super) fn look(scene: &mut Scene, input: &Input, (name, bytes): (&str, &std::sync::Arc<[u8]>)) -> Diagnostics {
+    let said = Said::default();
+    let file = input.files.borrow_mut().add(name, bytes.clone());
+    if let Some(view) = view::of_file(bytes, file, &said) {
+        view.place(scene, view::USUAL_SIZE, &said);
+    }
+    said.finish()
+}

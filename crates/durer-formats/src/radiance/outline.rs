@@ -1,0 +1,130 @@
+//! What of a surface is seen in a direction, and points all over it.
+
+use durer_scene::math::fp;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// A surface that may shine.
+pub(super) enum Outline<'a> {
+    /// Flat, by its corners.
+    Polygon(&'a [DVec3]),
+    Ring {
+        center: DVec3,
+        normal: DVec3,
+        radii: [f64; 2],
+    },
+    Ball {
+        center: DVec3,
+        radius: f64,
+    },
+    /// The side of a cylinder or cone.
+    Side {
+        ends: [DVec3; 2],
+        radii: [f64; 2],
+    },
+}
+
+/// How a surface faces, which says how much of it is seen in a direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Facing {
+    /// Flat, with a normal.
+    To(DVec3),
+    /// Round, about an axis. A cone counts as a cylinder.
+    Around(DVec3),
+    All,
+}
+
+impl Facing {
+    /// The share of its area that is seen in a direction, and the cosine to its normal: 1 for round
+    /// things.
+    pub fn shows(self, dir: DVec3) -> (f64, f64) {
+        match self {
+            // Not what lies in the plane but for rounding.
+            Facing::To(normal) if normal.dot(dir) > 1e-6 => (normal.dot(dir), normal.dot(dir)),
+            Facing::To(_) => (0.0, 1.0),
+            Facing::Around(axis) => ((1.0 - axis.dot(dir) * axis.dot(dir)).max(0.0).sqrt() / PI, 1.0),
+            Facing::All => (0.25, 1.0),
+        }
+    }
+}
+
+impl Outline<'_> {
+    pub fn area(&self) -> f64 {
+        match self {
+            Outline::Polygon(corners) => 0.5 * twice(corners).length(),
+            Outline::Ring { radii: [inner, outer], .. } => PI * (outer * outer - inner * inner),
+            Outline::Ball { radius, .. } => 4.0 * PI * radius * radius,
+            Outline::Side { ends, radii: [a, b] } => {
+                let length = ends[0].distance(ends[1]);
+                PI * (a + b) * (length * length + (a - b) * (a - b)).sqrt()
+            }
+        }
+    }
+
+    /// How it faces.
+    pub fn facing(&self) -> Facing {
+        match self {
+            Outline::Polygon(corners) => Facing::To(twice(corners).normalize_or_zero()),
+            Outline::Ring { normal, .. } => Facing::To(*normal),
+            Outline::Ball { .. } => Facing::All,
+            Outline::Side { ends, .. } => Facing::Around((ends[1] - ends[0]).normalize_or_zero()),
+        }
+    }
+
+    /// Points all over it, each for an equal area; of a round thing in its middle.
+    pub fn places(&self, count: u32) -> Vec<DVec3> {
+        let share = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
+        match *self {
+            Outline::Polygon(corners) => polygon(corners, count),
+            Outline::Ring { center, normal, radii: [inner, outer] } => {
+                let (x, y) = normal.any_orthonormal_pair();
+                let place = |i: u32| {
+                    // Vogel's spiral: as many points in equal areas.
+                    let radius = (inner * inner + (outer * outer - inner * inner) * share(i)).sqrt();
+                    let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
+                    radius * (cos * x + sin * y)
+                };
+                // Of opposite points the middle is that of the ring.
+                (0..count / 2).map(|i| place(2 * i)).flat_map(|offset| [center + offset, center - offset]).collect()
+            }
+            Outline::Ball { center, .. } => vec![center],
+            Outline::Side { ends, .. } => (0..count).map(|i| ends[0].lerp(ends[1], share(i))).collect(),
+        }
+    }
+}
+
+/// The normal of corners, as long as twice their area.
+fn twice(corners: &[DVec3]) -> DVec3 {
+    corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum()
+}
+
+/// Points all over a polygon, in the fan of triangles of its first corner.
+fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
+    let areas: Vec<f64> =
+        corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0]).length()).collect();
+    let whole: f64 = areas.iter().sum();
+    let place = |i: u32| {
+        let mut along = whole * (f64::from(i) + 0.5) / f64::from(count);
+        let mut triangle = 0;
+        while triangle + 1 < areas.len() && along > areas[triangle] {
+            along -= areas[triangle];
+            triangle += 1;
+        }
+        // The fractions of multiples of the golden ratio are as even as can be.
+        let (u, v) = (
+            (along / areas[triangle].max(f64::MIN_POSITIVE)).clamp(0.0, 1.0),
+            (f64::from(i) * 0.618_033_988_749).fract(),
+        );
+        let root = u.sqrt();
+        let [a, b, c] = [corners[0], corners[triangle + 1], corners[triangle + 2]];
+        a * (1.0 - root) + root * ((1.0 - v) * b + v * c)
+    };
+    let mut places: Vec<DVec3> = (0..count).map(place).collect();
+    // What is far away sees the middle of all points where that of the surface is.
+    let middle =
+        areas.iter().enumerate().map(|(i, area)| *area * (corners[0] + corners[i + 1] + corners[i + 2])).sum::<DVec3>()
+            / (3.0 * whole.max(f64::MIN_POSITIVE));
+    let shift = middle - places.iter().sum::<DVec3>() / f64::from(count);
+    places.iter_mut().for_each(|place| *place += shift);
+    places
+}

@@ -1,0 +1,118 @@
+//! Skies that `gensky` and `gendaylit` write.
+//!
+//! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
+//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez,
+//! Seals and Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993;
+//! the manual pages of gensky and gendaylit for the order of the numbers; Radiance's
+//! `skybright.cal` and `perezlum.cal`, which they are for.
+
+use super::args::Thing;
+use crate::said::Said;
+use durer_scene::math::fp;
+use glam::{DMat3, DVec3};
+use std::f32::consts::FRAC_PI_2;
+
+/// A sky over a ground.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Sky {
+    kind: Cover,
+    zenith: f32,
+    ground: f32,
+    factor: f32,
+    sun: DVec3,
+    /// From the world into the sky's own axes.
+    turn: DMat3,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Cover {
+    Clear,
+    Overcast,
+    Uniform,
+    Intermediate,
+    /// By its five coefficients.
+    Perez([f32; 5]),
+}
+
+impl Sky {
+    /// By its numbers: kind, zenith, ground, factor, way to the sun; turned by a map, which keeps
+    /// shapes.
+    pub fn of(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
+        let number = |i: usize| thing.number(i).unwrap_or(0.0);
+        let kind = match number(0).round() as i32 {
+            1 => Cover::Clear,
+            2 => Cover::Overcast,
+            3 => Cover::Uniform,
+            4 => Cover::Intermediate,
+            _ => {
+                said.bad(
+                    thing.at(),
+                    "the first number of a sky is 1 (clear), 2 (overcast), 3 (uniform) or 4 (intermediate)",
+                );
+                return None;
+            }
+        };
+        if !thing.has(&[3, 4, 7], said) {
+            return None;
+        }
+        let sun = thing.point(4).normalize_or_zero();
+        if matches!(kind, Cover::Clear | Cover::Intermediate) && (sun == DVec3::ZERO || number(3) <= 0.0) {
+            said.bad(thing.at(), "a sky with a sun needs a factor above 0 and the way to the sun");
+            return None;
+        }
+        let factor = if number(3) > 0.0 { number(3) } else { 1.0 };
+        let turn = map.inverse() * map.x_axis.length();
+        Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
+    }
+
+    /// The sky of any weather by its numbers: brightness, ground, five coefficients, way to the
+    /// sun; turned by a map, which keeps shapes.
+    pub fn perez(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
+        if !thing.has(&[10], said) {
+            return None;
+        }
+        let number = |i: usize| thing.number(i).unwrap_or(0.0);
+        let kind = Cover::Perez(std::array::from_fn(|i| number(2 + i)));
+        let turn = map.inverse() * map.x_axis.length();
+        let (zenith, ground) = (number(0).max(0.0), number(1).max(0.0));
+        Some(Sky { kind, zenith, ground, factor: 1.0, sun: thing.point(7).normalize_or_zero(), turn })
+    }
+
+    /// How bright it is in a unit direction of the world.
+    pub fn at(&self, dir: DVec3) -> f32 {
+        let dir = self.turn * dir;
+        let height = (dir.z as f32).clamp(-1.0, 1.0);
+        // From the sky to the ground within some ten degrees of the horizon.
+        let above = fp::pow(height + 1.01, 10.0);
+        let below = 1.0 / above;
+        ((self.bare(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
+    }
+
+    /// The sky without the ground, whose formulas go on below the horizon.
+    fn bare(&self, dir: DVec3, height: f32) -> f32 {
+        let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
+        let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);
+        match self.kind {
+            Cover::Uniform => self.zenith,
+            Cover::Overcast => self.zenith * (1.0 + 2.0 * height) / 3.0,
+            Cover::Clear => {
+                let haze = if height > 0.01 { 1.0 - fp::exp(-0.32 / height) } else { 1.0 };
+                self.zenith / self.factor * (0.91 + 10.0 * fp::exp(-3.0 * angle) + 0.45 * cosine * cosine) * haze
+            }
+            Cover::Perez([a, b, c, d, e]) => {
+                let by_height = 1.0 + a * fp::exp(b / height.max(0.01));
+                self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
+            }
+            Cover::Intermediate => {
+                // From the zenith.
+                let eta = FRAC_PI_2 - fp::asin(height);
+                let sun = (self.sun.z as f32).clamp(-1.0, 1.0);
+                let zenith_angle = fp::atan2((1.0 - sun * sun).sqrt(), sun);
+                let shape =
+                    (1.35 * fp::sin(5.631 - 3.59 * eta) + 3.12) * fp::sin(4.396 - 2.6 * zenith_angle) + 6.37 - eta;
+                let fall = fp::exp(angle * -0.563 * ((2.629 - eta) * (1.562 - zenith_angle) + 0.812));
+                self.zenith / self.factor * shape / 2.326 * fall
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Light from infinitely far away.
+
+use super::args::Thing;
+use super::made::{Distant, Kind};
+use super::place::Place;
+use super::state::Reader;
+use crate::panorama;
+use crate::pictures::unusable;
+use durer_diag::Span;
+use durer_scene::light::{DirectionalLight, Light};
+use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::Spanned;
+use glam::DVec3;
+
+/// Degrees across which what is far away counts as a direction, as the sun does.
+const SMALL: f32 = 5.0;
+/// Rows of the picture around the scene.
+const ROWS: u32 = 256;
+
+impl Reader<'_> {
+    pub fn source(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
+        let at = thing.at();
+        if !thing.has(&[4], self.said) {
+            return;
+        }
+        let direction = place.map.transform_vector3(thing.point(0)).normalize_or_zero();
+        let degrees = thing.numbers[3].abs() as f32;
+        if direction == DVec3::ZERO || degrees == 0.0 || degrees > 360.0 {
+            return self.said.bad(at, "a source needs a direction and an angle of more than 0 and at most 360 degrees");
+        }
+        let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
+        let (radiance, sky) = match &made.kind {
+            Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
+            // All its light goes one way.
+            Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
+            _ => return self.said.once(at, "a source that does not shine is not shown"),
+        };
+        let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
+        if degrees <= SMALL && sky.is_none() {
+            // What a white matte surface shows that faces it.
+            let color = radiance * (2.0 * (1.0 - cosine)) as f32;
+            let spread = Some(0.5 * degrees);
+            let light =
+                DirectionalLight { direction: -direction.as_vec3(), color, spread, ..DirectionalLight::default() };
+            self.light(light.into(), at);
+            return;
+        }
+        self.distant.push(Distant { direction, cosine, radiance, sky, at });
+    }
+
+    pub fn light(&mut self, value: Light, span: Span) {
+        self.scene.lights.get_or_insert_default().push(Spanned { value, span });
+    }
+
+    /// Puts what is infinitely far away around the scene.
+    pub fn surround(&mut self) {
+        (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
+        let Some(at) = self.distant.first().map(|distant| distant.at) else { return };
+        let distant = std::mem::take(&mut self.distant);
+        let light = |dir: DVec3| {
+            let seen = distant.iter().find(|distant| dir.dot(distant.direction) >= distant.cosine);
+            seen.map_or(Vec3::ZERO, |seen| seen.radiance * seen.sky.as_ref().map_or(1.0, |sky| sky.at(dir)))
+        };
+        let (name, memory) = (self.input.name, self.input.memory);
+        if let Err(error) = panorama::surround(&mut self.scene, (name, at), ROWS, memory, light) {
+            self.said.push(unusable(name, &error).at(at));
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! The views that `rad` knows by name, as `XYZ` and `yl`: from the sides and corners of a box.
+//!
+//! Source: the manual page of rad, and what `rad -n` prints.
+
+use super::state::Reader;
+use super::view::View;
+use super::words::Word;
+use durer_diag::Span;
+use durer_scene::scene::Node;
+use durer_scene::shape::Shape;
+use glam::DVec3;
+
+/// What `rad` knows of the place.
+pub(super) struct Zone {
+    min: DVec3,
+    size: DVec3,
+    /// Whether cameras are within.
+    interior: bool,
+    /// What is up: an axis, and which end of it.
+    up: (usize, f64),
+}
+
+/// Letters of axes.
+const AXES: [char; 3] = ['X', 'Y', 'Z'];
+
+/// The way from the middle to the camera, and the type, of a view of that name.
+pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
+    let (mut rest, mut way) = (name, DVec3::ZERO);
+    for (axis, letter) in AXES.into_iter().enumerate() {
+        for (letter, side) in [(letter, 1.0), (letter.to_ascii_lowercase(), -1.0)] {
+            if let (true, Some(more)) = (way[axis] == 0.0, rest.strip_prefix(letter)) {
+                (rest, way[axis]) = (more, side);
+            }
+        }
+    }
+    let kind = match rest {
+        "" => 'v',
+        "v" | "l" | "a" | "h" | "s" | "c" => rest.chars().next()?,
+        _ => return None,
+    };
+    (way != DVec3::ZERO).then_some((way, kind))
+}
+
+impl Zone {
+    /// The values of `ZONE` and `UP`, if there are any; else the cube around all surfaces, from
+    /// without, and z.
+    pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> Zone {
+        let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
+        let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());
+        let axis = AXES.iter().position(|axis| Some(*axis) == letter).unwrap_or(2);
+        let up = (axis, if up.starts_with('-') { -1.0 } else { 1.0 });
+        let interior = zone.and_then(|words| words.first()).is_some_and(|word| word.text.starts_with(['I', 'i']));
+        let sides: Option<Vec<f64>> =
+            zone.and_then(|words| words.get(1..7)?.iter().map(|word| word.text.parse().ok()).collect());
+        let [min, max] = match sides {
+            Some(v) => [DVec3::new(v[0], v[2], v[4]), DVec3::new(v[1], v[3], v[5])],
+            None => reader.cube(),
+        };
+        Zone { min, size: max - min, interior, up }
+    }
+
+    pub fn view(&self, (way, kind): (DVec3, char), at: Span) -> View {
+        let middle = self.min + 0.5 * self.size;
+        let point = middle + if self.interior { 0.45 } else { 2.0 } * way * self.size;
+        let (axis, side) = self.up;
+        // The axis before it where the view goes along the one that is up.
+        let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && way[i] != 0.0)) {
+            Some(up) if up == axis => side * DVec3::AXES[up],
+            Some(up) => DVec3::AXES[up],
+            None => DVec3::Z,
+        };
+        let size = match kind {
+            'v' => [45.0; 2],
+            'l' => [self.size.length(); 2],
+            'c' => [180.0, 90.0],
+            _ => [180.0; 2],
+        };
+        let mut view = View::new(at);
+        (view.kind, view.point, view.direction, view.up) = (kind, point, -way * self.size, up);
+        view.size = size;
+        view
+    }
+}
+
+impl Reader<'_> {
+    /// The cube around all surfaces that were read.
+    fn cube(&self) -> [DVec3; 2] {
+        let objects = self.scene.root.iter().flat_map(|root| &root.objects);
+        let shapes = objects.filter_map(|object| match &object.node {
+            Node::Primitive(shape) => shape.bounds().map(|bounds| [bounds.min, bounds.max]),
+            _ => None,
+        });
+        let all = shapes.chain(self.bodies.values().map(|body| body.bounds()));
+        let Some([min, max]) = all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]) else {
+            return [DVec3::NEG_ONE, DVec3::ONE];
+        };
+        let (middle, half) = (0.5 * (min + max), 0.5 * (max - min).max_element());
+        [middle - half, middle + half].map(|corner| corner.as_dvec3())
+    }
+}

@@ -1,0 +1,311 @@
+//! A file on its way to a scene.
+
+use super::args::Thing;
+use super::body::Body;
+use super::made::{Distant, Made};
+use super::outline::Facing;
+use super::place::Place;
+use super::spread::Spread;
+use super::words::{Start, Word, Words};
+use crate::model::Input;
+use crate::polygon::Cutter;
+use crate::said::{Said, meant};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::camera::Projection;
+use durer_scene::medium::Fog;
+use durer_scene::scene::{Group, Node, Object, Scene, Spanned};
+use glam::DAffine3;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Files in files, and files in all.
+const DEEPEST: u32 = 32;
+const MAX_FILES: usize = 4096;
+/// So many materials may come of others.
+const MOST_COPIES: usize = 1 << 16;
+/// Corners and shapes of a scene.
+const MAX_THINGS: usize = 1 << 26;
+
+/// What surfaces are made of, as it is written, or a pattern.
+pub(super) struct Modifier {
+    pub thing: Rc<Thing>,
+    /// The number of what modifies it.
+    pub parent: Option<usize>,
+    /// The numbers of other modifiers that it names.
+    pub others: [Option<usize>; 2],
+    pub map: DAffine3,
+    /// How many modifiers of modifiers there are.
+    pub depth: u32,
+}
+
+/// What is not a surface.
+pub(super) const MATERIALS: [&str; 27] = [
+    "plastic",
+    "metal",
+    "trans",
+    "plastic2",
+    "metal2",
+    "trans2",
+    "dielectric",
+    "interface",
+    "glass",
+    "mirror",
+    "light",
+    "glow",
+    "spotlight",
+    "illum",
+    "antimatter",
+    "mist",
+    "prism1",
+    "prism2",
+    "plasfunc",
+    "metfunc",
+    "transfunc",
+    "plasdata",
+    "metdata",
+    "transdata",
+    "BRTDfunc",
+    "BSDF",
+    "ashik2",
+];
+/// Materials of programs later than the manual, or without a counterpart that differs.
+pub(super) const OTHERS: [&str; 2] = ["aBSDF", "WGMDfunc"];
+pub(super) const PATTERNS: [&str; 10] = [
+    "colorfunc",
+    "brightfunc",
+    "colordata",
+    "brightdata",
+    "colorpict",
+    "colortext",
+    "brighttext",
+    "texfunc",
+    "texdata",
+    "spectrum",
+];
+pub(super) const MIXTURES: [&str; 4] = ["mixfunc", "mixdata", "mixpict", "mixtext"];
+pub(super) const SURFACES: [&str; 11] =
+    ["source", "sphere", "bubble", "polygon", "cone", "cup", "cylinder", "tube", "ring", "mesh", "instance"];
+
+/// A file on its way to a scene.
+pub(super) struct Reader<'a> {
+    pub input: &'a Input<'a>,
+    pub said: &'a Said,
+    pub modifiers: Vec<Modifier>,
+    pub names: BTreeMap<String, usize>,
+    /// What modifiers became, if surfaces asked, by their numbers and the bits of the colour that
+    /// patterns before them multiply.
+    pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
+    /// Whether more materials were asked for than there may be.
+    full: bool,
+    /// By the number of the material: surfaces that are one mesh.
+    pub bodies: BTreeMap<u32, Body>,
+    /// By the number of the material: what is in the air there.
+    pub mists: BTreeMap<u32, Fog>,
+    pub distant: Vec<Distant>,
+    /// What patterns make of the directions of light, by the modifier's number; and the lamps that
+    /// shine so, by what they have of a direction.
+    pub spreads: BTreeMap<usize, Rc<Spread>>,
+    pub profiles: Vec<(Rc<Spread>, Facing)>,
+    pub cutter: Cutter,
+    pub scene: Scene,
+    pub count: usize,
+    files: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub fn new(input: &'a Input<'a>, said: &'a Said) -> Self {
+        Reader {
+            input,
+            said,
+            modifiers: Vec::new(),
+            names: BTreeMap::new(),
+            made: BTreeMap::new(),
+            full: false,
+            bodies: BTreeMap::new(),
+            mists: BTreeMap::new(),
+            distant: Vec::new(),
+            spreads: BTreeMap::new(),
+            profiles: Vec::new(),
+            cutter: Cutter::new(input.bytes.len()),
+            scene: Scene { root: Some(Group::default()), ..Scene::default() },
+            count: 0,
+            files: 0,
+        }
+    }
+
+    /// Reads a text.
+    pub fn text(&mut self, bytes: &[u8], file: u32, place: &Place) {
+        let mut words = Words::new(bytes, file, 0..bytes.len());
+        while let Some(start) = words.start() {
+            if self.said.is_full() {
+                return;
+            }
+            match start {
+                Start::Command(range) => self.command(Words::new(bytes, file, range), place),
+                Start::Word(modifier) => {
+                    let Some(thing) = Thing::read(modifier, &mut words, self.said) else { return };
+                    self.thing(thing, place);
+                }
+            }
+        }
+    }
+
+    /// Whether no more materials are made: those below many patterns and mixtures with `void` would
+    /// be as many as their product.
+    pub fn is_full(&mut self, at: Span) -> bool {
+        if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
+            self.full = true;
+            self.said.bad(at, format!("more than {MOST_COPIES} materials come of patterns and `void` over others"));
+        }
+        self.full
+    }
+
+    /// Reads a file that a command has, with the commands in it beside that file or, as of what is
+    /// only printed, where this command is run.
+    pub fn file(&mut self, name: &Word, place: &Place, beside: bool) {
+        self.files += 1;
+        if place.depth >= DEEPEST || self.files > MAX_FILES {
+            let message = match place.depth >= DEEPEST {
+                true => format!("files name each other more than {DEEPEST} deep: does one name itself?"),
+                false => format!("more than {MAX_FILES} files are too many"),
+            };
+            return self.said.bad(name.at, message);
+        }
+        let Some((bytes, file)) = self.open(&place.seen(name)) else { return };
+        let place = if beside { place.beside(name) } else { place.clone() };
+        self.text(&bytes, file, &Place { depth: place.depth + 1, ..place });
+    }
+
+    /// The bytes and the number of a file that another names.
+    pub fn open(&self, name: &Word) -> Option<(Arc<[u8]>, u32)> {
+        match self.input.source.read(&name.text) {
+            Ok(bytes) => {
+                let file = self.input.files.borrow_mut().add(&name.text, bytes.clone());
+                Some((bytes, file))
+            }
+            Err(error) => {
+                let help = error.help();
+                self.said
+                    .push(Diagnostic { help, ..Diagnostic::error(error.to_string()).code("missing-file").at(name.at) });
+                None
+            }
+        }
+    }
+
+    fn thing(&mut self, thing: Thing, place: &Place) {
+        let kind = thing.kind.text.as_str();
+        if SURFACES.contains(&kind) {
+            let modifier = place.modifier.as_ref().unwrap_or(&thing.modifier);
+            if let Some(modifier) = self.find(modifier) {
+                self.surface(&thing, modifier, place);
+            }
+        } else if kind == "alias" {
+            self.alias(thing);
+        } else if [&MATERIALS[..], &OTHERS, &PATTERNS, &MIXTURES].iter().any(|kinds| kinds.contains(&kind)) {
+            let Some(parent) = self.find(&thing.modifier) else { return };
+            let mut others = [None; 2];
+            let named = match kind {
+                "illum" | "mirror" => 1,
+                _ if MIXTURES.contains(&kind) => 2,
+                _ => 0,
+            };
+            for (other, name) in others.iter_mut().zip(thing.texts.iter().take(named)) {
+                let Some(found) = self.find(name) else { return };
+                *other = found;
+            }
+            let modifier = Modifier { thing: thing.into(), parent, others, map: place.map, depth: 0 };
+            self.define(modifier.thing.name.clone(), modifier);
+        } else {
+            let known = SURFACES.into_iter().chain(MATERIALS).chain(PATTERNS).chain(MIXTURES);
+            let help = meant(kind, known);
+            self.said.bad_with(thing.kind.at, format!("there is no type {}", thing.kind.shown()), help);
+        }
+    }
+
+    fn define(&mut self, name: Word, mut modifier: Modifier) {
+        let below = [modifier.parent, modifier.others[0], modifier.others[1]].into_iter().flatten();
+        modifier.depth = below.map(|other| 1 + self.modifiers[other].depth).max().unwrap_or(0);
+        if modifier.depth > DEEPEST {
+            return self.said.bad(name.at, format!("modifiers modify each other more than {DEEPEST} deep"));
+        }
+        self.modifiers.push(modifier);
+        self.names.insert(name.text, self.modifiers.len() - 1);
+    }
+
+    /// Another name for a thing, which may be modified otherwise.
+    fn alias(&mut self, alias: Thing) {
+        let Some(Some(real)) = self.find(&alias.texts[0]) else { return };
+        let parent = match alias.modifier.text.as_str() {
+            "inherit" => self.modifiers[real].parent,
+            _ => match self.find(&alias.modifier) {
+                Some(parent) => parent,
+                None => return,
+            },
+        };
+        let Modifier { thing, others, map, .. } = &self.modifiers[real];
+        let modifier = Modifier { thing: thing.clone(), parent, others: *others, map: *map, depth: 0 };
+        self.define(alias.name, modifier);
+    }
+
+    /// The number of the modifier of a name; `Some(None)` for `void`. Complains if there is none.
+    pub fn find(&self, name: &Word) -> Option<Option<usize>> {
+        if name.text == "void" {
+            return Some(None);
+        }
+        let found = self.names.get(&name.text).copied();
+        if found.is_none() {
+            let help = meant(&name.text, self.names.keys().map(String::as_str));
+            let help = help.or_else(|| Some("files of materials come before those that use them".into()));
+            self.said.bad_with(name.at, format!("there is no modifier {} before this", name.shown()), help);
+        }
+        found.map(Some)
+    }
+
+    /// Whether so much more is allowed.
+    pub fn room_for(&mut self, more: usize, at: Span) -> bool {
+        let before = self.count;
+        self.count = self.count.saturating_add(more);
+        if before <= MAX_THINGS && self.count > MAX_THINGS {
+            self.said
+                .bad(at, format!("more than {MAX_THINGS} corners and shapes, those of arrays counted, are too many"));
+        }
+        self.count <= MAX_THINGS
+    }
+
+    /// Adds an object.
+    pub fn add(&mut self, node: Node, material: u32, span: Span) {
+        let object = Object { node, material: Some(material), span };
+        self.scene.root.get_or_insert_default().objects.push(object);
+    }
+
+    /// Makes the mist that the camera is in what is in the air: no ray would know that it begins in
+    /// a body.
+    fn step_into_mist(&mut self) {
+        let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
+        for (number, fog) in std::mem::take(&mut self.mists) {
+            let Some(body) = self.bodies.get(&number) else { continue };
+            let [min, max] = body.bounds();
+            if self.scene.fog.is_some() || eye.cmplt(min).any() || eye.cmpgt(max).any() {
+                continue;
+            }
+            let span = body.at;
+            self.said.once(span, "the mist that the camera is in fills its box, and thins all colours alike");
+            self.bodies.remove(&number);
+            self.scene.fog = Some(Spanned { value: Fog { min: Some(min), max: Some(max), ..fog }, span });
+        }
+    }
+
+    /// All that was read.
+    pub fn finish(mut self) -> Scene {
+        self.step_into_mist();
+        for (material, body) in std::mem::take(&mut self.bodies) {
+            let (name, span) = (format!("{}#{material}", self.input.name), body.at);
+            let node = self.scene.add_mesh(&name, Arc::new(body.finish()), span);
+            self.add(node, material, span);
+        }
+        self.surround();
+        super::used::keep_used(&mut self.scene);
+        self.scene
+    }
+}

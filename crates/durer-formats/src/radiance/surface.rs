@@ -1,0 +1,167 @@
+//! Surfaces.
+
+use super::args::Thing;
+use super::body::Body;
+use super::made::{Kind, Made};
+use super::outline::Outline;
+use super::place::Place;
+use super::state::Reader;
+use super::words::Word;
+use durer_diag::Span;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Node;
+use durer_scene::shape::{Disc, Sphere};
+use glam::DVec3;
+
+impl Reader<'_> {
+    pub fn surface(&mut self, thing: &Thing, modifier: Option<usize>, place: &Place) {
+        let at = thing.at();
+        if !self.room_for(1, at) {
+            return;
+        }
+        let map = place.map;
+        // Radiance's transforms keep shapes: all lengths grow alike.
+        let scale = map.matrix3.x_axis.length();
+        match thing.kind.text.as_str() {
+            "instance" | "mesh" => {
+                let name = thing.texts.first().map_or(String::new(), Word::shown);
+                let help = match thing.kind.text.as_str() {
+                    "mesh" => {
+                        "a mesh of Radiance's own is not read: write the OBJ that it was made of as polygons, by `obj2rad`"
+                    }
+                    _ => {
+                        "octrees are not read: write `!xform OPTIONS FILE.rad` with the file that the octree was made of"
+                    }
+                };
+                self.missing(thing);
+                let message = format!("{name} is left out: {help}");
+                self.said.once(at, message);
+            }
+            "source" => self.source(thing, modifier, place),
+            "sphere" | "bubble" => {
+                if !thing.has(&[4], self.said) {
+                    return;
+                }
+                let radius = thing.numbers[3];
+                let inward = ((thing.kind.text == "bubble") != (radius < 0.0)) != place.inverted;
+                let (center, radius) = (map.transform_point3(thing.point(0)), scale * radius.abs());
+                if radius == 0.0 {
+                    return self.said.warn_once("bad-value", at, "a sphere of radius 0 is left out");
+                }
+                let Some((made, number)) = self.shown(modifier, &Outline::Ball { center, radius }, at) else { return };
+                let number = match &made.kind {
+                    Kind::Glass { outside: Some(outside), .. } if inward => *outside,
+                    Kind::Shining { .. } if inward => {
+                        self.said.once(at, "a sphere that shines inwards has no counterpart: it shines outwards");
+                        number
+                    }
+                    _ => number,
+                };
+                let sphere = Sphere { center: center.as_vec3(), radius: radius as f32 };
+                self.add(Node::Primitive(sphere.into()), number, at);
+            }
+            "polygon" => {
+                if thing.numbers.len() < 9 || !thing.numbers.len().is_multiple_of(3) {
+                    let message = format!(
+                        "a polygon has three numbers for each of at least 3 corners, and here are {} numbers",
+                        thing.numbers.len()
+                    );
+                    return self.said.bad(at, message);
+                }
+                let corners: Vec<DVec3> = (0..thing.numbers.len() / 3).map(|i| thing.point(3 * i)).collect();
+                self.polygon(modifier, &corners, place, at);
+            }
+            "ring" => {
+                if !thing.has(&[8], self.said) {
+                    return;
+                }
+                let radii = [thing.numbers[6], thing.numbers[7]].map(|r| scale * r.abs());
+                let (inner, outer) = (radii[0].min(radii[1]), radii[0].max(radii[1]));
+                let side = if place.inverted { -1.0 } else { 1.0 };
+                let Some(normal) = map.transform_vector3(side * thing.point(3)).try_normalize().filter(|_| outer > 0.0)
+                else {
+                    return self.said.warn_once("bad-value", at, "a ring without a direction or a radius is left out");
+                };
+                let center = map.transform_point3(thing.point(0));
+                let outline = Outline::Ring { center, normal, radii: [inner, outer] };
+                let Some((made, number)) = self.shown(modifier, &outline, at) else { return };
+                if made.is_glass() {
+                    return self.body(number, at).ring(center, normal, [inner, outer]);
+                }
+                let [center, normal] = [center, normal].map(|v| v.as_vec3());
+                if inner < outer {
+                    let ring = Disc { center, normal, radius: outer as f32, inner_radius: inner as f32 };
+                    self.add(Node::Primitive(ring.into()), number, at);
+                }
+            }
+            kind @ ("cone" | "cup" | "cylinder" | "tube") => {
+                let straight = matches!(kind, "cylinder" | "tube");
+                if !thing.has(if straight { &[7] } else { &[8] }, self.said) || !self.room_for(256, at) {
+                    return;
+                }
+                let radii = [thing.numbers[6], thing.numbers[if straight { 6 } else { 7 }]];
+                let ends = [thing.point(0), thing.point(3)];
+                let length = ends[0].distance(ends[1]);
+                if radii[0] * radii[1] < 0.0 || radii == [0.0; 2] || (length == 0.0 && radii[0] == radii[1]) {
+                    let what = "without a length, or with radii that are all 0 or of two signs, is left out";
+                    return self.said.warn_once("bad-value", at, format!("a {kind} {what}"));
+                }
+                let inward = (matches!(kind, "cup" | "tube") != (radii[0] + radii[1] < 0.0)) != place.inverted;
+                let radii = radii.map(f64::abs);
+                let outline = Outline::Side {
+                    ends: ends.map(|end| map.transform_point3(end)),
+                    radii: radii.map(|radius| scale * radius),
+                };
+                let Some((_, number)) = self.shown(modifier, &outline, at) else { return };
+                self.body(number, at).round(ends, radii, map, inward);
+            }
+            _ => {}
+        }
+    }
+
+    /// A face that a generator makes. Only the first complains of its material.
+    pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &Place, first: bool) {
+        let known = modifier.text == "void" || self.names.contains_key(&modifier.text);
+        if !known && !first {
+            return;
+        }
+        if let Some(modifier) = self.find(modifier) {
+            self.polygon(modifier, corners, place, name.at);
+        }
+    }
+
+    fn polygon(&mut self, modifier: Option<usize>, corners: &[DVec3], place: &Place, at: Span) {
+        if !self.room_for(corners.len(), at) {
+            return;
+        }
+        let mut corners: Vec<DVec3> = corners.iter().map(|p| place.map.transform_point3(*p)).collect();
+        if place.inverted != (place.map.matrix3.determinant() < 0.0) {
+            corners.reverse();
+        }
+        let Some((_, number)) = self.shown(modifier, &Outline::Polygon(&corners), at) else { return };
+        let corners: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
+        let mut triangles = Vec::with_capacity(corners.len() - 2);
+        if self.cutter.cut(corners.len(), |i| corners[i], |triangle| triangles.push(triangle)).is_err() {
+            return self.said.bad(at, "this polygon is too crooked to be cut into triangles");
+        }
+        self.body(number, at).facet(&corners, &triangles);
+    }
+
+    /// The mesh of all surfaces of a material.
+    fn body(&mut self, number: u32, at: Span) -> &mut Body {
+        self.bodies.entry(number).or_insert_with(|| Body::new(at))
+    }
+
+    /// What a surface is made of, with its number in the scene; `None` where nothing is shown.
+    fn shown(&mut self, modifier: Option<usize>, outline: &Outline, at: Span) -> Option<(std::rc::Rc<Made>, u32)> {
+        // What is made of nothing is there for programs that ask for it.
+        let made = self.made(modifier?);
+        match made.kind {
+            Kind::Aimed { .. } => {
+                self.lamp(&made, outline, at);
+                None
+            }
+            _ => made.number.map(|number| (made, number)),
+        }
+    }
+}

@@ -1,0 +1,126 @@
+use super::*;
+use durer::LoadOptions;
+use durer::load_text;
+use durer_diag::{Diagnostics, Files};
+use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
+use durer_render::render::Job;
+use durer_scene::camera::{CameraBasis, CameraSample, Projection};
+use durer_scene::dialect::Dialect;
+use durer_scene::math::{Vec2, fp};
+use durer_scene::sampler::SampleId;
+use std::f64::consts::PI;
+
+/// The illuminance over pi of a point with a normal, by many samples: what a white matte surface
+/// shows.
+fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let options = LoadOptions::default();
+    let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics);
+    let world = loaded.and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    let world = world.unwrap_or_else(|| panic!("{:?}", diagnostics.iter().collect::<Vec<_>>()));
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    let paths =
+        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
+    const SAMPLES: u32 = 256;
+    let sum: glam::DVec3 = (0..SAMPLES)
+        .map(|i| paths.irradiance(point.as_dvec3(), normal, SampleId::new(0, (0, 0), i), &mut ()).as_dvec3())
+        .sum();
+    (sum / f64::from(SAMPLES) / PI).as_vec3()
+}
+
+/// What shines has no studio, so all light is that of the text.
+fn lit(text: &str, point: Vec3, normal: Vec3, expected: f64) {
+    let found = f64::from(shown(text, point, normal).x);
+    assert!((found / expected - 1.0).abs() < 0.02, "{text}: {found}, not {expected}");
+}
+
+#[test]
+fn lights_have_the_radiance_that_is_written() {
+    let light = "void light l 0 0 3 8 8 8\n";
+    // A sphere: L (r / d)².
+    lit(&format!("{light}l sphere s 0 0 4 0 0 5 1"), Vec3::ZERO, Vec3::Z, 8.0 / 25.0);
+    // A disc that looks down: L r² / (r² + d²). One that looks up gives nothing.
+    lit(&format!("{light}l ring s 0 0 8 0 0 2 0 0 -1 0 1"), Vec3::ZERO, Vec3::Z, 8.0 / 5.0);
+    assert_eq!(shown(&format!("{light}l ring s 0 0 8 0 0 2 0 0 1 0 1"), Vec3::ZERO, Vec3::Z), Vec3::ZERO);
+    // A polygon shines to the side from which its corners go round to the left.
+    let square = "l polygon s 0 0 12 -1 -1 1 -1 1 1 1 1 1 1 -1 1";
+    let (a, b) = (1.0 / 2f64.sqrt(), 1.0 / 2f64.sqrt());
+    let factor = 4.0 * 2.0 / (2.0 * PI) * a * fp::atan_f64(b);
+    lit(&format!("{light}{square}"), Vec3::ZERO, Vec3::Z, 8.0 * factor);
+    let turned = "l polygon s 0 0 9 0 0 1 1 0 1 0 1 1";
+    assert_eq!(shown(&format!("{light}{turned}"), Vec3::ZERO, Vec3::Z), Vec3::ZERO);
+    // The sun: radiance times its solid angle over pi. The whole sky: its radiance.
+    lit("void light l 0 0 3 1e5 1e5 1e5\nl source s 0 0 4 0 0 1 .5", Vec3::ZERO, Vec3::Z, {
+        let (sin, _) = fp::sin_cos_degrees(0.125);
+        1e5 * 4.0 * sin * sin
+    });
+    lit("void glow l 0 0 4 2 2 2 0\nl source s 0 0 4 0 0 1 180\n", Vec3::ZERO, Vec3::Z, 2.0);
+    // An overcast sky: 7/9 of its zenith.
+    let overcast =
+        "void brightfunc f 2 skybr skybright.cal 0 3 2 9 0\nf glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180";
+    let found = f64::from(shown(overcast, Vec3::ZERO, Vec3::Z).x);
+    assert!((found / 7.0 - 1.0).abs() < 0.03, "{found}");
+    // A spot as seen from its axis: L A / d², over pi, faded as from its focus, which is 2 behind;
+    // beside its cone nothing.
+    let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -2\nl ring r 0 0 8 0 0 3 0 0 -1 0 .1";
+    lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.01 / 25.0);
+    assert_eq!(shown(spot, Vec3::new(1.0, 0.0, 0.0), Vec3::Z), Vec3::ZERO);
+}
+
+/// The direction that a view sees at a point of the picture, -1 to 1 across its larger side.
+fn sees(options: &str, x: f32, y: f32) -> Vec3 {
+    let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
+    let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
+    let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
+    let camera = scene.camera.as_ref().unwrap();
+    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+    let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
+    camera.ray(&frame, &sample).unwrap().dir.normalize()
+}
+
+#[test]
+fn views_see_what_radiance_s_do() {
+    let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} is not {b}");
+    // From the front x is to the right, z upwards.
+    close(sees("-vh 90 -vv 90", 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
+    close(sees("-vh 90 -vv 90", 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0).normalize());
+    // Parallel views see what is before their point, or before `-vo`.
+    for (options, near) in [("-vtl -vp 1 2 3 -vh 4 -vv 4", 0.0), ("-vtl -vo -2.5 -vh 4 -vv 4", -2.5)] {
+        let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
+        let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
+        let Some(durer_scene::camera::Camera::Orthographic(camera)) = scene.unwrap().camera else { panic!("{told:?}") };
+        assert_eq!(camera.near, Some(near));
+        let frame = CameraBasis::of(&camera, Dialect::Durer.rules());
+        assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
+    }
+    // A picture higher than wide: its height is 90 degrees.
+    close(sees("-vh 53.130102 -vv 90", 0.5, 0.0), Vec3::new(0.5, 1.0, 0.0).normalize());
+    // Moved to the right by half its width: the middle is where the edge was.
+    close(sees("-vh 90 -vv 90 -vs .5", 0.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
+    close(sees("-vta -vh 180 -vv 180", 0.5, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
+    close(sees("-vth -vh 180 -vv 180", 0.6, 0.0), Vec3::new(0.6, 0.8, 0.0));
+    close(sees("-vts -vh 180 -vv 180", 0.5, 0.0), Vec3::new(0.8, 0.6, 0.0));
+    close(sees("-vtc -vh 180 -vv 90", 0.5, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
+}
+
+#[test]
+fn round_things_are_lit_as_flat_ones_are() {
+    // What a cone's side gets of a lamp above does not hang on its being made of triangles with
+    // bent normals.
+    let text = "void plastic w 0 0 5 .5 .5 .5 0 0\nvoid light l 0 0 3 9 9 9\nw cone c 0 0 8 0 0 0 0 0 .5 1 .1\n\
+                l polygon p 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2";
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let options = LoadOptions::default();
+    let loaded = load_text(Path::new("a.rad"), text.as_bytes().into(), &options, &mut files, &mut diagnostics).unwrap();
+    let world = loaded.compile(&options, &mut files, &mut diagnostics).unwrap();
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    let paths =
+        Paths { world: &world, settings, transport: Transport::default(), photons: None, cone: None, cancel: None };
+    let mut dark = 0;
+    for i in 0..256 {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 1.40625 + 0.3);
+        let ray = durer_scene::math::Ray::new(Vec3::new(0.6 * cos as f32, 0.6 * sin as f32, 1.5), Vec3::NEG_Z);
+        dark += u32::from(paths.radiance(&ray, SampleId::new(0, (0, 0), i), &mut ()).x == 0.0);
+    }
+    assert_eq!(dark, 0);
+}

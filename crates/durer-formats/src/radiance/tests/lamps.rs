@@ -1,0 +1,221 @@
+//! Lamps that shine otherwise in each direction.
+
+use super::*;
+use crate::beside::put_beside;
+use crate::photometry;
+use durer_scene::light::{Emitter, Light};
+use durer_scene::math::fp;
+use durer_scene::source::Source;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// How strong all lights of a scene shine together in a direction, far away: radiance times area.
+fn intensity(scene: &Scene, dir: DVec3) -> f64 {
+    let lights = scene.lights.as_ref().unwrap().iter();
+    let strong = lights.map(|light| {
+        let Light::Photometric(lamp) = &light.value else { panic!("{light:?}") };
+        let profile = &scene.assets.profiles[&lamp.file.path];
+        f64::from(profile.at(lamp.in_profile(dir.as_vec3()))) * f64::from(lamp.color.x)
+    });
+    strong.sum()
+}
+
+/// A direction by its angle from straight down and around that.
+fn way(theta: f64, phi: f64) -> DVec3 {
+    let [(sin, cos), (s, c)] = [theta, phi].map(fp::sin_cos_degrees);
+    DVec3::new(sin * c, sin * s, -cos)
+}
+
+fn cos(degrees: f64) -> f64 {
+    fp::sin_cos_degrees(degrees).1
+}
+
+fn sin(degrees: f64) -> f64 {
+    fp::sin_cos_degrees(degrees).0
+}
+
+/// A table by two angles: 0 to 180 around, 0 to 180 from below.
+fn by_two() -> String {
+    let values =
+        (0..=18).flat_map(|i| (0..=36).map(move |j| (1.0 + 0.1 * f64::from(i) + 0.2 * f64::from(j)).to_string()));
+    format!("2 0 180 19 0 180 37 {}", values.collect::<Vec<_>>().join(" "))
+}
+
+/// What that table says, which is linear.
+fn of_two(theta: f64, phi: f64) -> f64 {
+    let folded = if phi > 180.0 { 360.0 - phi } else { phi };
+    1.0 + 0.01 * folded + 0.04 * theta
+}
+
+type Expected = Box<dyn Fn(f64, f64) -> f64>;
+
+#[test]
+fn lamps_shine_as_their_tables_say() {
+    let cosines: Vec<String> = (0..=90).map(|i| cos(f64::from(i)).to_string()).collect();
+    let files = folder(&[
+        ("a.dat", format!("1 0 90 91 {}", cosines.join(" ")).as_bytes()),
+        ("b.dat", by_two().as_bytes()),
+        ("one.dat", b"1 0 180 2 1 1"),
+        ("back.dat", b"1 180 0 3 0 1 4"),
+    ]);
+    let down = |theta: f64| if theta < 90.0 { cos(theta) } else { 0.0 };
+    let cases: [(&str, Expected); 11] = [
+        // Radiance 3 times 2 times what is written, over the cosine, times an area of pi or 4.
+        (
+            "void brightdata d 4 flatcorr a.dat source.cal src_theta 0 1 2 d light l 0 0 3 3 3 3 l ring r 0 0 8 0 0 1 0 0 -1 0 1",
+            Box::new(move |theta, _| 6.0 * PI * down(theta)),
+        ),
+        (
+            "void brightdata d 4 corr a.dat source.cal src_theta 0 1 2 d light l 0 0 3 3 3 3 l ring r 0 0 8 0 0 1 0 0 -1 0 1",
+            Box::new(move |theta, _| 6.0 * PI * down(theta) * down(theta)),
+        ),
+        (
+            "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d glow l 0 0 4 1 1 1 0
+             l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0",
+            Box::new(|theta, phi| if theta < 90.0 { 4.0 * of_two(theta, phi) } else { 0.0 }),
+        ),
+        // A ball shows as large a disc to all sides; a tube its sides.
+        (
+            "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 2",
+            Box::new(|theta, phi| 4.0 * PI * of_two(theta, phi)),
+        ),
+        (
+            "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l cylinder r 0 0 7 0 0 1 0 0 4 .5",
+            Box::new(|theta, phi| 3.0 * sin(theta) * of_two(theta, phi)),
+        ),
+        // A box and a cylinder shine in all as the table says.
+        (
+            "void brightdata d 5 boxcorr b.dat source.cal src_phi2 src_theta 0 4 1 2 4 1 d light l 0 0 3 1 1 1 !genbox l r 2 4 1",
+            Box::new(of_two),
+        ),
+        (
+            "void brightdata d 5 cylcorr b.dat source.cal src_phi2 src_theta 0 3 1 2 3 d light l 0 0 3 1 1 1
+             l cylinder r 0 0 7 0 0 0 0 0 3 1 l ring t 0 0 8 0 0 3 0 0 1 0 1 l ring u 0 0 8 0 0 0 0 0 -1 0 1",
+            Box::new(of_two),
+        ),
+        // Turned by a quarter about z, and upside down, by a command and by hand.
+        (
+            "!xform -rz 90 lamp.rad",
+            Box::new(
+                |theta, phi| if theta < 90.0 { 4.0 * of_two(theta, (phi + 270.0).rem_euclid(360.0)) } else { 0.0 },
+            ),
+        ),
+        (
+            "void brightdata d 6 corr back.dat source.cal src_theta -rx 180 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
+            // 4 below, 1 at the side, nothing above; upside down.
+            Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
+        ),
+        // An eighth of the ring's radiance: two angles of a photometer of type B.
+        (
+            "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
+            Box::new(|_, _| PI),
+        ),
+        // A spotlight of 60 degrees in all, by its cosine.
+        (
+            "void spotlight s 0 0 7 2 2 2 60 0 0 -1 s ring r 0 0 8 0 0 1 0 0 -1 0 1",
+            Box::new(|theta, _| if theta <= 30.0 { 2.0 * PI * cos(theta) } else { 0.0 }),
+        ),
+    ];
+    let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d glow l 0 0 4 1 1 1 0
+        l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
+    for (text, expected) in cases {
+        let (scene, told) = read_in(files.path(), "scene.rad", text);
+        let what = "a lamp that shines otherwise in each direction is points all over it, and is not shown";
+        assert!(told.len() == 1 && told[0].ends_with(what), "{text}: {told:?}");
+        let scene = scene.unwrap();
+        for (theta, phi) in
+            [(1.0, 0.0), (5.0, 40.0), (29.0, 211.0), (31.0, 80.0), (62.0, 133.0), (115.0, 301.0), (170.0, 3.0)]
+        {
+            let (found, wanted) = (intensity(&scene, way(theta, phi)), expected(theta, phi));
+            assert!((found - wanted).abs() < 2e-3 * wanted.max(1.0), "{text} at {theta} {phi}: {found}, not {wanted}");
+        }
+    }
+}
+
+#[test]
+fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
+    let files = folder(&[("b.dat", by_two().as_bytes())]);
+    let lamp = "void brightdata d 5 flatcorr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1
+        l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
+    std::fs::write(files.path().join("lamp.rad"), lamp).unwrap();
+    let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad");
+    let (scene, _) = read_in(files.path(), "scene.rad", &text);
+    let scene = scene.unwrap();
+    // The last is another text.
+    assert_eq!((scene.assets.profiles.len(), scene.lights.as_ref().unwrap().len()), (2, 48));
+    let (made, beside) = put_beside(&scene, "kept", &Source::folder(files.path()));
+    let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["kept/lamp-1.ies", "kept/lamp-2.ies"]);
+    assert!(made.assets.is_empty());
+    let Light::Photometric(first) = &made.lights.as_ref().unwrap()[0].value else { panic!("no lamp") };
+    assert_eq!(first.file.path, "kept/lamp-1.ies");
+    let read = photometry::read(&beside[0].1, 0, &mut durer_diag::Diagnostics::default());
+    assert_eq!(read.as_ref(), Some(&*scene.assets.profiles["lamp-1.ies"]));
+}
+
+#[test]
+fn points_of_a_lamp_lie_around_its_middle() {
+    let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
+    let lamp = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1\n";
+    for (surface, middle) in [
+        ("l polygon r 0 0 12 -.6 -.3 2 -.6 .3 2 .6 .3 2 .6 -.3 2", DVec3::new(0.0, 0.0, 2.0)),
+        ("l polygon r 0 0 9 0 0 0 3 0 0 0 6 0", DVec3::new(1.0, 2.0, 0.0)),
+        ("l ring r 0 0 8 1 2 3 0 0 1 0 1", DVec3::new(1.0, 2.0, 3.0)),
+        ("l cylinder r 0 0 7 1 2 3 1 2 5 .1", DVec3::new(1.0, 2.0, 4.0)),
+    ] {
+        let (scene, _) = read_in(files.path(), "scene.rad", &format!("{lamp}{surface}"));
+        let lights = scene.unwrap().lights.unwrap();
+        let places = lights.iter().map(|light| {
+            let Light::Photometric(lamp) = &light.value else { panic!("{light:?}") };
+            lamp.position.as_dvec3()
+        });
+        let mean = places.sum::<DVec3>() / lights.len() as f64;
+        assert!(lights.len() == 16 && (mean - middle).length() < 1e-6, "{surface}: {mean}");
+    }
+}
+
+#[test]
+fn angles_may_have_something_added() {
+    // As `ies2rad` has it of files from 90 to 270 degrees.
+    let files = folder(&[("b.dat", by_two().as_bytes())]);
+    let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
+        l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
+    let (scene, _) = read_in(files.path(), "scene.rad", text);
+    let scene = scene.unwrap();
+    for (theta, phi) in [(30.0, 0.0), (30.0, 200.0)] {
+        // The lamp is turned back by a quarter: its angle is a quarter more.
+        let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
+        let folded = if around > 180.0 { 360.0 - around } else { around };
+        let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);
+        let found = intensity(&scene, way(theta, phi));
+        assert!((found / expected - 1.0).abs() < 2e-3, "{theta} {phi}: {found}, not {expected}");
+    }
+}
+
+#[test]
+fn so_many_lamps_of_their_own_and_no_more() {
+    let files = folder(&[("one.dat", b"1 0 180 2 1 1")]);
+    let mut text = "void brightdata d 4 corr one.dat source.cal src_theta 0 0 d light l 0 0 3 1 1 1".to_string();
+    for i in 0..300 {
+        text += &format!(" l ring r{i} 0 0 8 0 0 0 1 {i} -5 0 1");
+    }
+    let (scene, told) = read_in(files.path(), "scene.rad", &text);
+    assert_eq!(scene.unwrap().assets.profiles.len(), 256);
+    assert!(told.iter().any(|line| line.contains("more than 256 lamps")), "{told:?}");
+}
+
+#[test]
+fn tables_of_other_functions_have_their_mean() {
+    let files = folder(&[("one.dat", b"1 0 180 2 1 2")]);
+    for (text, what) in [
+        ("4 mine one.dat source.cal src_theta", "patterns of data have no counterpart: the mean is taken"),
+        ("4 corr one.dat my.cal angle", "patterns of data have no counterpart: the mean is taken"),
+        ("5 corr one.dat source.cal src_phi src_theta", "patterns of data have no counterpart: the mean is taken"),
+    ] {
+        let text = format!("void brightdata d {text} 0 0 d light l 0 0 3 3 3 3 l sphere r 0 0 4 1 2 3 1");
+        let (scene, told) = read_in(files.path(), "scene.rad", &text);
+        assert!(told.iter().any(|line| line.ends_with(what)), "{text}: {told:?}");
+        assert_eq!(layers(&scene.unwrap(), 0).emission_luminance, 4.5);
+    }
+}

@@ -1,0 +1,68 @@
+//! What is used of a file: materials that something is made of, and files that are named and not
+//! read.
+
+use super::args::Thing;
+use super::state::Reader;
+use durer_scene::material::{Pattern, Solid};
+use durer_scene::scene::{Material, Scene};
+
+/// Files of functions that come with Radiance.
+const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBSDF WalterBTDF ambpos bezier2 \
+    blackbody blinds bsdf2rad cct cielab cieluv cieresp cieskyscan circle clamp clouds conv1 \
+    conv2 cri cubic denom disk2square equivlum ferwerda filt fisheye_corr fitSH fog fovsample \
+    gauss gaussian genSH glass3 glaze1 glaze2 graypatch hermite hsv_rgb illum klems_ang \
+    klems_full klems_half klems_quarter landscape log3G10 lumdist macbeth mat3 metals noise \
+    noise2 noise3 noise_con norm normcomp patch3w peerless perezlum perezlum_c picdiff \
+    polynomial pq printwarp quadratic rambpos rayinit reinhard reinhart reinhartb reinsrc rev \
+    rgb rgb_ycc root rskysrc screen sf sky2spectra skybright skyfact source spharm sphsamp \
+    spline stdrefl sun sun2 superellipsoid surf testimg tilt tmesh trans trans2 tregenza tregsrc \
+    tumblin uniq_rgb veil view360stereo vl vonKries vwparab vwplanis window xyz_rgb xyz_srgb";
+
+impl Reader<'_> {
+    /// Tells of files that a thing names, which nothing reads, and that are not there.
+    pub fn missing(&self, thing: &Thing) {
+        for word in &thing.texts {
+            let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
+            let library = kind == "cal" && LIBRARY.split_whitespace().any(|known| known == name);
+            if matches!(kind, "cal" | "xml" | "rtm" | "oct") && !library && !self.input.source.contains(&word.text) {
+                let message = format!("there is no file {}", word.shown());
+                self.said.warn_once("missing-file", word.at, message);
+            }
+        }
+    }
+}
+
+/// Leaves materials out that nothing is made of: what only suns are made of, the other side of
+/// glass, what was mixed whole.
+pub(super) fn keep_used(scene: &mut Scene) {
+    let mut used = vec![false; scene.materials.len()];
+    let objects = || scene.root.iter().flat_map(|root| &root.objects);
+    objects().filter_map(|object| object.material).for_each(|number| used[number as usize] = true);
+    // A mixture comes after what it mixes.
+    for i in (0..used.len()).rev() {
+        if let (true, Material::Solid(solid, _)) = (used[i], &scene.materials[i].value) {
+            solid.materials().into_iter().for_each(|part| used[part as usize] = true);
+        }
+    }
+    let mut number = 0;
+    let numbers: Vec<u32> = used
+        .iter()
+        .map(|used| {
+            number += u32::from(*used);
+            number.saturating_sub(1)
+        })
+        .collect();
+    let mut i = 0;
+    scene.materials.retain(|_| {
+        i += 1;
+        used[i - 1]
+    });
+    for material in &mut scene.materials {
+        if let Material::Solid(Solid::Mix(mix), _) = &mut material.value {
+            (mix.material1, mix.material2) = (numbers[mix.material1 as usize], numbers[mix.material2 as usize]);
+        }
+    }
+    for object in scene.root.iter_mut().flat_map(|root| &mut root.objects) {
+        object.material = object.material.map(|material| numbers[material as usize]);
+    }
+}

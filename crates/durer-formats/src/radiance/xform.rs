@@ -1,0 +1,123 @@
+//! What `xform` and the transforms of instances do: one after the other, repeated, in arrays.
+
+use super::words::Word;
+use crate::said::Said;
+use durer_scene::math::fp;
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Places of all arrays in each other.
+const MAX_PLACES: usize = 1 << 20;
+
+/// How often a part of a transform is applied.
+#[derive(Clone, Copy, PartialEq)]
+enum Times {
+    /// So often, by `-i`.
+    Just(i32),
+    /// Once in the second place, twice in the third, and so on, by `-a`.
+    Array(usize),
+}
+
+/// A transform in parts, and so many places.
+#[derive(Clone)]
+pub(super) struct Transform {
+    parts: Vec<(Times, DAffine3)>,
+}
+
+impl Default for Transform {
+    fn default() -> Self {
+        Transform { parts: vec![(Times::Just(1), DAffine3::IDENTITY)] }
+    }
+}
+
+/// A turn of an odd number of degrees about an axis, of a quarter exactly.
+fn turn(axis: usize, degrees: f64) -> DAffine3 {
+    let (sin, cos) = fp::sin_cos_degrees(degrees);
+    let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut columns = [DVec3::X, DVec3::Y, DVec3::Z];
+    (columns[i][i], columns[i][j]) = (cos, sin);
+    (columns[j][i], columns[j][j]) = (-sin, cos);
+    DAffine3::from_mat3(DMat3::from_cols_array_2d(&columns.map(|column| column.to_array())))
+}
+
+impl Transform {
+    /// Takes an option with its numbers off the front of some words; whether it was one.
+    pub fn option(&mut self, words: &mut &[Word], said: &Said) -> bool {
+        let Some((option, rest)) = words.split_first() else { return false };
+        let numbers = |count: usize| -> Option<Vec<f64>> {
+            if rest.len() < count {
+                let message = format!("{} needs {count} number{}", option.shown(), if count == 1 { "" } else { "s" });
+                said.bad(option.at, message);
+                return None;
+            }
+            rest[..count].iter().map(|word| word.number(said)).collect()
+        };
+        let (count, map) = match option.text.as_str() {
+            "-t" => (3, numbers(3).map(|v| DAffine3::from_translation(DVec3::new(v[0], v[1], v[2])))),
+            "-rx" => (1, numbers(1).map(|v| turn(0, v[0]))),
+            "-ry" => (1, numbers(1).map(|v| turn(1, v[0]))),
+            "-rz" => (1, numbers(1).map(|v| turn(2, v[0]))),
+            "-s" => {
+                let factor = numbers(1).map(|v| v[0]);
+                if factor == Some(0.0) {
+                    said.bad(option.at, "things cannot be scaled by 0");
+                }
+                (1, factor.filter(|s| *s != 0.0).map(|s| DAffine3::from_scale(DVec3::splat(s))))
+            }
+            "-mx" => (0, Some(DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0)))),
+            "-my" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, -1.0, 1.0)))),
+            "-mz" => (0, Some(DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0)))),
+            "-i" | "-a" => {
+                let count = rest.first().and_then(|word| word.count(said)).unwrap_or(1).min(MAX_PLACES);
+                if rest.is_empty() {
+                    said.bad(option.at, format!("{} needs a number", option.shown()));
+                }
+                let times = if option.text == "-i" { Times::Just(count as i32) } else { Times::Array(count) };
+                self.parts.push((times, DAffine3::IDENTITY));
+                (1, None)
+            }
+            _ => return false,
+        };
+        if let (Some(map), Some((_, part))) = (map, self.parts.last_mut()) {
+            *part = map * *part;
+        }
+        *words = &rest[count.min(rest.len())..];
+        true
+    }
+
+    /// All places, in their order; `None` where there are too many.
+    pub fn places(&self) -> Option<Vec<DAffine3>> {
+        let mut places = vec![DAffine3::IDENTITY];
+        for (times, map) in &self.parts {
+            match *times {
+                Times::Just(count) => {
+                    let map = power(*map, count);
+                    places.iter_mut().for_each(|place| *place = map * *place);
+                }
+                Times::Array(count) => {
+                    if places.len().saturating_mul(count) > MAX_PLACES {
+                        return None;
+                    }
+                    let maps: Vec<DAffine3> =
+                        std::iter::successors(Some(DAffine3::IDENTITY), |so_far| Some(*map * *so_far))
+                            .take(count)
+                            .collect();
+                    places = places.iter().flat_map(|place| maps.iter().map(move |map| *map * *place)).collect();
+                }
+            }
+        }
+        Some(places)
+    }
+}
+
+/// A map so many times.
+fn power(map: DAffine3, count: i32) -> DAffine3 {
+    let (mut result, mut square, mut left) = (DAffine3::IDENTITY, map, count);
+    while left > 0 {
+        if left % 2 == 1 {
+            result = square * result;
+        }
+        square = square * square;
+        left /= 2;
+    }
+    result
+}

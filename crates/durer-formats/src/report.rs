@@ -1,0 +1,139 @@
+//! What a reader of one file has to say about it.
+
+use durer_diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Severity, Span};
+use std::ops::Range;
+
+/// Collects the findings of one file and hands them on in the order of their places.
+///
+/// Readers may go over a file more than once; whoever reads the findings should not notice.
+pub(super) struct Report {
+    file: u32,
+    found: Vec<Diagnostic>,
+    errors: usize,
+    /// How many errors may still be collected.
+    room: usize,
+}
+
+impl Report {
+    /// An empty report on a file, with the room for errors that `diagnostics` has left.
+    pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
+        let room = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
+        Report { file, found: Vec::new(), errors: 0, room }
+    }
+
+    /// An empty report on a part of the same file, to be joined to this one.
+    pub fn part(&self) -> Report {
+        Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
+    }
+
+    /// Adds what was found in the next part, as far as there is room for errors: as if the parts
+    /// were one.
+    pub fn join(&mut self, part: Report) {
+        for diagnostic in part.found {
+            if self.is_full() {
+                return;
+            }
+            self.errors += usize::from(diagnostic.severity == Severity::Error);
+            self.found.push(diagnostic);
+        }
+    }
+
+    /// Adds an error at a range of bytes; what it returns takes a label or help.
+    pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
+        self.add(at, Diagnostic::error(message))
+    }
+
+    /// Adds a warning.
+    pub fn warning(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
+        self.add(at, Diagnostic::warning(message))
+    }
+
+    /// Adds a note.
+    pub fn note(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
+        self.add(at, Diagnostic::note(message))
+    }
+
+    /// Adds a finding at a range of bytes.
+    pub fn add(&mut self, at: Range<usize>, diagnostic: Diagnostic) -> &mut Diagnostic {
+        if diagnostic.severity == Severity::Error {
+            self.errors += 1;
+        }
+        let index = self.found.len();
+        self.found.push(diagnostic.at(self.span(at)));
+        &mut self.found[index]
+    }
+
+    /// A range of bytes as a span. `read_mesh` has made sure that the file is small enough.
+    pub fn span(&self, at: Range<usize>) -> Span {
+        Span { file: self.file, start: at.start as u32, end: at.end as u32 }
+    }
+
+    /// Whether there is an error.
+    pub fn has_errors(&self) -> bool {
+        self.errors > 0
+    }
+
+    /// Whether reading on is of no use: no more errors are collected.
+    pub fn is_full(&self) -> bool {
+        self.errors >= self.room
+    }
+
+    /// How many findings of all kinds there are.
+    pub fn count(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Hands everything on, sorted by place; `result` only where there was no error.
+    pub fn finish<T>(mut self, diagnostics: &mut Diagnostics, result: T) -> Option<T> {
+        self.found.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
+        let failed = self.found.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
+        // A report without room never read anything to the end.
+        let complete = !failed && self.room > 0;
+        self.found.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
+        complete.then_some(result)
+    }
+}
+
+/// A piece of a file as it is shown in a message: in backquotes, printable, not too long.
+pub(super) fn shown(bytes: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)]);
+    let mut shown: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    if text.chars().count() > LONGEST || bytes.len() > 4 * LONGEST {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+/// A count with its noun: `1 vertex`, `no vertices`, `8 vertices`.
+pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
+    match count {
+        0 => format!("no {many}"),
+        1 => format!("1 {one}"),
+        _ => format!("{count} {many}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn findings_come_out_in_the_order_of_the_file() {
+        let mut diagnostics = Diagnostics::default();
+        let mut report = Report::new(3, &diagnostics);
+        report.error(9..10, "second");
+        report.warning(2..4, "first").help = Some("help".into());
+        assert_eq!(report.finish(&mut diagnostics, ()), None);
+        let messages: Vec<_> = diagnostics.iter().map(|d| (d.message.as_str(), d.span.unwrap().file)).collect();
+        assert_eq!(messages, [("first", 3), ("second", 3)]);
+    }
+
+    #[test]
+    fn shown_text_is_short_and_printable() {
+        assert_eq!(shown(b"abc"), "`abc`");
+        assert_eq!(shown(b"a\x00\n"), "`a\\0\\n`");
+        assert!(shown(&[b'x'; 1000]).chars().count() < 50);
+        assert!(shown(&[0xff; 1000]).chars().count() < 50);
+    }
+}

@@ -1,0 +1,138 @@
+//! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of
+//! one mesh.
+
+use super::model::SceneFormat;
+pub use super::model::{Input, Output, WriteScene};
+use super::pictures::unusable;
+use super::signature::mistaken;
+use super::{
+    MeshFormat, extension, gltf, mitsuba, obj, panorama, pbrt, ply, radiance, read_mesh, sticks, stl, threemf,
+};
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_image::{self as image, Encoded, ImageError};
+use durer_scene::describe::FileName;
+use durer_scene::light::Light;
+use durer_scene::math::Vec3;
+use durer_scene::scene::staging::Sides;
+use durer_scene::scene::{Axis, Background, Group, Object, Picture, PictureBytes, Scene, Spanned};
+use durer_scene::source::SourceError;
+use durer_scene::texture::Mapping;
+use glam::DVec3;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The formats of models, in the order in which content is tried. What is none of them is in the
+/// course's language.
+pub const SCENE_FORMATS: &[SceneFormat] = &[
+    gltf::FORMAT,
+    pbrt::FORMAT,
+    mitsuba::FORMAT,
+    threemf::FORMAT,
+    radiance::FORMAT,
+    alone(&ply::FORMAT),
+    obj::scene::FORMAT,
+    alone(&stl::FORMAT),
+];
+
+/// A mesh that is a whole model.
+const fn alone(format: &MeshFormat) -> SceneFormat {
+    let MeshFormat { name, extensions, recognise, up, .. } = *format;
+    SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, shines: None }
+}
+
+/// Rows of a picture of all directions that is turned.
+const MAX_ROWS: u32 = 2048;
+
+/// The format of scenes that the ending of a name says.
+pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
+    let extension = extension(name);
+    SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+}
+
+/// The format of a file that is a model: by its content, or failing that by its name. `None`: it is
+/// text of the course's language, or nothing that is known.
+pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
+    scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
+}
+
+/// The error about a file that is read as of a format, or of the course's language, and by its first
+/// bytes is of another.
+pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
+    mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions))
+}
+
+/// Reads a model as a scene, and adds the camera, light and material that it lacks.
+pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let mut scene = (format.read)(input, diagnostics)?;
+    scene.up = Some(input.staging.up.unwrap_or(format.up));
+    if let Some(path) = &input.staging.view_file {
+        let (name, bytes) = named(input, path, diagnostics)?;
+        let found = radiance::look(&mut scene, input, (&name, &bytes));
+        let sound = !found.has_errors();
+        diagnostics.extend(found);
+        if !sound {
+            return None;
+        }
+    }
+    if let Some(path) = &input.staging.environment {
+        let (name, bytes) = named(input, path, diagnostics)?;
+        let up = input.staging.up.unwrap_or(format.up);
+        let surrounded = surround(&mut scene, &name, bytes, up, input.memory);
+        surrounded.map_err(|error| diagnostics.push(unusable(&name, &error))).ok()?;
+    }
+    if !input.staging.bare {
+        input.staging.complete(&mut scene, format.up, format.whole);
+    }
+    Some(scene)
+}
+
+/// A file that an option names, wherever it is, with its name.
+fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
+    let name = path.display().to_string();
+    let read = input.source.read_path(path, &name);
+    let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
+    let bytes = read.map_err(refuse).ok()?;
+    input.source.remember(&name, &bytes);
+    Some((name, bytes))
+}
+
+/// A scene of one mesh without a material.
+fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    let span = Span { file: input.file, start: 0, end: 0 };
+    let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
+    input.files.borrow_mut().cut(input.file, 0, diagnostics);
+    let data = if data.triangles.is_empty() && !data.positions.is_empty() {
+        // Vertices alone are a cloud of points.
+        let points: Vec<u32> = (0..data.positions.len() as u32).collect();
+        let note = Diagnostic::note(sticks::explained(0, points.len())).code("points-and-lines");
+        diagnostics.push(note.at(span));
+        sticks::thickened(&data, &[], &points)
+    } else {
+        data
+    };
+    let mut scene = Scene::default();
+    let node = scene.add_mesh(input.name, Arc::new(data), span);
+    scene.root = Some(Group { objects: vec![Object { node, material: None, span }] });
+    Some(scene)
+}
+
+/// Surrounds the scene with an environment picture, instead of its background and directional
+/// lights. The picture's upper border is `up`.
+fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
+    scene.background = Background { color: Vec3::ZERO, ..Background::default() };
+    let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
+    scene.lights.get_or_insert_default().retain(near);
+    let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
+    let sides = Sides::new(up);
+    let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
+    // What cannot be read is told when the scene is compiled.
+    if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
+        let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
+        let memory = panorama::beside([&picture], memory);
+        return panorama::surround(scene, (name, Span::default()), picture.height.min(MAX_ROWS), memory, light);
+    }
+    let picture = Picture { bytes: PictureBytes::Here(name.to_string(), bytes), mapping: Mapping::default() };
+    scene.assets.pictures.insert(name.to_string(), picture);
+    scene.background.environment = Some(FileName { path: name.to_string(), span: Span::default() });
+    Ok(())
+}

@@ -1,0 +1,66 @@
+//! First bytes that tell of what format a file is, whatever its name says.
+
+use durer_diag::{Diagnostic, Span};
+
+/// Beginnings of files: the bytes, what such a file is, and the ending that its name should have;
+/// none where nothing here reads it as a scene.
+const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
+    (b"glTF", "binary glTF", Some("glb")),
+    (b"ply\n", "PLY", Some("ply")),
+    (b"ply\r", "PLY", Some("ply")),
+    (b"PK\x03\x04", "an archive, as 3MF is", Some("3mf")),
+    (b"\x89PNG", "a picture (PNG)", None),
+    (b"\xff\xd8\xff", "a picture (JPEG)", None),
+    (b"v/1\x01", "a picture (OpenEXR)", None),
+    (b"\xabKTX 20", "a picture (KTX2)", None),
+    (b"GIF8", "a picture (GIF)", None),
+    (b"%PDF", "a PDF", None),
+    (b"BLENDER", "a file of Blender's own", None),
+    (b"Kaydara FBX Binary", "FBX", None),
+    (b"PXR-USDC", "USD", None),
+    (b"#usda", "USD", None),
+];
+
+/// The error about a file that is of another format than that as which it is read, which has these
+/// endings.
+pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
+    let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
+    if own.is_some_and(|own| extensions.contains(&own)) {
+        return None;
+    }
+    let last = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let stem = last.rsplit_once('.').map_or(last, |(stem, _)| stem);
+    let message = format!("`{last}` is {what}, by its first bytes");
+    let error = Diagnostic::error(message).code("bad-file").at(Span {
+        file,
+        start: 0,
+        end: start.trim_ascii_end().len() as u32,
+    });
+    Some(error.help(match (own, what.starts_with("a picture")) {
+        (Some(own), _) => format!("if it is, give it its name: `{stem}.{own}`"),
+        (None, true) => "a picture is no model; `--environment` puts one around a model".into(),
+        (None, false) => "it is not read here: convert it to glTF".into(),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::mistaken;
+
+    #[test]
+    fn files_of_another_name_are_told() {
+        let told = |bytes: &[u8], name: &str, extensions: &[&str]| {
+            mistaken(bytes, 0, name, extensions).map(|error| format!("{} ({})", error.message, error.help.unwrap()))
+        };
+        assert_eq!(
+            told(b"glTF\x02\0\0\0", "a/b.c.obj", &["obj"]).unwrap(),
+            "`b.c.obj` is binary glTF, by its first bytes (if it is, give it its name: `b.c.glb`)"
+        );
+        assert!(told(b"ply\r\nformat", "b.stl", &["stl"]).unwrap().contains("`b.stl` is PLY"));
+        assert!(told(b"\x89PNG\r\n", "b", &[]).unwrap().contains("a picture is no model"));
+        assert!(told(b"PXR-USDC", "b.obj", &["obj"]).unwrap().contains("convert it to glTF"));
+        assert_eq!(told(b"glTF", "b.gltf", &["gltf", "glb"]), None);
+        assert_eq!(told(b"ply\n", "b.ply", &["ply"]), None);
+        assert_eq!(told(b"plywood", "b.obj", &["obj"]), None);
+    }
+}

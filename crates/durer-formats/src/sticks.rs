@@ -1,0 +1,120 @@
+//! What has no surface as something that is seen: lines as sticks, points as balls.
+
+use super::report::counted;
+use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::Node;
+use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
+
+/// A stick from a point to another with a radius at each; `None` where they are the same.
+pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Node> {
+    let shape = match first == last {
+        true => Cylinder { base: from, top: to, radius: first }.into(),
+        false => Cone { base: from, top: to, base_radius: first, top_radius: last }.into(),
+    };
+    (from != to).then_some(Node::Primitive(shape))
+}
+
+/// A ball about a point.
+pub(super) fn ball(center: Vec3, radius: f32) -> Node {
+    Node::Primitive(Sphere { center, radius }.into())
+}
+
+/// Sides of a stick of triangles.
+const SIDES: u32 = 6;
+/// The radius of lines without one, as a share of the size of what they belong to, and of points.
+const LINE: f32 = 0.006;
+const POINT: f32 = 0.015;
+/// Lines and points that become triangles at most; of more, every second or third is shown.
+const MAX: usize = 1 << 21;
+
+/// Of how many lines or points one is shown.
+fn step(count: usize) -> usize {
+    count.div_ceil(MAX).max(1)
+}
+
+/// What is said of lines and points that are thickened.
+pub(super) fn explained(lines: usize, points: usize) -> String {
+    let all =
+        [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
+            (0, _) => String::new(),
+            (_, 1) => counted(count, one, many),
+            (_, step) => format!("{count} {many}, of which one in {step} is shown,"),
+        });
+    let all = all.into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" and ");
+    format!("{all} without a surface: thin sticks and small balls are shown")
+}
+
+/// What has lines between vertices, and vertices alone, as thin sticks and small balls of
+/// triangles. Vertices keep their colours and coordinates.
+pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
+    let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
+    let low = used().reduce(Vec3::min).unwrap_or_default();
+    let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
+    let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+    // Balls of a dense cloud touch their neighbours on a surface.
+    let shown_points = points.len().div_ceil(step(points.len()));
+    let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
+    let mut made = MeshData::default();
+    for &[a, b] in lines.iter().step_by(step(lines.len())) {
+        let ends = [a, b].map(|i| data.positions[i as usize]);
+        let Some(along) = (ends[1] - ends[0]).try_normalize() else { continue };
+        let (x, y) = along.any_orthonormal_pair();
+        let first = made.positions.len() as u32;
+        for (vertex, end) in [a, b].into_iter().zip(ends) {
+            for k in 0..SIDES {
+                let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(k) / f64::from(SIDES));
+                let normal = cos as f32 * x + sin as f32 * y;
+                push_vertex(&mut made, data, vertex, end + LINE * size * normal, normal);
+            }
+        }
+        for k in 0..SIDES {
+            let (this, next) = (first + k, first + (k + 1) % SIDES);
+            made.triangles.extend([[this, next, next + SIDES], [this, next + SIDES, this + SIDES]]);
+        }
+    }
+    for &vertex in points.iter().step_by(step(points.len())) {
+        // An octahedron with the normals of a ball.
+        let first = made.positions.len() as u32;
+        for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
+            push_vertex(&mut made, data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);
+        }
+        for (x, y, z) in [(0, 2, 4), (2, 1, 4), (1, 3, 4), (3, 0, 4), (2, 0, 5), (1, 2, 5), (3, 1, 5), (0, 3, 5)] {
+            made.triangles.push([x, y, z].map(|k| first + k));
+        }
+    }
+    made.triangle_normals = made.triangles.clone();
+    if !made.uvs.is_empty() {
+        made.triangle_uvs = made.triangles.clone();
+    }
+    made
+}
+
+/// Appends a vertex to `mesh`, with the colour and texture coordinates of `other`'s `vertex`.
+fn push_vertex(mesh: &mut MeshData, other: &MeshData, vertex: u32, position: Vec3, normal: Vec3) {
+    mesh.positions.push(position);
+    mesh.normals.push(normal);
+    mesh.colors.extend(other.colors.get(vertex as usize));
+    mesh.uvs.extend(other.uvs.get(vertex as usize));
+    mesh.second_uvs.extend(other.second_uvs.get(vertex as usize));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_thickened_faces_outwards_and_keeps_colours() {
+        let positions = vec![Vec3::ZERO, Vec3::X, Vec3::Y];
+        let colors = vec![[1.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]];
+        let data = MeshData { positions, colors, ..MeshData::default() };
+        let made = thickened(&data, &[[0, 1]], &[2]);
+        assert_eq!((made.triangles.len(), made.colors.len()), (2 * SIDES as usize + 8, made.positions.len()));
+        for triangle in &made.triangles {
+            let [a, b, c] = triangle.map(|i| made.positions[i as usize]);
+            let outwards: Vec3 = triangle.iter().map(|&i| made.normals[i as usize]).sum();
+            assert!((b - a).cross(c - a).dot(outwards) > 0.0, "{triangle:?}");
+        }
+        assert_eq!(made.colors[made.positions.len() - 1], data.colors[2]);
+        assert!(thickened(&data, &[[1, 1]], &[]).triangles.is_empty());
+    }
+}

@@ -1,0 +1,127 @@
+//! Stereolithography `.stl`: triangles alone, as text or binary.
+//!
+//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. Facets' normals are those
+//! of their corners' order, so the written ones are read over, as are colours that some programs
+//! put into a facet's last two bytes.
+
+mod text;
+mod write;
+
+use super::report::{Report, counted};
+use super::{MeshFormat, as_it_is};
+use durer_diag::Diagnostics;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Axis;
+use durer_scene::shape::mesh::{MeshData, place_key};
+use std::collections::HashMap;
+use write::write;
+
+/// Bytes before the facets of a binary file: a free text, and how many there are.
+const HEAD: usize = 84;
+/// Bytes of a facet: its normal, three corners, two bytes of anything.
+const FACET: usize = 50;
+
+/// The format of meshes.
+pub(super) const FORMAT: MeshFormat =
+    MeshFormat { name: "STL", extensions: &["stl"], recognise, read, known: as_it_is, write, up: Axis::Z };
+
+/// Whether a file begins as files of this format do.
+fn recognise(bytes: &[u8]) -> bool {
+    is_text(bytes) || promised(bytes).is_some_and(|count| count > 0 && size_of_facets(count) == bytes.len() as u64)
+}
+
+/// Whether a file is text: binary ones may begin with the word `solid` as well.
+fn is_text(bytes: &[u8]) -> bool {
+    let head =
+        bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
+    let head = head.trim_ascii_start();
+    let begins = head.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
+    let has = |word: &[u8]| head.windows(word.len()).any(|part| part.eq_ignore_ascii_case(word));
+    let exact = promised(bytes).is_some_and(|count| size_of_facets(count) == bytes.len() as u64);
+    begins && !exact && !head.contains(&0) && (has(b"facet") || has(b"endsolid") || head.len() < HEAD)
+}
+
+/// How many facets the head of a binary file promises.
+fn promised(bytes: &[u8]) -> Option<u32> {
+    Some(u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?))
+}
+
+fn size_of_facets(count: u32) -> u64 {
+    HEAD as u64 + FACET as u64 * u64::from(count)
+}
+
+/// Reads a file; see [`read_mesh`](super::read_mesh).
+fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+    let mut report = Report::new(file, diagnostics);
+    let mut mesh = Builder::default();
+    match is_text(bytes) {
+        true => text::read(bytes, &mut mesh, &mut report),
+        false => read_binary(bytes, &mut mesh, &mut report),
+    }
+    if mesh.data.triangles.is_empty() && !report.has_errors() {
+        report.warning(0..0, "the mesh has no triangles");
+    }
+    report.finish(diagnostics, mesh.data)
+}
+
+fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
+    let Some(count) = promised(bytes) else {
+        let message = format!("a binary STL file has at least {HEAD} bytes, and this one has {}", bytes.len());
+        report.error(0..bytes.len().min(HEAD), message).help = Some("a text file begins with the word `solid`".into());
+        return;
+    };
+    let (facets, rest) = bytes[HEAD..].as_chunks::<FACET>();
+    let facets = match (facets.len() as u64).cmp(&u64::from(count)) {
+        std::cmp::Ordering::Less => {
+            let there = counted(facets.len(), "facet", "facets");
+            report.error(80..84, format!("the head promises {count} facets, and the file ends after {there}"));
+            return;
+        }
+        order => {
+            if order.is_gt() || !rest.is_empty() {
+                let extra = bytes.len() as u64 - size_of_facets(count);
+                let at = size_of_facets(count) as usize;
+                report.warning(at..at + 1, format!("{extra} bytes left out after the last facet"));
+            }
+            &facets[..count as usize]
+        }
+    };
+    mesh.data.triangles.reserve_exact(facets.len());
+    for (number, facet) in facets.iter().enumerate() {
+        let float = |i: usize| f32::from_le_bytes([facet[i], facet[i + 1], facet[i + 2], facet[i + 3]]);
+        let corner = |i: usize| Vec3::new(float(12 + 12 * i), float(16 + 12 * i), float(20 + 12 * i));
+        let corners = [corner(0), corner(1), corner(2)];
+        if corners.iter().all(|p| p.is_finite()) {
+            mesh.facet(corners);
+            continue;
+        }
+        let at = HEAD + FACET * number;
+        report.error(at..at + FACET, format!("facet {} has a corner that is not finite", number + 1));
+        if report.is_full() {
+            return;
+        }
+    }
+}
+
+/// Puts corners at the same place together: the format has triangles that know nothing of each
+/// other.
+#[derive(Default)]
+struct Builder {
+    data: MeshData,
+    numbers: HashMap<[u32; 3], u32>,
+}
+
+impl Builder {
+    fn facet(&mut self, corners: [Vec3; 3]) {
+        let numbers = corners.map(|corner| {
+            *self.numbers.entry(place_key(corner)).or_insert_with(|| {
+                self.data.positions.push(corner);
+                (self.data.positions.len() - 1) as u32
+            })
+        });
+        self.data.triangles.push(numbers);
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,103 @@
+//! STL as text: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three times
+//! `vertex x y z`, `endloop`, `endfacet`.
+
+use super::Builder;
+use crate::number::{parse_f32, report_number};
+use crate::report::{Report, counted, shown};
+use durer_scene::math::Vec3;
+use std::ops::Range;
+
+/// Reads the facets. Nothing but the corners counts; words between them are looked at only to find
+/// where something is odd.
+pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
+    let mut corners: Vec<Vec3> = Vec::with_capacity(3);
+    let mut facet: Option<Range<usize>> = None;
+    for line in lines(bytes) {
+        let mut words = words(bytes, line.clone());
+        let Some(first) = words.next() else { continue };
+        let word = bytes[first.clone()].to_ascii_lowercase();
+        match word.as_slice() {
+            // The rest of the line is a name.
+            b"solid" | b"endsolid" | b"outer" | b"\xef\xbb\xbfsolid" => {}
+            b"facet" => {
+                unfinished(&mut corners, facet.take(), report);
+                facet = Some(first);
+            }
+            b"vertex" => corners.extend(vertex(bytes, first, words, report)),
+            b"endloop" | b"endfacet" => {
+                if let [a, b, c] = corners[..] {
+                    mesh.facet([a, b, c]);
+                    corners.clear();
+                    facet = None;
+                }
+                if word == b"endfacet" {
+                    unfinished(&mut corners, facet.take(), report);
+                }
+            }
+            _ => {
+                let message = format!(
+                    "expected `facet`, `vertex` or another word of STL, found {}",
+                    shown(&bytes[first.clone()])
+                );
+                report.error(first, message);
+            }
+        }
+        if report.is_full() {
+            return;
+        }
+    }
+    unfinished(&mut corners, facet, report);
+}
+
+/// Complains of a facet that did not come to three corners.
+fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
+    // A wrong number was complained of already.
+    if let Some(at) = facet.filter(|_| !report.has_errors()) {
+        report.error(at, format!("a facet has 3 corners, found {}", counted(corners.len(), "corner", "corners")));
+    }
+    corners.clear();
+}
+
+fn vertex(
+    bytes: &[u8],
+    keyword: Range<usize>,
+    words: impl Iterator<Item = Range<usize>>,
+    report: &mut Report,
+) -> Option<Vec3> {
+    let (mut values, mut count, mut end) = ([0.0; 3], 0, keyword.end);
+    for word in words {
+        end = word.end;
+        match parse_f32(&bytes[word.clone()]) {
+            Ok(value) if count < 3 => values[count] = value,
+            Ok(_) => {}
+            Err(error) => {
+                report_number(report, error, word.clone(), &bytes[word]);
+                return None;
+            }
+        }
+        count += 1;
+    }
+    if count != 3 {
+        report.error(keyword.start..end, format!("`vertex` needs 3 numbers, found {count}"));
+        return None;
+    }
+    Some(values.into())
+}
+
+fn lines(bytes: &[u8]) -> impl Iterator<Item = Range<usize>> {
+    let mut at = 0;
+    bytes.split(|&byte| byte == b'\n' || byte == b'\r').map(move |line| {
+        let range = at..at + line.len();
+        at = range.end + 1;
+        range
+    })
+}
+
+fn words(bytes: &[u8], line: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    let mut at = line.start;
+    bytes[line].split(|byte| byte.is_ascii_whitespace()).filter_map(move |word| {
+        let range = at..at + word.len();
+        at = range.end + 1;
+        (!range.is_empty()).then_some(range)
+    })
+}

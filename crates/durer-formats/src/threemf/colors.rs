@@ -1,0 +1,175 @@
+//! What triangles are made of: colours, mixtures of them, and places in pictures.
+
+use super::model::{Color, Group, Model, Properties};
+use super::parser::{Broken, Parser};
+use crate::xml::Tag;
+use durer_image::decode_srgb;
+use durer_scene::math::Vec2;
+
+impl Model {
+    /// The number of things in a list of properties.
+    pub fn count(&self, id: u32) -> Option<usize> {
+        match &self.properties.get(&id)?.group {
+            Group::Colors(colors) => Some(colors.len()),
+            Group::Texture { uvs, .. } => Some(uvs.len()),
+            Group::Picture { .. } => None,
+        }
+    }
+
+    /// The colour of a property; white where it is a place in a picture.
+    fn color(&self, id: u32, index: u32) -> Option<Color> {
+        match &self.properties.get(&id)?.group {
+            Group::Colors(colors) => colors.get(index as usize).copied(),
+            Group::Texture { uvs, .. } => uvs.get(index as usize).map(|_| [1.0; 4]),
+            Group::Picture { .. } => None,
+        }
+    }
+}
+
+impl Parser<'_, '_> {
+    /// Reads a list of properties.
+    pub fn properties(&mut self, tag: &Tag) -> Result<(), Broken> {
+        let id = self.new_id(tag);
+        let group = match tag.name {
+            "basematerials" => self.colors("base", "displaycolor")?,
+            "colorgroup" => self.colors("color", "color")?,
+            "texture2d" => self.picture(tag)?,
+            "texture2dgroup" => self.texture(tag)?,
+            "compositematerials" => self.composites(tag)?,
+            _ => self.several(tag)?,
+        };
+        if let (Some(id), Some(group)) = (id, group) {
+            self.model.properties.insert(id, Properties { group, at: tag.at });
+        }
+        Ok(())
+    }
+
+    /// `#RRGGBB` or `#RRGGBBAA` of sRGB.
+    fn color(&self, tag: &Tag, name: &str) -> Option<Color> {
+        let Some(attribute) = tag.get(name) else {
+            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
+            return None;
+        };
+        let digits = attribute.value.strip_prefix('#').filter(|digits| digits.is_ascii());
+        let byte = |digits: &str, i: usize| u8::from_str_radix(digits.get(2 * i..2 * i + 2)?, 16).ok();
+        let color = digits.filter(|digits| [6, 8].contains(&digits.len())).and_then(|digits| {
+            let [r, g, b] = [byte(digits, 0)?, byte(digits, 1)?, byte(digits, 2)?].map(decode_srgb);
+            let alpha = if digits.len() == 8 { byte(digits, 3)? } else { 255 };
+            Some([r, g, b, f32::from(alpha) / 255.0])
+        });
+        if color.is_none() {
+            self.said.bad(attribute.at, format!("expected a colour as #RRGGBB, found `{}`", attribute.value));
+        }
+        color
+    }
+
+    fn colors(&mut self, name: &str, attribute: &str) -> Result<Option<Group>, Broken> {
+        let mut colors = Vec::new();
+        while let Some(tag) = self.next()? {
+            if tag.name == name {
+                colors.push(self.color(&tag, attribute).unwrap_or([1.0; 4]));
+            }
+            self.skip()?;
+        }
+        Ok(Some(Group::Colors(colors)))
+    }
+
+    fn picture(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+        self.skip()?;
+        let Some(path) = tag.get("path") else {
+            self.said.bad(tag.at, "`<texture2d>` needs `path=\"...\"`");
+            return Ok(None);
+        };
+        let styles = ["tilestyleu", "tilestylev"].map(|name| tag.get(name).map(|style| style.value.to_string()));
+        Ok(Some(Group::Picture { part: path.value.trim_start_matches('/').to_string(), styles, at: path.at }))
+    }
+
+    fn texture(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+        let picture = self.whole_number(tag, "texid");
+        let mut uvs = Vec::new();
+        while let Some(place) = self.next()? {
+            if place.name == "tex2coord" {
+                let [u, v] = ["u", "v"].map(|name| self.number(&place, name).unwrap_or(0.0));
+                uvs.push(Vec2::new(u, v));
+            }
+            self.skip()?;
+        }
+        Ok(picture.map(|picture| Group::Texture { picture, uvs }))
+    }
+
+    /// Whole numbers between blanks.
+    fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
+        let Some(attribute) = tag.get(name) else {
+            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            return Vec::new();
+        };
+        let numbers: Option<Vec<u32>> = attribute.value.split_whitespace().map(|word| word.parse().ok()).collect();
+        numbers.unwrap_or_else(|| {
+            self.said.bad(attribute.at, format!("expected whole numbers, found `{}`", attribute.value));
+            Vec::new()
+        })
+    }
+
+    /// Mixtures of base materials by shares.
+    fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+        let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
+        let known = base.and_then(|base| self.model.count(base));
+        if let (Some(base), None) = (base, known) {
+            self.said.bad(tag.at, format!("there is no list of base materials {base} before this"));
+        }
+        let parts: Vec<Color> = indices.iter().filter_map(|index| self.model.color(base?, *index)).collect();
+        if known.is_some() && parts.len() < indices.len() {
+            self.said.bad(tag.at, "`matindices` leads to base materials that are not there");
+        }
+        let mut colors = Vec::new();
+        while let Some(mixture) = self.next()? {
+            if mixture.name == "composite" {
+                let text = mixture.get("values").map_or("", |values| &values.value).to_string();
+                let shares = text.split_whitespace().map(|word| word.parse::<f32>().unwrap_or(0.0).max(0.0));
+                let shares: Vec<f32> = shares.take(parts.len()).collect();
+                let sum: f32 = shares.iter().sum();
+                let mix = |channel: usize| match sum > 0.0 && sum.is_finite() {
+                    true => shares.iter().zip(&parts).map(|(share, part)| share * part[channel]).sum::<f32>() / sum,
+                    false => parts.iter().map(|part| part[channel]).sum::<f32>() / parts.len().max(1) as f32,
+                };
+                colors.push([mix(0), mix(1), mix(2), mix(3)]);
+            }
+            self.skip()?;
+        }
+        Ok(Some(Group::Colors(colors)))
+    }
+
+    /// Several properties over each other, the last on top.
+    fn several(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
+        let pids = self.list(tag, "pids");
+        if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
+            self.said.bad(tag.at, format!("there is no list of properties {missing} before this"));
+        }
+        if pids
+            .iter()
+            .any(|pid| matches!(self.model.properties.get(pid).map(|p| &p.group), Some(Group::Texture { .. })))
+        {
+            self.said.once(tag.at, "pictures among several properties have no counterpart: the colours are shown");
+        }
+        let mut colors = Vec::new();
+        while let Some(several) = self.next()? {
+            if several.name == "multi" {
+                let indices = self.list(&several, "pindices");
+                let layers = pids.iter().enumerate().filter_map(|(i, pid)| {
+                    let color = self.model.color(*pid, indices.get(i).copied().unwrap_or(0));
+                    let texture = matches!(self.model.properties.get(pid)?.group, Group::Texture { .. });
+                    color.filter(|_| !texture)
+                });
+                // What is over something covers it by its opacity.
+                let over = layers.reduce(|below, above| {
+                    let a = above[3];
+                    let mix = |c: usize| a * above[c] + (1.0 - a) * below[c];
+                    [mix(0), mix(1), mix(2), a + (1.0 - a) * below[3]]
+                });
+                colors.push(over.unwrap_or([1.0; 4]));
+            }
+            self.skip()?;
+        }
+        Ok(Some(Group::Colors(colors)))
+    }
+}

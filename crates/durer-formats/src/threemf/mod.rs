@@ -1,0 +1,51 @@
+//! 3MF: models for printing, in an archive of zip.
+//!
+//! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
+//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths become
+//! millimetres.
+
+mod colors;
+mod mesh;
+mod model;
+mod package;
+mod parser;
+mod show;
+
+#[cfg(test)]
+mod tests;
+
+use super::model::{Input, SceneFormat};
+use super::said::Said;
+use super::{too_large, zip};
+use durer_diag::Diagnostics;
+use durer_scene::scene::{Axis, Scene};
+
+/// The format of scenes.
+pub(super) const FORMAT: SceneFormat = SceneFormat {
+    name: "3MF",
+    extensions: &["3mf"],
+    recognise,
+    read,
+    write: None,
+    up: Axis::Z,
+    whole: false,
+    shines: None,
+};
+
+/// Whether bytes are an archive: no other format that is read is one.
+fn recognise(bytes: &[u8]) -> bool {
+    zip::recognise(bytes)
+}
+
+/// Reads a file; see [`read_model`](super::scene::read_model).
+fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
+    if let Some(error) = too_large(input.bytes.len() as u64, input.name) {
+        diagnostics.push(error);
+        return None;
+    }
+    let said = Said::default();
+    let scene = package::Package::open(input, &said).and_then(|package| show::scene(package, &said));
+    let sound = !said.has_errors() && !diagnostics.has_errors();
+    diagnostics.extend(said.finish());
+    scene.filter(|_| sound)
+}

@@ -1,0 +1,117 @@
+//! The archive: which part is the model, and parts by name.
+
+use crate::model::Input;
+use crate::said::{Said, meant};
+use crate::xml::{Piece, Xml};
+use crate::zip::Zip;
+use durer_diag::{Diagnostic, Span};
+use std::sync::Arc;
+
+/// The last word of the type of what leads to the model.
+const MODEL: &str = "/3dmodel";
+const RELATIONS: &str = "_rels/.rels";
+
+/// An archive and what is told of it.
+pub(super) struct Package<'a> {
+    pub input: &'a Input<'a>,
+    said: &'a Said,
+    zip: Zip<'a>,
+    /// The name of the part that is the model.
+    pub root: String,
+}
+
+impl<'a> Package<'a> {
+    /// Finds the model of an archive.
+    pub fn open(input: &'a Input<'a>, said: &'a Said) -> Option<Self> {
+        let at = Span { file: input.file, start: 0, end: 0 };
+        let zip = match Zip::open(input.bytes) {
+            Ok(zip) => zip,
+            Err(problem) => {
+                said.push(Diagnostic::error(format!("the archive cannot be read: {problem}")).code("bad-file").at(at));
+                return None;
+            }
+        };
+        let mut package = Package { input, said, zip, root: String::new() };
+        package.root = package.found(at)?;
+        Some(package)
+    }
+
+    /// The name of the model: what the archive's relations say, or else the only file of a model.
+    fn found(&mut self, at: Span) -> Option<String> {
+        let (mut roots, mut broken) = (Vec::new(), false);
+        if let Some((bytes, file)) = self.part(RELATIONS, at) {
+            let mut xml = match Xml::new(&bytes, file) {
+                Ok(xml) => xml,
+                Err(error) => {
+                    self.said.push(*error);
+                    return None;
+                }
+            };
+            loop {
+                match xml.next() {
+                    Ok(Piece::Open(tag)) if tag.name == "Relationship" => {
+                        let kind = tag.get("Type").is_none_or(|kind| kind.value.ends_with(MODEL));
+                        let Some(target) = tag.get("Target").filter(|_| kind) else { continue };
+                        let name = target.value.trim_start_matches('/').to_string();
+                        if name.to_lowercase().ends_with(".model") {
+                            roots.push((name, target.at));
+                        }
+                    }
+                    Ok(Piece::End) => break,
+                    Ok(_) => {}
+                    Err(error) => {
+                        self.said.push(*error);
+                        broken = true;
+                        break;
+                    }
+                }
+            }
+        }
+        if let [_, (name, second), ..] = roots.as_slice() {
+            let message = format!("an archive has one model: `{name}` is a second");
+            self.said.push(Diagnostic::error(message).code("bad-file").at(*second));
+            return None;
+        }
+        if let Some((name, at)) = roots.into_iter().next() {
+            if !self.zip.names().any(|part| part == name) {
+                let help = meant(&name, self.zip.names());
+                self.said.bad_with(at, format!("the archive has no part `{name}`"), help);
+                return None;
+            }
+            return Some(name);
+        }
+        let models: Vec<&str> = self.zip.names().filter(|name| name.to_lowercase().ends_with(".model")).collect();
+        match models.as_slice() {
+            _ if broken => None,
+            [only] => Some(only.to_string()),
+            _ => {
+                let message = "the archive has no model: this is no file of 3MF";
+                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+                None
+            }
+        }
+    }
+
+    /// The bytes of a part; complains if it cannot be read.
+    pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
+        match self.zip.part(name)? {
+            Ok(bytes) => Some(bytes.into()),
+            Err(problem) => {
+                let message = format!("the part `{name}` cannot be read: {problem}");
+                self.said.push(Diagnostic::error(message).code("bad-file").at(at));
+                None
+            }
+        }
+    }
+
+    /// A part of text, with its number.
+    pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
+        let bytes = self.bytes(name, at)?;
+        if bytes.len() >= u32::MAX as usize {
+            self.said.bad(at, format!("the part `{name}` is too large"));
+            return None;
+        }
+        let file = self.input.files.borrow_mut().add(format!("{}/{name}", self.input.name), bytes.clone());
+        Some((bytes, file))
+    }
+}

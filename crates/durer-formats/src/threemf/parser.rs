@@ -1,0 +1,227 @@
+//! The text of a model: resources, and what of them is shown where.
+
+use super::model::{Group, Model, Object, Place};
+use super::package::Package;
+use crate::said::{Said, meant};
+use crate::xml::{Piece, Tag, Xml};
+use durer_diag::{Diagnostic, Span};
+use glam::DAffine3;
+use std::sync::Arc;
+
+/// Millimetres of a unit.
+const UNITS: [(&str, f64); 6] =
+    [("micron", 1e-3), ("millimeter", 1.0), ("centimeter", 10.0), ("inch", 25.4), ("foot", 304.8), ("meter", 1000.0)];
+const TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
+
+/// A text on its way to a model.
+pub(super) struct Parser<'a, 'x> {
+    pub xml: Xml<'x>,
+    pub said: &'a Said,
+    pub model: Model,
+}
+
+/// An error was told, and there is no going on.
+pub(super) struct Broken;
+
+/// Reads a part of an archive.
+pub fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> Option<Model> {
+    let Some((bytes, file)) = package.part(name, at) else {
+        if !said.has_errors() {
+            said.bad(at, format!("the archive has no part `{name}`"));
+        }
+        return None;
+    };
+    let bytes: Arc<[u8]> = bytes;
+    let xml = match Xml::new(&bytes, file) {
+        Ok(xml) => xml,
+        Err(error) => {
+            said.push(*error);
+            return None;
+        }
+    };
+    let mut parser = Parser { xml, said, model: Model { unit: 1.0, ..Model::default() } };
+    parser.whole().ok()?;
+    Some(parser.model)
+}
+
+impl<'x> Parser<'_, 'x> {
+    /// The next element inside of the one that is open; `None` at its end.
+    pub fn next(&mut self) -> Result<Option<Tag<'x>>, Broken> {
+        match self.xml.next() {
+            _ if self.said.is_full() => Err(Broken),
+            Ok(Piece::Open(tag)) => Ok(Some(tag)),
+            Ok(_) => Ok(None),
+            Err(error) => {
+                self.said.push(*error);
+                Err(Broken)
+            }
+        }
+    }
+
+    /// Passes over all that is in the element that is open.
+    pub fn skip(&mut self) -> Result<(), Broken> {
+        let mut depth = 1;
+        while depth > 0 {
+            match self.next()? {
+                Some(_) => depth += 1,
+                None => depth -= 1,
+            }
+        }
+        Ok(())
+    }
+
+    fn whole(&mut self) -> Result<(), Broken> {
+        let Some(tag) = self.next()? else { return Err(Broken) };
+        if tag.name != "model" {
+            self.said.bad(tag.at, format!("expected `<model>`, found `<{}>`", tag.name));
+            return Err(Broken);
+        }
+        if let Some(unit) = tag.get("unit") {
+            match UNITS.iter().find(|row| row.0 == unit.value) {
+                Some(row) => self.model.unit = row.1,
+                None => {
+                    let help = meant(&unit.value, UNITS.map(|row| row.0));
+                    self.said.bad_with(unit.at, format!("there is no unit `{}`", unit.value), help);
+                }
+            }
+        }
+        let mut built = None;
+        while let Some(part) = self.next()? {
+            match part.name {
+                "resources" => self.resources()?,
+                "build" => {
+                    built = Some(part.at);
+                    self.build()?;
+                }
+                "model" => {
+                    self.said.bad(part.at, "a file has one model: this is a second");
+                    return Err(Broken);
+                }
+                _ => self.skip()?,
+            }
+        }
+        // Nothing may come after the model.
+        self.next()?;
+        if built.is_none() {
+            self.said.bad(tag.at, "a model needs a `<build>`, which says what is shown");
+        }
+        Ok(())
+    }
+
+    fn resources(&mut self) -> Result<(), Broken> {
+        while let Some(tag) = self.next()? {
+            match tag.name {
+                "object" => self.object(&tag)?,
+                name if Group::NAMES.contains(&name) => self.properties(&tag)?,
+                _ => self.skip()?,
+            }
+        }
+        Ok(())
+    }
+
+    /// The number of a resource, which must be the only one of that number.
+    pub fn new_id(&self, tag: &Tag) -> Option<u32> {
+        let id = self.whole_number(tag, "id")?;
+        let known = self.model.objects.get(&id).map(|known| known.1);
+        if let Some(first) = known.or(self.model.properties.get(&id).map(|known| known.at)) {
+            let error = Diagnostic::error(format!("there are two resources {id}")).code("bad-value").at(tag.at);
+            self.said.push(error.related(first, "the first is here"));
+            return None;
+        }
+        Some(id)
+    }
+
+    /// A whole number that must be there.
+    pub fn whole_number(&self, tag: &Tag, name: &str) -> Option<u32> {
+        let Some(attribute) = tag.get(name) else {
+            self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
+            return None;
+        };
+        let number = attribute.value.trim().parse::<u32>().ok();
+        if number.is_none() {
+            self.said.bad(attribute.at, format!("expected a whole number, found `{}`", attribute.value));
+        }
+        number
+    }
+
+    /// A whole number, if it is there.
+    pub fn optional_number(&self, tag: &Tag, name: &str) -> Option<u32> {
+        tag.get(name)?;
+        self.whole_number(tag, name)
+    }
+
+    /// A number, if it is there.
+    pub fn number(&self, tag: &Tag, name: &str) -> Option<f32> {
+        let attribute = tag.get(name)?;
+        let number = attribute.value.trim().parse::<f32>().ok().filter(|number| number.is_finite());
+        if number.is_none() {
+            self.said.bad(attribute.at, format!("expected a number, found `{}`", attribute.value));
+        }
+        number
+    }
+
+    fn object(&mut self, tag: &Tag) -> Result<(), Broken> {
+        let id = self.new_id(tag);
+        if let Some(kind) = tag.get("type").filter(|kind| !TYPES.contains(&&*kind.value)) {
+            let help = meant(&kind.value, TYPES);
+            self.said.bad_with(kind.at, format!("there is no type of objects `{}`", kind.value), help);
+        }
+        let (pid, pindex) = (self.optional_number(tag, "pid"), self.optional_number(tag, "pindex"));
+        if let (None, Some(_), Some(attribute)) = (pid, pindex, tag.get("pindex")) {
+            self.said.bad(attribute.at, "`pindex` needs a `pid`");
+        }
+        let mut object = None;
+        while let Some(part) = self.next()? {
+            match part.name {
+                "mesh" => object = Some(Object::Mesh(Box::new(self.mesh(pid.zip(pindex.or(Some(0))))?))),
+                "components" => object = Some(Object::Components(self.places("component")?)),
+                _ => self.skip()?,
+            }
+        }
+        match (id, object) {
+            (Some(id), Some(object)) => {
+                self.model.objects.insert(id, (object, tag.at));
+            }
+            (_, None) => self.said.bad(tag.at, "an object needs a `<mesh>` or `<components>`"),
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn build(&mut self) -> Result<(), Broken> {
+        self.model.items = self.places("item")?;
+        Ok(())
+    }
+
+    /// What is shown of other objects.
+    fn places(&mut self, name: &str) -> Result<Vec<Place>, Broken> {
+        let mut places = Vec::new();
+        while let Some(tag) = self.next()? {
+            if tag.name == name
+                && let Some(id) = self.whole_number(&tag, "objectid")
+            {
+                let part = tag.get("path").map(|path| path.value.trim_start_matches('/').to_string());
+                places.push(Place { part, id, map: self.map(&tag), at: tag.at });
+            }
+            self.skip()?;
+        }
+        Ok(places)
+    }
+
+    /// Twelve numbers, for points as rows: three axes, and the place.
+    fn map(&self, tag: &Tag) -> DAffine3 {
+        let Some(attribute) = tag.get("transform") else { return DAffine3::IDENTITY };
+        let words = attribute.value.split_whitespace();
+        let numbers: Option<Vec<f64>> =
+            words.map(|word| word.parse::<f64>().ok().filter(|x| (*x as f32).is_finite())).collect();
+        let map = numbers.and_then(|all| <[f64; 12]>::try_from(all).ok()).map(|all| DAffine3::from_cols_array(&all));
+        match map {
+            Some(map) if map.matrix3.determinant() != 0.0 => map,
+            found => {
+                let what = if found.is_some() { "a transform that flattens nothing" } else { "twelve numbers" };
+                self.said.bad(attribute.at, format!("expected {what}, found `{}`", attribute.value));
+                DAffine3::IDENTITY
+            }
+        }
+    }
+}

@@ -1,0 +1,269 @@
+//! From models to a scene: meshes by what they are made of, and components in their places.
+
+use super::model::{Group, Mesh, Model, Object, Place};
+use super::package::Package;
+use super::parser;
+use crate::pbrt::shape::placed;
+use crate::pictures::asset;
+use crate::said::{Said, meant};
+use crate::sticks::{ball, stick};
+use durer_diag::Span;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::{Vec2, Vec3};
+use durer_scene::scene::{self, Material, Node, Picture, PictureBytes, Scene};
+use durer_scene::shape::MeshData;
+use durer_scene::texture::{Mapping, Wrap};
+use glam::DAffine3;
+use std::collections::BTreeMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Objects in objects, objects of a scene with those of components counted each time, and parts of
+/// an archive.
+const DEEPEST: u32 = 32;
+const MAX_OBJECTS: usize = 1 << 20;
+const MAX_PARTS: usize = 4096;
+
+/// Models on their way to a scene.
+struct Show<'a> {
+    package: Package<'a>,
+    said: &'a Said,
+    models: BTreeMap<String, Option<Rc<Model>>>,
+    /// What objects of parts are, and how many of the scene's that is.
+    shown: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
+    /// Materials with the picture of a resource of a part, and for vertices with colours.
+    pictures: BTreeMap<(String, u32), Option<u32>>,
+    colored: Option<u32>,
+    count: usize,
+    scene: Scene,
+}
+
+/// The scene of a package.
+pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
+    let root = package.root.clone();
+    let at = Span { file: package.input.file, start: 0, end: 0 };
+    let mut show = Show {
+        package,
+        said,
+        models: BTreeMap::new(),
+        shown: BTreeMap::new(),
+        pictures: BTreeMap::new(),
+        colored: None,
+        count: 0,
+        scene: Scene::default(),
+    };
+    let model = show.model(&root, at)?;
+    let items = show.places(&root, &model.items, 0);
+    show.scene.root = Some(scene::Group { objects: items });
+    if show.count == 0 && !said.has_errors() {
+        let warning = durer_diag::Diagnostic::warning("the file has no shapes that can be shown");
+        said.push(warning.code("no-objects").at(at));
+    }
+    Some(show.scene)
+}
+
+impl Show<'_> {
+    fn model(&mut self, part: &str, at: Span) -> Option<Rc<Model>> {
+        if let Some(known) = self.models.get(part) {
+            return known.clone();
+        }
+        if self.models.len() >= MAX_PARTS {
+            self.said.bad(at, format!("more than {MAX_PARTS} parts are too many"));
+            return None;
+        }
+        let model = parser::read(&mut self.package, part, at, self.said).map(Rc::new);
+        self.models.insert(part.to_string(), model.clone());
+        model
+    }
+
+    /// Objects in their places.
+    fn places(&mut self, part: &str, places: &[Place], depth: u32) -> Vec<scene::Object> {
+        let mut objects = Vec::new();
+        for place in places {
+            let other = place.part.clone().unwrap_or(part.to_string());
+            let Some((group, count)) = self.object(&other, place, depth) else { continue };
+            self.count = self.count.saturating_add(count);
+            if self.count > MAX_OBJECTS {
+                let message = format!("more than {MAX_OBJECTS} objects, those of components counted, are too many");
+                self.said.bad(place.at, message);
+                return objects;
+            }
+            let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
+            // Places are in the unit of the part that says them.
+            let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
+            objects.push(placed(DAffine3 { translation: unit * place.map.translation, ..place.map }, inner));
+        }
+        objects
+    }
+
+    /// What an object of a part is.
+    fn object(&mut self, part: &str, place: &Place, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
+        let key = (part.to_string(), place.id);
+        if let Some(known) = self.shown.get(&key) {
+            return Some(known.clone());
+        }
+        if depth > DEEPEST {
+            self.said.bad(place.at, format!("objects are nested more than {DEEPEST} deep: is one inside of itself?"));
+            return None;
+        }
+        let model = self.model(part, place.at)?;
+        let Some((object, at)) = model.objects.get(&place.id) else {
+            let ids: Vec<String> = model.objects.keys().map(u32::to_string).collect();
+            let help = meant(&place.id.to_string(), ids.iter().map(String::as_str));
+            self.said.bad_with(place.at, format!("there is no object {}", place.id), help);
+            return None;
+        };
+        let before = self.count;
+        let objects = match object {
+            Object::Mesh(mesh) => self.mesh((part, &model, place.id), mesh, *at),
+            Object::Components(places) => self.places(part, places, depth + 1),
+        };
+        // Each time that it is shown, all of it counts.
+        let count = (self.count - before).max(objects.len());
+        self.count = before;
+        let group = (Rc::new(scene::Group { objects }), count);
+        self.shown.insert(key, group.clone());
+        Some(group)
+    }
+
+    /// The meshes of an object: one for what has no or one colour a corner, and one for each
+    /// picture.
+    fn mesh(&mut self, (part, model, id): (&str, &Model, u32), mesh: &Mesh, at: Span) -> Vec<scene::Object> {
+        let unit = model.unit as f32;
+        let property = |i: usize| {
+            let own = mesh.properties.get(i).copied().flatten();
+            own.or(mesh.usual.map(|(list, index)| (list, [index; 3])))
+        };
+        // By picture, and without one: triangles with what is at their corners.
+        let mut skins: BTreeMap<Option<u32>, Skin> = BTreeMap::new();
+        for (i, triangle) in mesh.triangles.iter().enumerate() {
+            let skin = |picture| (picture, [[1.0; 4]; 3], [Vec2::ZERO; 3]);
+            let (picture, colors, uvs) = match property(i).map(|(list, at)| (model.properties.get(&list), at)) {
+                Some((Some(properties), at)) => match &properties.group {
+                    Group::Colors(colors) => {
+                        let color = |k: u32| colors.get(k as usize).copied().unwrap_or([1.0; 4]);
+                        (None, at.map(color), [Vec2::ZERO; 3])
+                    }
+                    Group::Texture { picture, uvs } => {
+                        (Some(*picture), [[1.0; 4]; 3], at.map(|k| uvs.get(k as usize).copied().unwrap_or_default()))
+                    }
+                    Group::Picture { .. } => skin(None),
+                },
+                Some((None, _)) => {
+                    let list = mesh.usual.map_or(0, |usual| usual.0);
+                    self.said.bad(at, format!("there is no list of properties {list} before this"));
+                    return Vec::new();
+                }
+                None => skin(None),
+            };
+            let [a, b, c] = *triangle;
+            if a != b && b != c && c != a {
+                skins.entry(picture).or_default().push(mesh, *triangle, colors, uvs, unit);
+            }
+        }
+        let mut objects = Vec::new();
+        for (picture, skin) in skins {
+            let (material, name) = match picture {
+                Some(picture) => (self.picture(part, model, picture, at), format!("{part}#{id}#{picture}")),
+                None if skin.is_colored => (Some(self.colored()), format!("{part}#{id}")),
+                None => (None, format!("{part}#{id}")),
+            };
+            let node = self.scene.add_mesh(&name, Arc::new(skin.finish(picture.is_some())), at);
+            objects.push(scene::Object { node, material, span: at });
+        }
+        let mut ends: BTreeMap<u32, f32> = BTreeMap::new();
+        for (corners, radii) in &mesh.beams {
+            let [from, to] = corners.map(|i| unit * mesh.positions[i as usize]);
+            let node = stick(from, to, radii.map(|radius| unit * radius));
+            objects.extend(node.map(|node| scene::Object { node, material: None, span: at }));
+            for (corner, radius) in corners.iter().zip(radii) {
+                let end = ends.entry(*corner).or_default();
+                *end = end.max(unit * radius);
+            }
+        }
+        let balls = ends.into_iter().map(|(i, radius)| ball(unit * mesh.positions[i as usize], radius));
+        objects.extend(balls.map(|node| scene::Object { node, material: None, span: at }));
+        objects
+    }
+
+    /// The material of what has colours.
+    fn colored(&mut self) -> u32 {
+        let scene = &mut self.scene;
+        *self.colored.get_or_insert_with(|| scene.add_material(Material::Principled(Box::new(plastic()))))
+    }
+
+    /// The material with the picture of a resource.
+    fn picture(&mut self, part: &str, model: &Model, id: u32, at: Span) -> Option<u32> {
+        let key = (part.to_string(), id);
+        if let Some(known) = self.pictures.get(&key) {
+            return *known;
+        }
+        let Some(Group::Picture { part: name, styles, at: named }) = model.properties.get(&id).map(|p| &p.group) else {
+            self.said.bad(at, format!("there is no `<texture2d>` {id}"));
+            return None;
+        };
+        let bytes = self.package.bytes(name, *named);
+        if bytes.is_none() && !self.said.has_errors() {
+            self.said.bad(*named, format!("the archive has no part `{name}`"));
+        }
+        let mut mapping = Mapping::default();
+        for (wrap, style) in mapping.wrap.iter_mut().zip(styles) {
+            *wrap = match style.as_deref().unwrap_or("wrap") {
+                "mirror" => Wrap::Mirror,
+                "clamp" | "none" => Wrap::Clamp,
+                _ => Wrap::Repeat,
+            };
+        }
+        let made = bytes.map(|bytes| {
+            let picture = Picture { bytes: PictureBytes::Here(name.clone(), bytes), mapping };
+            let base_color_texture = Some(asset(&mut self.scene, picture, *named));
+            self.scene
+                .add_material(Material::Principled(Box::new(PrincipledMaterial { base_color_texture, ..plastic() })))
+        });
+        self.pictures.insert(key, made);
+        made
+    }
+}
+
+fn plastic() -> PrincipledMaterial {
+    PrincipledMaterial { base_color: Vec3::ONE, specular_roughness: 0.4, ..PrincipledMaterial::default() }
+}
+
+/// Triangles of one material, each corner with its own colour and place.
+#[derive(Default)]
+struct Skin {
+    data: MeshData,
+    is_colored: bool,
+    known: BTreeMap<(u32, [u32; 4]), u32>,
+}
+
+impl Skin {
+    fn push(&mut self, mesh: &Mesh, triangle: [u32; 3], colors: [[f32; 4]; 3], uvs: [Vec2; 3], unit: f32) {
+        let data = &mut self.data;
+        let mut corners = triangle;
+        for (corner, color) in corners.iter_mut().zip(colors) {
+            self.is_colored |= color != [1.0; 4];
+            *corner = *self.known.entry((*corner, color.map(f32::to_bits))).or_insert_with(|| {
+                data.positions.push(unit * mesh.positions[*corner as usize]);
+                data.colors.push(color);
+                data.positions.len() as u32 - 1
+            });
+        }
+        data.triangles.push(corners);
+        let first = data.uvs.len() as u32;
+        data.triangle_uvs.push([first, first + 1, first + 2]);
+        data.uvs.extend(uvs);
+    }
+
+    fn finish(self, pictured: bool) -> MeshData {
+        let mut data = self.data;
+        if !pictured {
+            (data.uvs, data.triangle_uvs) = (Vec::new(), Vec::new());
+        }
+        if !self.is_colored {
+            data.colors = Vec::new();
+        }
+        data.flat = true;
+        data
+    }
+}

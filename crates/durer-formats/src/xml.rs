@@ -1,0 +1,288 @@
+//! XML, piece by piece, with the place of everything.
+//!
+//! What a reader of scenes has no use for is refused: declarations of types, by which a few bytes
+//! become gigabytes or another file, and entities other than the five that everybody knows.
+
+use durer_diag::{Diagnostic, Span};
+use quick_xml::events::attributes::{AttrError, Attributes};
+use quick_xml::{Reader, escape, events};
+use std::borrow::Cow;
+
+/// Elements in elements.
+const DEEPEST: usize = 128;
+
+/// A text on its way to its elements.
+pub(super) struct Xml<'a> {
+    text: &'a str,
+    file: u32,
+    /// Bytes before the text: a mark of the encoding.
+    skipped: usize,
+    reader: Reader<&'a [u8]>,
+    /// Where open elements begin.
+    open: Vec<Span>,
+    /// Whether the last element closes itself.
+    empty: bool,
+    /// Whether there was an element.
+    begun: bool,
+}
+
+/// An element as it begins.
+pub(super) struct Tag<'a> {
+    /// Its name, without that of its space.
+    pub name: &'a str,
+    pub at: Span,
+    pub attributes: Vec<Attribute<'a>>,
+}
+
+/// An attribute of an element.
+pub(super) struct Attribute<'a> {
+    /// Its name, without that of its space.
+    pub name: &'a str,
+    pub value: Cow<'a, str>,
+    /// Where the value is.
+    pub at: Span,
+}
+
+/// What comes next.
+pub(super) enum Piece<'a> {
+    Open(Tag<'a>),
+    /// The last element that was opened ends.
+    Close,
+    /// The whole text ends.
+    End,
+}
+
+impl<'a> Tag<'a> {
+    /// The attribute of a name.
+    pub fn get(&self, name: &str) -> Option<&Attribute<'a>> {
+        self.attributes.iter().find(|attribute| attribute.name == name)
+    }
+}
+
+/// Whether bytes begin like XML whose first element has one of some names.
+pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
+    let head = &bytes[..bytes.len().min(1 << 12)];
+    let text = match std::str::from_utf8(head) {
+        Ok(text) => text,
+        Err(error) => std::str::from_utf8(&head[..error.valid_up_to()]).unwrap_or_default(),
+    };
+    let mut reader = Reader::from_str(text.strip_prefix('\u{feff}').unwrap_or(text));
+    loop {
+        match reader.read_event() {
+            Ok(events::Event::Start(tag) | events::Event::Empty(tag)) => {
+                return names.contains(&local(tag.name().0));
+            }
+            Ok(events::Event::Text(words)) if !words.trim().is_empty() => return false,
+            Ok(events::Event::Eof) | Err(_) => return false,
+            Ok(_) => {}
+        }
+    }
+}
+
+/// A name without that of its space.
+fn local(name: &str) -> &str {
+    name.rsplit(':').next().unwrap_or(name)
+}
+
+impl<'a> Xml<'a> {
+    /// A text in UTF-8.
+    pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Box<Diagnostic>> {
+        let span = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
+        if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+            let error = Diagnostic::error("the text is in UTF-16").help("save it in UTF-8");
+            return Err(error.code("bad-file").at(span(0, 2)).into());
+        }
+        let text = std::str::from_utf8(bytes).map_err(|error| {
+            let at = error.valid_up_to();
+            let wrong = Diagnostic::error("these bytes are not UTF-8").help("save the file in UTF-8");
+            wrong.code("bad-file").at(span(at, at + error.error_len().unwrap_or(1)))
+        })?;
+        let plain = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let skipped = text.len() - plain.len();
+        let reader = Reader::from_str(plain);
+        Ok(Xml { text: plain, file, skipped, reader, open: Vec::new(), empty: false, begun: false })
+    }
+
+    fn span(&self, start: usize, end: usize) -> Span {
+        let at = |place: usize| (place + self.skipped) as u32;
+        Span { file: self.file, start: at(start), end: at(end.max(start)) }
+    }
+
+    /// The place of a piece of the text.
+    fn place(&self, piece: &str) -> Span {
+        let start = piece.as_ptr() as usize - self.text.as_ptr() as usize;
+        self.span(start, start + piece.len())
+    }
+
+    fn wrong(&self, at: Span, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::error(message).code("bad-file").at(at)
+    }
+
+    /// The next piece.
+    pub fn next(&mut self) -> Result<Piece<'a>, Box<Diagnostic>> {
+        if std::mem::take(&mut self.empty) {
+            self.open.pop();
+            return Ok(Piece::Close);
+        }
+        loop {
+            let start = self.reader.buffer_position() as usize;
+            let event = match self.reader.read_event() {
+                Ok(event) => event,
+                Err(error) => return Err(self.broken(&error).into()),
+            };
+            let end = self.reader.buffer_position() as usize;
+            match event {
+                events::Event::Start(_) => return self.tag(start + 1, end - 1).map(Piece::Open),
+                events::Event::Empty(_) => {
+                    self.empty = true;
+                    return self.tag(start + 1, end - 2).map(Piece::Open);
+                }
+                events::Event::End(_) => {
+                    self.open.pop();
+                    return Ok(Piece::Close);
+                }
+                events::Event::DocType(_) => {
+                    let what = "declarations of a type of document (`<!DOCTYPE`) are not read";
+                    let help = "take it out, and write what its entities stand for";
+                    return Err(self.wrong(self.span(start, end), what).help(help).into());
+                }
+                events::Event::Eof => {
+                    return match self.open.last() {
+                        Some(open) => Err(self.wrong(*open, "this element is not closed").code("unclosed").into()),
+                        None if !self.begun => Err(self.wrong(self.span(0, 0), "the file has no elements").into()),
+                        None => Ok(Piece::End),
+                    };
+                }
+                // Texts between elements, comments, and what is for other programs.
+                _ => {}
+            }
+        }
+    }
+
+    /// An element from between its angle brackets.
+    fn tag(&mut self, start: usize, end: usize) -> Result<Tag<'a>, Box<Diagnostic>> {
+        let inner = self.text.get(start..end).unwrap_or_default();
+        let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
+        let at = self.place(whole);
+        if self.begun && self.open.is_empty() {
+            return Err(self.wrong(at, "a file has one element that holds all others: this is a second").into());
+        }
+        if self.open.len() >= DEEPEST {
+            return Err(self.wrong(at, format!("elements are nested more than {DEEPEST} deep")).into());
+        }
+        self.begun = true;
+        self.open.push(at);
+        let mut attributes: Vec<Attribute> = Vec::new();
+        for found in Attributes::new(inner, whole.len()) {
+            let found = found.map_err(|error| self.wrong_attribute(start, &error))?;
+            let Cow::Borrowed(raw) = found.value else { continue };
+            let place = self.place(raw);
+            let value = escape::unescape(raw).map_err(|_| {
+                let help = "known are `&lt;`, `&gt;`, `&amp;`, `&apos;`, `&quot;` and numbers of characters";
+                self.wrong(place, "there is an `&` here that begins no known entity").help(help)
+            })?;
+            attributes.push(Attribute { name: local(found.key.0), value, at: place });
+        }
+        Ok(Tag { name: local(whole), at, attributes })
+    }
+
+    fn wrong_attribute(&self, start: usize, error: &AttrError) -> Diagnostic {
+        let (at, what) = match *error {
+            AttrError::ExpectedEq(at) => (at, "an attribute needs `=` and a value"),
+            AttrError::ExpectedValue(at) => (at, "an attribute needs a value"),
+            AttrError::UnquotedValue(at) => (at, "a value must stand in quotes"),
+            AttrError::ExpectedQuote(at, _) => (at, "a quote is missing"),
+            AttrError::Duplicated(at, _) => (at, "this attribute is given twice"),
+        };
+        let place = (start + at).min(self.text.len());
+        self.wrong(self.span(place, place), what)
+    }
+
+    fn broken(&self, error: &quick_xml::Error) -> Diagnostic {
+        let at = (self.reader.error_position() as usize).min(self.text.len());
+        let place = self.span(at, at);
+        if let quick_xml::Error::IllFormed(events) = error
+            && let quick_xml::errors::IllFormedError::MismatchedEndTag { expected, found } = events
+        {
+            let wrong = self.wrong(place, format!("`</{found}>` closes what is not open")).code("unclosed");
+            return match self.open.last() {
+                Some(open) => wrong.related(*open, format!("`{expected}` is open here")),
+                None => wrong,
+            };
+        }
+        let mut message = error.to_string();
+        if let Some(rest) = message.strip_prefix("syntax error: ").or(message.strip_prefix("ill-formed document: ")) {
+            message = rest.to_string();
+        }
+        self.wrong(place, message)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All elements as `name@place[attribute=value@place]`, and the error that ends them.
+    fn told(text: &str) -> (Vec<String>, Option<(String, u32)>) {
+        let mut all = Vec::new();
+        let mut xml = match Xml::new(text.as_bytes(), 0) {
+            Ok(xml) => xml,
+            Err(error) => return (all, Some((error.message, error.span.unwrap().start))),
+        };
+        loop {
+            match xml.next() {
+                Ok(Piece::Open(tag)) => {
+                    let more = tag.attributes.iter().map(|a| format!(" {}={}@{}", a.name, a.value, a.at.start));
+                    all.push(format!("{}@{}{}", tag.name, tag.at.start, more.collect::<String>()));
+                }
+                Ok(Piece::Close) => all.push("/".into()),
+                Ok(Piece::End) => return (all, None),
+                Err(error) => {
+                    let span = error.span.unwrap();
+                    assert!(span.start <= span.end && span.end as usize <= text.len(), "{error:?}");
+                    return (all, Some((error.message, span.start)));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn elements_and_attributes_have_their_places() {
+        let (all, error) =
+            told("\u{feff}<?xml version='1.0'?>\n<!-- a --><s:a x='1'>\n text <b m:y = \"&lt;2&#65;\" z=''/></s:a>\n");
+        assert_eq!(error, None);
+        assert_eq!(all, ["a@36 x=1@43", "b@54 y=<2A@63 z=@78", "/", "/"]);
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_at_its_place() {
+        for (text, place, words) in [
+            ("", 0, "no elements"),
+            ("words", 0, "no elements"),
+            ("<a><b></a>", 6, "closes what is not open"),
+            ("<a><b/>", 1, "not closed"),
+            ("<a/><b/>", 5, "a second"),
+            ("<a x=1/>", 5, "quotes"),
+            ("<a x/>", 4, "`=`"),
+            ("<a x='1' x='2'/>", 9, "twice"),
+            ("<a x='&boom;'/>", 6, "no known entity"),
+            ("<!DOCTYPE a [<!ENTITY b \"bbbb\">]><a x='&b;'/>", 0, "DOCTYPE"),
+            ("<a", 0, "tag not closed"),
+            ("<a><!-- </a>", 3, "comment"),
+        ] {
+            let (_, error) = told(text);
+            let (message, at) = error.unwrap_or_else(|| panic!("{text}"));
+            assert!(message.contains(words) && at == place, "{text}: {message} at {at}");
+        }
+        assert!(told(&"<a>".repeat(1000)).1.unwrap().0.contains("nested"));
+    }
+
+    #[test]
+    fn a_head_is_recognised() {
+        let names = ["scene", "bsdf"];
+        assert!(begins_with(b"<?xml version='1.0' encoding='utf-8'?>\n<!-- hi -->\n<scene version='3.0.0'>", &names));
+        assert!(begins_with(b"\xef\xbb\xbf<scene>", &names) && begins_with(b"<m:bsdf/>", &names));
+        assert!(!begins_with(b"<svg/>", &names) && !begins_with(b"scene", &names) && !begins_with(b"", &names));
+        assert!(!begins_with(b"x <scene>", &names));
+    }
+}

@@ -1,0 +1,9 @@
+//! The working colour space.
+
+use durer_bvh::math::Vec3;
+
+/// Linear Rec.709 red, green and blue. Unbounded above.
+pub type Color = Vec3;
+
+/// Weights of red, green and blue in the luminance of a [`Color`] (Rec.709).
+pub const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);

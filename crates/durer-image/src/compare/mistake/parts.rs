@@ -1,0 +1,271 @@
+//! Mistakes that show in parts of a picture: where the difference is tells what it may come from.
+
+use super::sample::{Sample, View};
+use super::{Finding, WELL, bytes, difference, flow};
+use crate::compare::picture::Scale;
+use durer_bvh::math::Vec3;
+
+/// Looks for one mistake in the reference, the picture and samples of both.
+type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
+/// The vector that a colour shows.
+type Decode = fn(Vec3) -> Vec3;
+
+/// Differences smaller than this are not seen: a little more than a 255th.
+const SEEN: f32 = 1.5 / 255.0;
+/// An edge is where neighbours differ by more than this.
+const EDGE: f32 = 0.08;
+/// So much of the difference at edges must be of colours that are there.
+const MIXED: f64 = 0.95;
+/// Squared steps between neighbours of a smoothed picture are less than this share of the other's:
+/// of an edge at a place in the pixel that may be any, two thirds are expected.
+const SMOOTHER: f64 = 0.85;
+
+/// A picture that has one colour only.
+pub fn blank(reference: &View, test: &View) -> Option<Finding> {
+    let one_color = |picture: &View| picture.pixels.iter().all(|&pixel| pixel == picture.pixels[0]);
+    let what = |color: Vec3| {
+        let [r, g, b] = bytes(color);
+        if color == Vec3::ZERO { "black everywhere".into() } else { format!("of one colour, ({r}, {g}, {b})") }
+    };
+    let words = match (one_color(reference), one_color(test)) {
+        (false, true) => format!("it is {}, the reference is not", what(test.pixels[0])),
+        (true, false) => format!("the reference is {}, it is not", what(reference.pixels[0])),
+        _ => return None,
+    };
+    Some(Finding { kind: "blank", words, explained: 1.0 })
+}
+
+/// The part of a picture that explains nearly all of the difference, if there is one.
+pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    let all: [Detector; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
+    all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
+}
+
+/// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1.
+/// Gives the vector of each.
+fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
+    let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
+    decodings.into_iter().find_map(|decode| {
+        let unit: Vec<&Sample> =
+            samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
+        // The rest is background. Full red, green or blue are unit vectors by chance: others must
+        // be there too.
+        let things = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
+        let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
+        (3 * unit.len() > things && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
+    })
+}
+
+/// Normals with negative components cut off instead of made positive.
+fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+    let (_, unit) = unit_vectors(samples)?;
+    let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
+    let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
+    // A black pixel may be anything; single components that are missing are not.
+    let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
+    let explained = 1.0 - rest / difference(samples);
+    let words =
+        "components of its normals that should be positive are 0: negative ones are cut off (take absolute values)";
+    (unit.iter().filter(some).count() * 20 > unit.len()).then(|| Finding {
+        kind: "normals-cut-off",
+        words: words.into(),
+        explained,
+    })
+}
+
+/// Normals of the right direction whose length is not 1.
+fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+    let (decode, unit) = unit_vectors(samples)?;
+    let encode = |vector: Vec3| if decode(Vec3::ZERO) == Vec3::ZERO { vector } else { 0.5 * vector + 0.5 };
+    let wrong = unit.iter().filter(|s| (decode(s.test).length() - 1.0).abs() > 0.03).count();
+    let rest = |s: &&Sample| {
+        let scaled = encode(decode(s.reference) * decode(s.test).length()).clamp(Vec3::ZERO, Vec3::ONE);
+        f64::from((s.test - scaled).length_squared())
+    };
+    let unit_difference: f64 = unit.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum();
+    let rest: f64 = unit.iter().map(rest).sum();
+    let explained = (unit_difference - rest) / difference(samples);
+    let words = "its normals have the right directions but not the length 1: they are not normalised";
+    (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", words: words.into(), explained })
+}
+
+/// Differences where the reference is as bright as can be.
+fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+    let (mut full, mut there, mut total) = (0, 0.0, 0.0);
+    for sample in samples.iter().filter(|_| reference.scale == Scale::Display) {
+        for channel in 0..3 {
+            let difference = f64::from(sample.test[channel] - sample.reference[channel]);
+            total += difference * difference;
+            if sample.reference[channel] >= 0.998 {
+                full += 1;
+                there += difference * difference;
+            }
+        }
+    }
+    let words = "it differs only where channels of the reference are full (255): values beyond 1 wrap around there \
+                 instead of being cut off";
+    // What wraps around may be anything: also black.
+    let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
+    let some = samples.iter().filter(wrapped).count();
+    (full > 0 && full < 2 * samples.len() && some * 12 > full).then(|| Finding {
+        kind: "not-clamped",
+        words: words.into(),
+        explained: there / total,
+    })
+}
+
+/// Whether a pixel or its neighbours differ much among each other.
+fn at_edge(picture: &View, s: &Sample) -> bool {
+    let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
+    let around = around.map(|(x, y)| picture.at(x, y));
+    let (low, high) = around.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+    (high - low).max_element() > EDGE
+}
+
+/// Differences at edges, from the places of samples in pixels or the averaging of samples.
+fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
+    let share = at_edges.len() as f64 / samples.len() as f64;
+    let explained = difference(&at_edges) / difference(samples);
+    // Smoothing makes one large step between neighbours two or more small ones.
+    let roughness = |picture: &View| -> f64 {
+        let steps = |s: &Sample| {
+            let here = picture.at(s.x, s.y);
+            let (right, below) = (picture.at(s.x + 1, s.y) - here, picture.at(s.x, s.y + 1) - here);
+            f64::from(right.length_squared() + below.length_squared())
+        };
+        at_edges.iter().map(steps).sum()
+    };
+    let (own, others) = (roughness(test), roughness(reference));
+    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is
+    // moved it need not.
+    let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
+        let by = (s.test - s.reference).element_sum();
+        (sum + by, all + by.abs())
+    });
+    let is_even = sum.abs() < 0.6 * all;
+    let cause = if others < SMOOTHER * own {
+        is_even.then(|| "the reference is smoothed there, it is not (samples without effect, no filter)".into())
+    } else if own < SMOOTHER * others {
+        is_even.then(|| "it is smoothed there, the reference is not (more samples, a filter)".into())
+    } else {
+        let elsewhere =
+            || is_even.then(|| "samples lie at other places in the pixels, or are averaged otherwise".into());
+        flow::cause(reference, &at_edges).or_else(elsewhere)
+    }?;
+    let words = format!("it differs only at edges ({:.1} % of the picture): {cause}", 100.0 * share);
+    let is_mixed = mixed(reference, test, &at_edges) > MIXED;
+    (share < 0.4 && is_mixed && has_equal_sides(reference, test, &at_edges)).then_some(Finding {
+        kind: "edges",
+        words,
+        explained,
+    })
+}
+
+/// The share of the squared difference in pixels that show nothing but what is beside them: other
+/// samples of a pixel see what its neighbours see, other shading does not.
+fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
+    let between = |value: Vec3, picture: &View, s: &Sample| {
+        let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
+        let (low, high) = around.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        value.cmpge(low - SEEN).all() && value.cmple(high + SEEN).all()
+    };
+    let is_between = |s: &&Sample| between(s.test, reference, s) || between(s.reference, test, s);
+    difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
+}
+
+/// Whether there are equal parts on both sides of the edges that differ: a thing so thin that all
+/// of it is edge tells nothing.
+fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
+    let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
+    let sides = |s: &&&Sample| {
+        let around = (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| Sample { x: s.x + dx, y: s.y + dy, ..***s }));
+        let flat = around.filter(|place| !at_edge(reference, place) && !at_edge(test, place));
+        let equal = flat.map(|place| (reference.at(place.x, place.y), test.at(place.x, place.y)));
+        let equal = equal.filter(|(a, b)| (*a - *b).abs().max_element() <= SEEN).map(|(a, _)| a);
+        let (low, high) = equal.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+        (high - low).max_element() > EDGE
+    };
+    differing.iter().filter(sides).count() * 8 > differing.len()
+}
+
+/// How many of a pixel's eight neighbours do not differ as it does.
+fn lonely(reference: &View, test: &View, s: &Sample) -> usize {
+    let own = s.test - s.reference;
+    let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
+    around.filter(|&(x, y)| (test.at(x, y) - reference.at(x, y)).dot(own) < 0.5 * own.length_squared()).count()
+}
+
+fn seen(s: &&Sample) -> bool {
+    (s.test - s.reference).abs().max_element() > SEEN
+}
+
+fn brighter(s: &Sample) -> bool {
+    (s.test - s.reference).element_sum() > 0.0
+}
+
+/// Single pixels that are all darker, or all brighter.
+fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
+    // Single pixels at edges differ because edges have moved.
+    let alone = seen.iter().filter(|s| lonely(reference, test, s) >= 7 && !at_edge(reference, s)).count();
+    let share = seen.len() as f64 / samples.len() as f64;
+    let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
+    let (kind, words, part) = if down.len() > up.len() {
+        ("dark-speckles", "dark speckles: shadow acne, rays that hit the surface which they leave (the epsilon)", down)
+    } else {
+        ("bright-speckles", "bright speckles: noise, or rays that miss what they should hit", up)
+    };
+    let explained = difference(&part) / difference(samples);
+    let words = format!("{:.1} % of it are {words}", 100.0 * share);
+    (2 * alone > seen.len() && share < 0.5).then_some(Finding { kind, words, explained })
+}
+
+/// Differences without a pattern.
+fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
+    let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
+    let alone: usize = seen.iter().map(|s| lonely(reference, test, s)).sum();
+    let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
+    let words = "it differs from pixel to pixel without a pattern: noise, from few samples or other random numbers";
+    // Moved edges of a fine pattern look like noise; noise is also where nothing else is.
+    let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
+    (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
+        kind: "noise",
+        words: words.into(),
+        explained,
+    })
+}
+
+/// Parts that are darker or brighter while the rest is equal.
+fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
+    let total = difference(samples);
+    let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(seen).copied().partition(brighter);
+    let up = difference(&bright) > difference(&dark);
+    let part = if up { bright } else { dark };
+    let explained = difference(&part) / total;
+    if part.is_empty() || explained < WELL {
+        return None;
+    }
+    // How well one factor fits the whole part.
+    let (sum, squares) = part.iter().fold((0.0, 0.0), |(sum, squares), s| {
+        (sum + f64::from(s.test.dot(s.reference)), squares + f64::from(s.reference.length_squared()))
+    });
+    let factor = if squares > 0.0 { (sum / squares) as f32 } else { 0.0 };
+    let rest: f64 = part.iter().map(|s| f64::from((s.test - factor * s.reference).length_squared())).sum();
+    let fits = squares > 0.0 && rest < (1.0 - WELL) * total;
+    let (kind, how) = match up {
+        true => ("brighter-parts", "brighter"),
+        false if fits && factor < 0.02 => ("black-parts", "black"),
+        false => ("darker-parts", "darker"),
+    };
+    // Shadows, lights, highlights, rays: all of them look like this.
+    let cause = "why cannot be told from the pictures; with `--scene` the usual mistakes are tried";
+    let by = if fits && kind != "black-parts" { format!(" by the factor {factor:.3}") } else { String::new() };
+    let share = part.len() as f64 / samples.len() as f64;
+    // What is nearly everywhere and follows no rule is not a part.
+    if share > 0.75 && !fits {
+        return None;
+    }
+    let words = format!("{:.1} % of it are {how}{by}, the rest is equal: {cause}", 100.0 * share);
+    Some(Finding { kind, words, explained })
+}

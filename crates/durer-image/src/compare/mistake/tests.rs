@@ -1,0 +1,185 @@
+//! Mistakes made in pictures, and found again.
+
+use super::*;
+use crate::compare::picture::{Picture, Scale, linear_to_srgb, srgb_to_linear};
+use crate::{Image, Transfer, decode_linear};
+use durer_bvh::math::fp;
+
+const SIDE: usize = 96;
+
+type Paint = dyn Fn(usize, usize) -> Vec3;
+
+/// A picture with 255ths as values, as files have them.
+fn picture(paint: &Paint) -> Picture {
+    let paint = |i: usize| paint(i % SIDE, i / SIDE);
+    let round = |value: f32| decode_linear((value.clamp(0.0, 1.0) * 255.0).round() as u8);
+    let pixels = (0..SIDE * SIDE).map(|i| paint(i).map(round)).collect();
+    Picture { image: Image::from_pixels(SIDE as u32, SIDE as u32, pixels).unwrap(), scale: Scale::Display }
+}
+
+/// A shaded ball and a smaller one before a dark background, without symmetry.
+fn scene(x: usize, y: usize) -> Vec3 {
+    let ball = |cx: f32, cy: f32, radius: f32, color: Vec3| {
+        let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
+        let squared = 1.0 - dx * dx - dy * dy;
+        (squared > 0.0).then(|| color * (0.15 + 0.8 * (0.6 * squared.sqrt() - 0.5 * dx - 0.6 * dy).max(0.0)))
+    };
+    ball(30.0, 35.0, 12.0, Vec3::new(0.3, 0.5, 0.9))
+        .or(ball(55.0, 50.0, 30.0, Vec3::new(0.9, 0.6, 0.3)))
+        .unwrap_or(Vec3::new(0.1, 0.05, 0.2))
+}
+
+/// Absolute values of a ball's normals.
+fn normals(x: usize, y: usize) -> Vec3 {
+    let (dx, dy) = ((x as f32 - 50.0) / 40.0, (y as f32 - 45.0) / 40.0);
+    let squared = 1.0 - dx * dx - dy * dy;
+    if squared > 0.0 { Vec3::new(dx.abs(), dy.abs(), squared.sqrt()) } else { Vec3::ZERO }
+}
+
+fn findings(reference: &Paint, test: &Paint) -> Vec<Finding> {
+    explain(&Pair::new(&picture(reference), &picture(test), Transfer::Srgb).unwrap())
+}
+
+/// The kind of the first finding, which must explain at least nine tenths.
+#[track_caller]
+fn finds(kind: &str, words: &str, reference: &Paint, test: &Paint) {
+    let found = findings(reference, test);
+    let first = found.first().unwrap_or_else(|| panic!("{kind}: nothing is found"));
+    assert_eq!(first.kind, kind, "{found:?}");
+    assert!(first.words.contains(words) && first.explained > 0.9, "{found:?}");
+}
+
+#[test]
+fn places_of_pixels() {
+    let last = SIDE - 1;
+    finds("mirrored", "left to right", &scene, &move |x, y| scene(last - x, y));
+    finds("upside-down", "upside down", &scene, &move |x, y| scene(x, last - y));
+    finds("turned", "180", &scene, &move |x, y| scene(last - x, last - y));
+    finds("turned", "degrees clockwise", &scene, &move |x, y| scene(y, last - x));
+    finds("turned", "counter-clockwise", &scene, &move |x, y| scene(last - y, x));
+    finds("transposed", "columns and rows", &scene, &|x, y| scene(y, x));
+    finds("transposed", "backwards", &scene, &move |x, y| scene(last - y, last - x));
+    finds("shifted", "by 1 pixel down", &scene, &|x, y| scene(x, y.saturating_sub(1)));
+    finds("shifted", "by 3 pixels to the left and 2 pixels down", &scene, &move |x, y| {
+        scene((x + 3).min(last), y.saturating_sub(2))
+    });
+    finds("shifted", "by 17 pixels to the right", &scene, &|x, y| scene(x.saturating_sub(17), y));
+}
+
+#[test]
+fn brightness_and_colour() {
+    finds("factor", "factor 0.5", &scene, &|x, y| scene(x, y) * 0.5);
+    finds("factor", "brighter by the factor 1.39", &scene, &|x, y| scene(x, y) * 1.4);
+    let half = |v: f32| linear_to_srgb(0.5 * srgb_to_linear(v));
+    finds("factor", "light is darker by the factor 0.5", &scene, &move |x, y| scene(x, y).map(half));
+    finds("factor", "0.5", &scene, &|x, y| scene(x, y) * Vec3::new(0.5, 1.0, 1.0));
+    finds("added", "/255) everywhere", &scene, &|x, y| scene(x, y) + 0.1);
+    finds("range", "times", &scene, &|x, y| scene(x, y) * 0.5 + 0.3);
+    finds("range", "exchanged", &scene, &|x, y| 0.8 - scene(x, y) * 0.7);
+    finds("inverted", "black for white", &scene, &|x, y| 1.0 - scene(x, y));
+    finds("inverted", "green (y) is inverted", &scene, &|x, y| {
+        let color = scene(x, y);
+        Vec3::new(color.x, 1.0 - color.y, color.z)
+    });
+    finds("channels", "BGR", &scene, &|x, y| {
+        let [r, g, b] = scene(x, y).to_array();
+        Vec3::new(b, g, r)
+    });
+    finds("channels", "green, blue and red", &scene, &|x, y| {
+        let [r, g, b] = scene(x, y).to_array();
+        Vec3::new(g, b, r)
+    });
+    finds("grey", "no colours", &scene, &|x, y| Vec3::splat(scene(x, y).dot(Vec3::new(0.299, 0.587, 0.114))));
+    finds("gamma-once-more", "once more", &scene, &move |x, y| scene(x, y).map(linear_to_srgb));
+    finds("gamma-once-less", "once less", &scene, &move |x, y| scene(x, y).map(srgb_to_linear));
+    finds("gamma", "power of 0.6", &scene, &|x, y| scene(x, y).map(|v| fp::pow(v, 0.65)));
+    let background = scene(0, 0);
+    finds("recoloured", "(26, 13, 51)", &scene, &move |x, y| {
+        let color = scene(x, y);
+        if color == background { Vec3::new(0.3, 0.4, 0.5) } else { color }
+    });
+}
+
+#[test]
+fn depth_mapped_the_other_way() {
+    let depth = |x, y| Vec3::splat(normals(x, y).z);
+    finds("inverted", "not black", &depth, &move |x, y| {
+        let depth = depth(x, y);
+        if depth == Vec3::ZERO { depth } else { 1.0 - depth }
+    });
+}
+
+#[test]
+fn normals_gone_wrong() {
+    finds("normals-not-normalised", "length 1", &normals, &|x, y| normals(x, y) * (0.6 + 0.004 * x as f32));
+    finds("normals-cut-off", "absolute", &normals, &|x, y| {
+        let normal = normals(x, y);
+        Vec3::new(if x < 50 { 0.0 } else { normal.x }, if y < 45 { 0.0 } else { normal.y }, normal.z)
+    });
+}
+
+#[test]
+fn parts_of_a_picture() {
+    let within = |x: usize, y: usize| (40..60).contains(&x) && (45..70).contains(&y);
+    finds("darker-parts", "factor 0.3", &scene, &move |x, y| scene(x, y) * if within(x, y) { 0.3 } else { 1.0 });
+    finds(
+        "brighter-parts",
+        "the rest is equal",
+        &move |x, y| scene(x, y) * if within(x, y) { 0.3 } else { 1.0 },
+        &scene,
+    );
+    finds("black-parts", "black", &scene, &move |x, y| if within(x, y) { Vec3::ZERO } else { scene(x, y) });
+    // One pixel in about ten, at no regular places.
+    let speckle = |x: usize, y: usize| (x * 7919 + y * 104_729 + x * y * 31) % 31 < 3;
+    finds("dark-speckles", "acne", &scene, &move |x, y| scene(x, y) * if speckle(x, y) { 0.2 } else { 1.0 });
+    finds("not-clamped", "wrap", &|x, y| scene(x, y) * 2.0, &|x, y| {
+        (scene(x, y) * 2.0).map(|v| if v > 1.0 { v - 1.0 } else { v })
+    });
+    finds("blank", "black everywhere", &scene, &|_, _| Vec3::ZERO);
+    finds("blurred", "averaged", &scene, &|x, y| {
+        let at = |dx: usize, dy: usize| scene((x + dx).clamp(1, SIDE) - 1, (y + dy).clamp(1, SIDE) - 1);
+        let row = |dy| at(0, dy) + 2.0 * at(1, dy) + at(2, dy);
+        (row(0) + 2.0 * row(1) + row(2)) / 16.0
+    });
+}
+
+/// Discs seen at places of the pixels that differ by parts of a pixel.
+#[test]
+fn samples_at_other_places() {
+    let disc = |x: f32, y: f32| {
+        let (dx, dy) = (x - 46.3, y - 50.7);
+        Vec3::splat(if dx * dx + dy * dy < 900.0 { 0.9 } else { 0.2 })
+    };
+    let middle = move |x: usize, y: usize| disc(x as f32 + 0.5, y as f32 + 0.5);
+    let border = |i: usize| i as f32 * SIDE as f32 / (SIDE as f32 - 1.0);
+    finds("edges", "its rays go to i / (n - 1)", &middle, &move |x, y| disc(border(x), border(y)));
+    finds("edges", "the reference's rays go to i / (n - 1)", &move |x, y| disc(border(x), border(y)), &middle);
+    finds("edges", "pixels to the right", &middle, &move |x, y| disc(x as f32, y as f32 + 0.5));
+    let smooth = move |x: usize, y: usize| {
+        let samples =
+            (0..16).map(|i| disc(x as f32 + 0.125 + (i % 4) as f32 / 4.0, y as f32 + 0.125 + (i / 4) as f32 / 4.0));
+        samples.sum::<Vec3>() / 16.0
+    };
+    finds("edges", "the reference is smoothed", &smooth, &middle);
+    finds("edges", "it is smoothed", &middle, &smooth);
+}
+
+#[test]
+fn two_mistakes_behind_each_other() {
+    let found = findings(&scene, &move |x, y| scene(SIDE - 1 - x, y).map(linear_to_srgb));
+    let kinds: Vec<&str> = found.iter().map(|finding| finding.kind).collect();
+    assert!(kinds.contains(&"mirrored") && kinds.contains(&"gamma-once-more"), "{found:?}");
+    assert!(found.last().unwrap().explained > 0.99, "{found:?}");
+}
+
+#[test]
+fn what_is_no_usual_mistake_is_none() {
+    // Another picture.
+    let other = |x: usize, y: usize| Vec3::new(((x * x + 3 * y) % 97) as f32, ((y * y + x) % 89) as f32, 40.0) / 100.0;
+    let found = findings(&scene, &other);
+    assert!(found.iter().all(|finding| finding.explained < 0.9), "{found:?}");
+    // Noise is not taken for anything with a cause.
+    let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729 + x * x * 31 + y * y * 17) % 255) as f32 / 255.0 - 0.5;
+    let found = findings(&scene, &move |x, y| scene(x, y) + 0.1 * noise(x, y));
+    assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");
+}

@@ -1,0 +1,172 @@
+//! Two pictures on one scale.
+
+use super::CompareError;
+use crate::{Depth, Encoded, Image, ImageError, Transfer, decode_linear, decode_srgb};
+use durer_bvh::math::{Vec3, fp};
+
+/// What the numbers of a picture are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Values for a screen, from 0 to 1, as they stand in an integer format (255ths in eight bits).
+    Display,
+    /// Linear light of any size, as floating-point formats hold it.
+    Linear,
+}
+
+impl Scale {
+    /// Its name in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Scale::Display => "display",
+            Scale::Linear => "linear",
+        }
+    }
+
+    /// The linear light of a value.
+    pub(super) fn decode(self, value: Vec3) -> Vec3 {
+        match self {
+            Scale::Linear => value,
+            Scale::Display => value.map(srgb_to_linear),
+        }
+    }
+
+    /// The value for linear light: the inverse of [`Scale::decode`].
+    pub(super) fn encode(self, light: Vec3) -> Vec3 {
+        match self {
+            Scale::Linear => light,
+            Scale::Display => light.map(linear_to_srgb),
+        }
+    }
+
+    /// A value as a file of this scale could hold it.
+    pub(super) fn clamp(self, value: Vec3) -> Vec3 {
+        match self {
+            Scale::Linear => value,
+            Scale::Display => value.clamp(Vec3::ZERO, Vec3::ONE),
+        }
+    }
+}
+
+/// The curve of IEC 61966-2-1, from 0 to 1.
+pub fn linear_to_srgb(light: f32) -> f32 {
+    if light <= 0.0031308 { 12.92 * light } else { 1.055 * fp::pow(light, 1.0 / 2.4) - 0.055 }
+}
+
+/// The inverse curve of IEC 61966-2-1.
+pub fn srgb_to_linear(value: f32) -> f32 {
+    if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
+}
+
+/// A picture as its file has it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// The values, without any curve applied or undone.
+    pub image: Image,
+    /// What they are.
+    pub scale: Scale,
+}
+
+impl Picture {
+    /// Reads a picture of any known format, by its content, or failing that by the extension of
+    /// `name`. Alpha is dropped.
+    ///
+    /// # Errors
+    /// Those of [`read`](crate::read).
+    pub fn read(bytes: &[u8], name: &str) -> Result<Picture, ImageError> {
+        Picture::decode(&Encoded::open(bytes, name)?, u64::MAX)
+    }
+
+    /// Reads one whose head was read, within so many bytes of memory.
+    ///
+    /// # Errors
+    /// Those of [`Encoded::read`].
+    pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
+        // Sixteen bits a channel of PNG and PPM are for a screen too.
+        let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
+        Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
+    }
+}
+
+/// A reference and a picture of the same size and scale.
+pub(super) struct Pair {
+    pub width: usize,
+    pub height: usize,
+    pub scale: Scale,
+    pub reference: Vec<Vec3>,
+    pub test: Vec<Vec3>,
+    /// Pixels with a number that is not finite, in the reference and in the other; both are 0 there
+    /// in both pictures.
+    pub not_finite: [Vec<usize>; 2],
+    /// Pixels of which one alone is not finite, or the two are so in different ways.
+    pub finite_differs: Vec<usize>,
+}
+
+impl Pair {
+    /// Brings two pictures to one scale: light is encoded to eight bits by `transfer` where the
+    /// other picture has those.
+    pub fn new(reference: &Picture, test: &Picture, transfer: Transfer) -> Result<Pair, CompareError> {
+        let size = |picture: &Picture| (picture.image.width, picture.image.height);
+        if size(reference) != size(test) {
+            return Err(CompareError::Sizes { reference: size(reference), test: size(test) });
+        }
+        reference.image.check()?;
+        test.image.check()?;
+        let scale = if reference.scale == test.scale { reference.scale } else { Scale::Display };
+        let values = |picture: &Picture| match (picture.scale, scale) {
+            (Scale::Linear, Scale::Display) => picture
+                .image
+                .pixels
+                .iter()
+                .map(|&light| transfer.encode_pixel(light).map(decode_linear).into())
+                .collect(),
+            _ => picture.image.pixels.clone(),
+        };
+        let (width, height) = size(reference);
+        let mut pair = Pair {
+            width: width as usize,
+            height: height as usize,
+            scale,
+            reference: values(reference),
+            test: values(test),
+            not_finite: [Vec::new(), Vec::new()],
+            finite_differs: Vec::new(),
+        };
+        pair.clear_not_finite();
+        Ok(pair)
+    }
+
+    fn clear_not_finite(&mut self) {
+        for (index, (a, b)) in self.reference.iter_mut().zip(&mut self.test).enumerate() {
+            if a.is_finite() && b.is_finite() {
+                continue;
+            }
+            for (pixel, list) in [*a, *b].iter().zip(&mut self.not_finite) {
+                if !pixel.is_finite() {
+                    list.push(index);
+                }
+            }
+            let same = |(x, y): (f32, f32)| x == y || x.is_nan() && y.is_nan();
+            if !a.to_array().into_iter().zip(b.to_array()).all(same) {
+                self.finite_differs.push(index);
+            }
+            (*a, *b) = (Vec3::ZERO, Vec3::ZERO);
+        }
+    }
+
+    /// Linear light of both pictures, from 0 to 1, as a screen shows it.
+    pub fn shown(&self) -> [Vec<Vec3>; 2] {
+        let table: [f32; 256] = std::array::from_fn(|value| decode_srgb(value as u8));
+        // Nearly all values are 255ths.
+        let decode = |value: f32| {
+            let level = value * 255.0;
+            let near = level.round();
+            if (level - near).abs() < 1e-3 { table[near as usize] } else { srgb_to_linear(value) }
+        };
+        let light = |pixels: &[Vec3]| match self.scale {
+            Scale::Linear => pixels.iter().map(|pixel| pixel.clamp(Vec3::ZERO, Vec3::ONE)).collect(),
+            Scale::Display => pixels.iter().map(|pixel| pixel.clamp(Vec3::ZERO, Vec3::ONE).map(decode)).collect(),
+        };
+        let (a, b) = rayon::join(|| light(&self.reference), || light(&self.test));
+        [a, b]
+    }
+}

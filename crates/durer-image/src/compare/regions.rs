@@ -1,0 +1,136 @@
+//! Where two pictures differ most.
+
+use super::measure::over;
+use super::picture::Pair;
+use durer_bvh::math::Vec3;
+
+/// A part of a picture that differs from the reference by more than the tolerance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Region {
+    /// Its leftmost column.
+    pub x: u32,
+    /// Its top row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Pixels in it that differ.
+    pub pixels: usize,
+    /// Mean of (picture - reference) over those pixels, for each channel: negative where the
+    /// picture is darker.
+    pub mean_difference: Vec3,
+    /// Its share of the squared difference of the whole picture, from 0 to 1.
+    pub share: f64,
+    /// Column and row of the pixel that differs most: the one to ask about.
+    pub worst: (u32, u32),
+}
+
+impl Region {
+    /// The most that are given.
+    pub const LIMIT: usize = 10;
+}
+
+/// Cells along the longer side of a picture: pixels that differ belong together where their cells
+/// touch.
+const CELLS: usize = 64;
+
+#[derive(Clone, Copy)]
+struct Found {
+    low: (usize, usize),
+    high: (usize, usize),
+    pixels: usize,
+    sum: Vec3,
+    squared: f64,
+    worst: (f32, usize),
+}
+
+impl Found {
+    const NONE: Found = Found {
+        low: (usize::MAX, usize::MAX),
+        high: (0, 0),
+        pixels: 0,
+        sum: Vec3::ZERO,
+        squared: 0.0,
+        worst: (-1.0, 0),
+    };
+
+    fn add(&mut self, other: &Found) {
+        self.low = (self.low.0.min(other.low.0), self.low.1.min(other.low.1));
+        self.high = (self.high.0.max(other.high.0), self.high.1.max(other.high.1));
+        self.pixels += other.pixels;
+        self.sum += other.sum;
+        self.squared += other.squared;
+        if other.worst.0 > self.worst.0 {
+            self.worst = other.worst;
+        }
+    }
+}
+
+/// The regions with the largest squared difference, the worst first.
+pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
+    let side = pair.width.max(pair.height).div_ceil(CELLS).max(2);
+    let (columns, rows) = (pair.width.div_ceil(side), pair.height.div_ceil(side));
+    let mut cells = vec![Found::NONE; columns * rows];
+    let mut total = 0.0;
+    for index in 0..pair.reference.len() {
+        let (a, b) = (pair.reference[index], pair.test[index]);
+        if a == b {
+            continue;
+        }
+        let difference = b - a;
+        let squared = f64::from(difference.length_squared());
+        total += squared;
+        if over(a, b, tolerance) {
+            let place = (index % pair.width, index / pair.width);
+            let one = Found {
+                low: place,
+                high: place,
+                pixels: 1,
+                sum: difference,
+                squared,
+                worst: (difference.abs().max_element(), index),
+            };
+            cells[place.1 / side * columns + place.0 / side].add(&one);
+        }
+    }
+    let mut regions = joined(&mut cells, columns, rows);
+    regions.sort_by(|a, b| b.squared.total_cmp(&a.squared).then(a.worst.1.cmp(&b.worst.1)));
+    regions.truncate(Region::LIMIT);
+    let place = |index: usize| ((index % pair.width) as u32, (index / pair.width) as u32);
+    let region = |found: Found| Region {
+        x: found.low.0 as u32,
+        y: found.low.1 as u32,
+        width: (found.high.0 - found.low.0 + 1) as u32,
+        height: (found.high.1 - found.low.1 + 1) as u32,
+        pixels: found.pixels,
+        mean_difference: found.sum / found.pixels as f32,
+        share: found.squared / total,
+        worst: place(found.worst.1),
+    };
+    regions.into_iter().map(region).collect()
+}
+
+/// Joins cells that touch, at corners too. Takes them out.
+fn joined(cells: &mut [Found], columns: usize, rows: usize) -> Vec<Found> {
+    let mut regions = Vec::new();
+    for start in 0..cells.len() {
+        let mut region = Found::NONE;
+        let mut stack = vec![start];
+        while let Some(cell) = stack.pop() {
+            let found = std::mem::replace(&mut cells[cell], Found::NONE);
+            if found.pixels == 0 {
+                continue;
+            }
+            region.add(&found);
+            let (x, y) = (cell % columns, cell / columns);
+            for y in y.saturating_sub(1)..(y + 2).min(rows) {
+                stack.extend((x.saturating_sub(1)..(x + 2).min(columns)).map(|x| y * columns + x));
+            }
+        }
+        if region.pixels > 0 {
+            regions.push(region);
+        }
+    }
+    regions
+}

@@ -1,0 +1,77 @@
+//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's
+//! programs wrote it; of 32 bits with alpha where the camera does not see everything.
+
+use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
+use ::image::ImageFormat;
+
+const NAME: &str = "TGA";
+
+pub const FORMAT: Format = Format {
+    name: NAME,
+    extensions: &["tga"],
+    depth: Depth::EightBit,
+    layers: false,
+    most_side: 65535,
+    // The format has no mark of its own: it is known by its name only.
+    begins: |_| false,
+    head: |bytes| {
+        let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
+        // The decoder expands palettes and pixels of 16 bits from a copy.
+        Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
+    },
+    decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
+    encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
+    rows: Some(&ROWS),
+};
+
+/// Image type: true colour, not compressed.
+const TRUE_COLOR: u8 = 2;
+
+static ROWS: RowFormat = RowFormat {
+    bottom_up: true,
+    head: |strip| {
+        let side = |side: u32| u16::try_from(side).map_err(|_| ImageError::unsupported(NAME, "a side above 65535"));
+        let ([w0, w1], [h0, h1]) = (side(strip.width)?.to_le_bytes(), side(strip.height)?.to_le_bytes());
+        let (bits, alpha_bits) = if strip.alpha { (32, 8) } else { (24, 0) };
+        // No identification, no palette, origin at the lower left.
+        Ok(vec![0, 0, TRUE_COLOR, 0, 0, 0, 0, 0, 0, 0, 0, 0, w0, w1, h0, h1, bits, alpha_bits])
+    },
+    row: |strip, _, pixels, coverage, out| {
+        let channels = if strip.alpha { 4 } else { 3 };
+        strip.eight_bit(pixels, coverage, |[r, g, b, a]| out.extend(&[b, g, r, a][..channels]));
+    },
+    png: false,
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Image;
+    use crate::{Layer, WriteOptions};
+    use durer_bvh::math::Vec3;
+
+    #[test]
+    fn bytes_of_a_file() {
+        let image = Image::from_pixels(1, 2, vec![Vec3::X, Vec3::Z]).unwrap();
+        let mut out = Vec::new();
+        FORMAT.write(&[Layer::color("", image)], &WriteOptions::default(), &mut out).unwrap();
+        assert_eq!(out, [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 255, 0, 0, 0, 0, 255]);
+    }
+
+    #[test]
+    fn bytes_of_a_file_with_alpha() {
+        let image = Image::from_pixels(1, 2, vec![Vec3::ZERO, Vec3::X * 0.5]).unwrap();
+        let mut out = Vec::new();
+        let layer = Layer::color("", image).with_coverage(vec![0.0, 0.5]);
+        FORMAT.write(&[layer], &WriteOptions::default(), &mut out).unwrap();
+        assert_eq!(out[..18], [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 32, 8]);
+        // Straight alpha: the colour of the covered half is full red.
+        assert_eq!(out[18..], [0, 0, 255, 128, 0, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_side_is_at_most_65535() {
+        let image = Image::new(65536, 1, Vec3::ZERO).unwrap();
+        assert!(FORMAT.write(&[Layer::color("", image)], &WriteOptions::default(), &mut Vec::new()).is_err());
+    }
+}

@@ -1,0 +1,184 @@
+//! From linear floating point to eight bits, and back.
+
+use durer_bvh::math::{Vec3, fp};
+use std::sync::LazyLock;
+
+/// How a linear value becomes eight bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Transfer {
+    /// The curve of IEC 61966-2-1, rounded to nearest: what screens expect.
+    #[default]
+    Srgb,
+    /// No curve, rounded to nearest.
+    Linear,
+    /// No curve, cut off instead of rounded, as the programs of the course did it.
+    Course,
+}
+
+impl Transfer {
+    /// All of them.
+    pub const ALL: [Transfer; 3] = [Transfer::Srgb, Transfer::Linear, Transfer::Course];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Transfer::Srgb => "srgb",
+            Transfer::Linear => "linear",
+            Transfer::Course => "course",
+        }
+    }
+
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<Transfer> {
+        Transfer::ALL.into_iter().find(|transfer| transfer.name() == name)
+    }
+
+    /// Eight bits for a linear value, clamped to 0..=255. NaN becomes 0.
+    pub fn encode(self, value: f32) -> u8 {
+        match self {
+            Transfer::Srgb => SRGB.encode(value),
+            Transfer::Linear => round(value),
+            Transfer::Course => truncate(value),
+        }
+    }
+
+    /// Eight bits for each channel.
+    pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
+        pixel.to_array().map(|value| self.encode(value))
+    }
+}
+
+/// sRGB in eight bits, looked up.
+static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
+
+/// Linear values from which on each of the 256 steps of the sRGB curve holds.
+struct SrgbTable {
+    /// The least value of each step, and infinity behind the last.
+    least: [f32; 257],
+    /// The step at the beginning of each of [`CELLS`] equal parts of 0 to 1. No part has more than
+    /// one end of a step.
+    guide: [u8; CELLS + 1],
+}
+
+/// The curve is steepest at black: 255 * 12.92 steps for a value of 1.
+const CELLS: usize = 4096;
+
+impl SrgbTable {
+    fn new() -> Self {
+        let curve = |value: f32| round(srgb_from_linear(value));
+        let mut least = [f32::INFINITY; 257];
+        for (step, least) in least.iter_mut().enumerate().take(256) {
+            // Positive numbers are ordered as their bits are, and the curve never falls.
+            let (mut low, mut high) = (0, 1.0_f32.to_bits());
+            while low < high {
+                let middle = low.midpoint(high);
+                if usize::from(curve(f32::from_bits(middle))) >= step { high = middle } else { low = middle + 1 }
+            }
+            *least = f32::from_bits(low);
+        }
+        SrgbTable { least, guide: std::array::from_fn(|cell| curve(cell as f32 / CELLS as f32)) }
+    }
+
+    fn encode(&self, value: f32) -> u8 {
+        // What is no number stays that, and begins at the first step.
+        let value = value.clamp(0.0, 1.0);
+        let step = usize::from(self.guide[(value * CELLS as f32) as usize]);
+        (step + usize::from(value >= self.least[step + 1])) as u8
+    }
+}
+
+/// 255 times a value, rounded to nearest. The conversion saturates, and makes 0 of NaN.
+fn round(value: f32) -> u8 {
+    (value * 255.0).round() as u8
+}
+
+/// `(int)(value * 255)`, then clamped.
+///
+/// What does not fit an `int` (infinities, NaN and very large values) became the least `int` on the
+/// machines of the course, and so 0.
+fn truncate(value: f32) -> u8 {
+    let scaled = value * 255.0;
+    if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }
+}
+
+/// The sRGB curve, for values from 0 to 1.
+fn srgb_from_linear(value: f32) -> f32 {
+    if value <= 0.0031308 { 12.92 * value } else { 1.055 * fp::pow(value, 1.0 / 2.4) - 0.055 }
+}
+
+/// An eight-bit value as it is: a 255th of it.
+pub fn decode_linear(value: u8) -> f32 {
+    f32::from(value) / 255.0
+}
+
+/// The linear value of an eight-bit sRGB value: the inverse curve of IEC 61966-2-1.
+pub fn decode_srgb(value: u8) -> f32 {
+    linear_from_srgb(decode_linear(value))
+}
+
+/// The same for values from 0 to 1.
+pub fn linear_from_srgb(value: f32) -> f32 {
+    if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_found_again() {
+        for transfer in Transfer::ALL {
+            assert_eq!(Transfer::from_name(transfer.name()), Some(transfer));
+        }
+        assert_eq!(Transfer::from_name("gamma"), None);
+    }
+
+    #[test]
+    fn edges() {
+        let row = |value| Transfer::ALL.map(|transfer| transfer.encode(value));
+        assert_eq!(row(0.0), [0, 0, 0]);
+        assert_eq!(row(1.0), [255, 255, 255]);
+        assert_eq!(row(0.5), [188, 128, 127]);
+        assert_eq!(row(0.999), [255, 255, 254]);
+        assert_eq!(row(0.0031308), [10, 1, 0]);
+        assert_eq!(row(-1.0), [0, 0, 0]);
+        assert_eq!(row(7.0), [255, 255, 255]);
+        assert_eq!(row(f32::NAN), [0, 0, 0]);
+        assert_eq!(row(f32::INFINITY), [255, 255, 0]);
+        assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
+        // The greatest values that an `int` holds, and those beyond it.
+        assert_eq!(row(8.0e6), [255, 255, 255]);
+        assert_eq!(row(9.0e6), [255, 255, 0]);
+        assert_eq!(row(f32::MAX), [255, 255, 0]);
+    }
+
+    #[test]
+    fn eight_bits_come_back() {
+        for value in 0..=255 {
+            assert_eq!(Transfer::Srgb.encode(decode_srgb(value)), value);
+            assert_eq!(Transfer::Linear.encode(decode_linear(value)), value);
+        }
+    }
+
+    #[test]
+    fn the_table_is_the_curve() {
+        let ends = SRGB.least.iter().flat_map(|least| [least.next_down(), *least, least.next_up()]);
+        let cells = (0..=CELLS).flat_map(|cell| {
+            let start = cell as f32 / CELLS as f32;
+            [start.next_down(), start, start.next_up()]
+        });
+        let others = (0..200_000).map(|i| i as f32 * 6e-6 - 0.1).chain([f32::NAN, f32::NEG_INFINITY, 1e30]);
+        for value in ends.chain(cells).chain(others) {
+            assert_eq!(Transfer::Srgb.encode(value), round(srgb_from_linear(value)), "{value}");
+        }
+    }
+
+    #[test]
+    fn no_transfer_ever_falls() {
+        for transfer in Transfer::ALL {
+            let values: Vec<u8> = (0..=100_000).map(|i| transfer.encode(i as f32 / 1e5)).collect();
+            assert!(values.is_sorted());
+            assert!((0..=255).all(|value| values.contains(&value)));
+        }
+    }
+}

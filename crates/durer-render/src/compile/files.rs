@@ -1,0 +1,446 @@
+//! The files that a scene names: each is read and decoded once.
+
+use super::Resources;
+use super::decoded::{Encoding, decode, used};
+use super::kept::Origin;
+use crate::world::MeshTree;
+use durer_bvh::BuildQuality;
+use durer_diag::{Diagnostic, Diagnostics, Severity, Span, at_least, at_most};
+use durer_image::{self as image, Encoded};
+use durer_scene::describe::FileName;
+use durer_scene::dialect::{Compat, Rules};
+use durer_scene::light::{Emitter as _, Light, Profile};
+use durer_scene::math::Aabb;
+use durer_scene::medium::DensityGrid;
+use durer_scene::scene::{Assets, Background, PictureBytes};
+use durer_scene::shape::{HeightField, Mesh, MeshData};
+use durer_scene::source::{Digest, SourceError};
+use durer_scene::spectrum::{Curve, illuminants};
+use durer_scene::texture::{CieSky, CubeMap, Environment, Sky, Texture, sky};
+use rayon::prelude::*;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What the tree and its building take for a while for each triangle.
+const TREE_BYTES: u64 = 200;
+/// What a height takes while normals are made: of its two triangles the normals at the corners, and
+/// these in the order of the crossings, three times four bytes each.
+const HEIGHT_BYTES: u64 = 112;
+
+/// Columns of the picture of a sky.
+const SKY_WIDTH: u32 = 512;
+
+/// A picture's name, and what its values mean.
+pub(super) type PictureKey = (String, Encoding);
+
+pub(super) struct Loader<'r> {
+    pub(super) resources: Resources<'r>,
+    rules: Rules,
+    pub(super) assets: &'r Assets,
+    /// By path; `None` for files that could not be read, which are complained of once.
+    meshes: HashMap<String, Option<Arc<MeshTree>>>,
+    texture_numbers: HashMap<String, Option<u32>>,
+    /// Numbers of the textures of materials in layers, by the picture's name and the curve of its
+    /// values.
+    pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
+    /// What was decoded, by the name of the file or the bytes' place in memory.
+    pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
+    /// The same with smaller versions of themselves.
+    pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
+    /// What was decoded before somebody asked for it.
+    pub(super) ahead: HashMap<PictureKey, Texture>,
+    pub(super) textures: Vec<Texture>,
+}
+
+impl<'r> Loader<'r> {
+    pub(super) fn new(resources: Resources<'r>, rules: &Rules, assets: &'r Assets) -> Self {
+        Loader {
+            resources,
+            rules: rules.clone(),
+            assets,
+            meshes: HashMap::new(),
+            texture_numbers: HashMap::new(),
+            map_numbers: HashMap::new(),
+            decoded: HashMap::new(),
+            mipmapped: HashMap::new(),
+            ahead: HashMap::new(),
+            textures: Vec::new(),
+        }
+    }
+
+    /// A mesh with its tree. For fewer rays than there are triangles a better one would take longer
+    /// than it saves; what rays hit is the same to the bit.
+    pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
+        let few = self.resources.rays < mesh.len() as u64;
+        MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
+    }
+
+    /// The mesh of a file.
+    pub(super) fn mesh(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
+        if let Some(known) = self.meshes.get(&name.path) {
+            return known.clone();
+        }
+        let asset = self.assets.meshes.get(&name.path);
+        let origin = self.origin(&name.path, || asset.map(|data| data.digest()));
+        let known = origin.as_ref().and_then(|origin| self.resources.kept?.mesh(origin));
+        if let Some(known) = known {
+            self.remember(&name.path, origin.as_ref(), known.digest);
+            let mesh = &known.thing.mesh;
+            let needed = mesh.bytes() as u64 + TREE_BYTES * mesh.len() as u64;
+            let tree = self.charge(name, needed, diagnostics).then_some(known.thing);
+            self.meshes.insert(name.path.clone(), tree.clone());
+            return tree;
+        }
+        let said = diagnostics.iter().count();
+        let mesh = match asset {
+            Some(data) => Some(Arc::clone(data)),
+            None => self.mesh_file(name, diagnostics).map(Arc::new),
+        };
+        let mesh = mesh.filter(|data| {
+            let needed = data.bytes() as u64 + TREE_BYTES * data.triangles.len() as u64;
+            self.charge(name, needed, diagnostics)
+        });
+        let tree = mesh.map(|mut data| {
+            if self.rules.has(Compat::LooseTriangles) {
+                Arc::make_mut(&mut data).loosen();
+            }
+            let by_vertex =
+                self.rules.has(Compat::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
+            let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
+            let mesh = self.centered(mesh);
+            // What the official program takes for a determinant of zero.
+            let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
+            Arc::new(self.tree(mesh).least_volume(least_volume))
+        });
+        // What there is to say of a file is said each time.
+        if let (Some(kept), Some(origin), Some(tree), true) =
+            (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
+        {
+            kept.keep_mesh(origin, tree, self.resources.source.digest_of(&name.path));
+        }
+        self.meshes.insert(name.path.clone(), tree.clone());
+        tree
+    }
+
+    /// What something is made of, if what is made is to be kept: a thing in memory by its hash,
+    /// else a file.
+    pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
+        self.resources.kept?;
+        memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
+    }
+
+    /// Counts a file among those that were read, which was read earlier.
+    pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
+        if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
+            self.resources.source.remember_unread(path, stamp, digest);
+        }
+    }
+
+    /// What a mesh file holds.
+    fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
+        let (decoder, quirks) = (self.resources.decoder, self.rules.compat);
+        self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
+    }
+
+    /// What a reader makes of a file; its errors are followed by the place that names the file.
+    fn parsed<T>(
+        &mut self,
+        name: &FileName,
+        what: &str,
+        diagnostics: &mut Diagnostics,
+        read: impl FnOnce(&[u8], u32, &mut Diagnostics) -> Option<T>,
+    ) -> Option<T> {
+        let bytes = self.read(name, what, diagnostics)?;
+        let file = self.resources.files.add(name.path.clone(), bytes.clone());
+        let mut own = Diagnostics::default();
+        let data = read(&bytes, file, &mut own);
+        self.resources.files.cut(file, 0, &own);
+        if own.has_errors() {
+            let message = format!("the {what} `{}` cannot be used", name.path);
+            let error = Diagnostic::error(message).code("bad-file").at(name.span);
+            diagnostics.push(error.label("asked for here"));
+        }
+        diagnostics.extend(own);
+        data
+    }
+
+    /// The mesh of a height field.
+    pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
+        let name = &field.picture;
+        let bytes = self.read(name, "picture of heights", diagnostics)?;
+        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let (width, height) = encoded.size();
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        if width < 2 || height < 2 || width * height > HeightField::MAX_PIXELS {
+            let most = HeightField::MAX_PIXELS;
+            refuse(format!("{width} x {height} pixels make no landscape: 2 x 2 to {most} in all are needed"));
+            return None;
+        }
+        let picture = encoded.read(self.resources.memory, image::decode_linear);
+        let picture = used(name, &name.path, picture, diagnostics)?;
+        let mut refuse = |message: String| diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        let heights: Vec<f32> = picture.pixels.iter().map(|pixel| (pixel.x + pixel.y + pixel.z) / 3.0).collect();
+        drop(picture);
+        if heights.iter().any(|height| !height.is_finite()) {
+            refuse(format!("the picture `{}` has heights that are no numbers", name.path));
+            return None;
+        }
+        if let Some(least) = heights.iter().copied().reduce(f32::min).filter(|least| *least < 0.0) {
+            refuse(format!("the picture `{}` has heights of {least}; none may be less than 0", name.path));
+            return None;
+        }
+        let needed = HEIGHT_BYTES * heights.len() as u64;
+        let terrain = field.terrain(width, heights);
+        let Some(terrain) = terrain else {
+            refuse(format!("the heights of `{}` leave the range of numbers", name.path));
+            return None;
+        };
+        if !self.charge(name, needed, diagnostics) {
+            return None;
+        }
+        Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
+    }
+
+    /// The mesh about the origin, if it lies far away; the official programs leave it there.
+    fn centered(&self, mesh: Mesh) -> Mesh {
+        if self.rules.is_official() { mesh } else { mesh.centered() }
+    }
+
+    /// The number of a picture's texture.
+    pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
+        if let Some(known) = self.texture_numbers.get(&name.path) {
+            return *known;
+        }
+        let encoding = if self.rules.srgb_textures { Encoding::Srgb } else { Encoding::Linear };
+        let texture = self.picture(name, PictureBytes::File(name.path.clone()), encoding, diagnostics);
+        let number = texture.map(|texture| {
+            self.textures.push(texture);
+            (self.textures.len() - 1) as u32
+        });
+        self.texture_numbers.insert(name.path.clone(), number);
+        number
+    }
+
+    /// The cube map of a folder; where it may be missing, that is a warning.
+    pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
+        let mut own = Diagnostics::default();
+        let map = self.faces(name, &mut own);
+        for mut finding in own.iter().cloned() {
+            if self.resources.sky_optional {
+                finding.severity = Severity::Warning;
+                finding.label = "the background's colour is shown instead".into();
+            }
+            diagnostics.push(finding);
+        }
+        map
+    }
+
+    /// How strong a light shines in each direction, if a file says that.
+    pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
+        let name = light.profile()?;
+        match self.assets.profiles.get(&name.path) {
+            Some(profile) => Some(Arc::clone(profile)),
+            None => {
+                let decoder = self.resources.decoder;
+                let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| decoder.profile(bytes, file, own);
+                self.parsed(name, "photometric file", diagnostics, read).map(Arc::new)
+            }
+        }
+    }
+
+    /// The densities of a file, and the box that they fill.
+    pub(super) fn density(
+        &mut self,
+        name: &FileName,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(Aabb, Arc<DensityGrid>)> {
+        if let Some(known) = self.assets.densities.get(&name.path) {
+            return Some(known.clone());
+        }
+        let (decoder, memory) = (self.resources.decoder, self.resources.memory);
+        let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| decoder.density(bytes, file, memory, own);
+        let (bounds, grid) = self.parsed(name, "file of densities", diagnostics, read)?;
+        self.charge(name, grid.bytes() as u64, diagnostics).then(|| (bounds, Arc::new(grid)))
+    }
+
+    /// A measured reflectance.
+    pub(super) fn reflectance(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
+        let rows = self.curve(name, diagnostics)?;
+        if let Some([nm, share]) = rows.iter().find(|row| row[1] > 1.0) {
+            let message = format!("at {nm} nm this thing would give back {share} of the light: shares go from 0 to 1");
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+            return None;
+        }
+        Curve::reflectance(rows).map(Arc::new)
+    }
+
+    /// The spectrum of a lamp: an illuminant by its name, else a file.
+    pub(super) fn illuminant(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
+        if let Some(known) = illuminants::illuminant(&name.path) {
+            return Some(Arc::new(known));
+        }
+        if !name.path.contains('.') {
+            let message = format!("there is no illuminant `{}`", name.path);
+            let names = illuminants::NAMES;
+            let help = format!("known are {names}, black bodies from 1000K to 20000K, and files by their path");
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span).help(help));
+            return None;
+        }
+        let lamp = Curve::light(self.curve(name, diagnostics)?);
+        if lamp.is_none() {
+            let message = format!("the lamp of `{}` is black", name.path);
+            diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
+        }
+        lamp.map(Arc::new)
+    }
+
+    /// The rows of a file's only spectrum, or of the one that is named after a colon.
+    fn curve(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
+        let (path, column) = match name.path.rsplit_once(':') {
+            Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
+            _ => (&name.path[..], None),
+        };
+        let file = FileName { path: path.into(), span: name.span };
+        let decoder = self.resources.decoder;
+        let read = |bytes: &[u8], file: u32, own: &mut Diagnostics| decoder.spectrum(bytes, column, file, own);
+        self.parsed(&file, "spectrum", diagnostics, read)
+    }
+
+    /// The picture around a scene.
+    pub(super) fn environment(
+        &mut self,
+        written: &Background,
+        span: Span,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Environment> {
+        let Some(name) = written.environment.as_ref() else {
+            if written.cie_sky.is_some_and(CieSky::wants_sun) && written.sun().is_none() {
+                let message = "this `cieSky` is brightest about the sun, and no `sun` says where that is";
+                let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
+                diagnostics.push(Diagnostic::error(message).at(span).help(help));
+                return None;
+            }
+            if written.is_night() {
+                return None;
+            }
+            let picture = match written.cie_sky() {
+                Some(sky) => sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| sky.at(dir)),
+                None => {
+                    let clear = Sky::new(written.sun()?, written.turbidity());
+                    let clear = match written.ground_reflectance {
+                        Some(share) => clear.over(share),
+                        None => clear,
+                    };
+                    sky::picture(SKY_WIDTH, SKY_WIDTH / 2, |dir| clear.at(dir))
+                }
+            };
+            let (turn, scale) = written.environment_placing();
+            return Environment::new(SKY_WIDTH, SKY_WIDTH / 2, picture, turn, scale);
+        };
+        let bytes = match self.assets.pictures.get(&name.path).map(|picture| &picture.bytes) {
+            Some(PictureBytes::Here(_, bytes)) => bytes.clone(),
+            _ => self.read(name, "environment", diagnostics)?,
+        };
+        let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
+        let picture = encoded.read_for(Environment::MAKING, self.resources.memory, image::decode_srgb);
+        let picture = used(name, &name.path, picture, diagnostics)?;
+        let (width, height) = (picture.width, picture.height);
+        let (turn, scale) = written.environment_placing();
+        let environment = Environment::new(width, height, picture.pixels, turn, scale);
+        if environment.is_none() {
+            let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);
+            let warning = Diagnostic::warning(message).code("bad-file");
+            // What an option names has no place in the file.
+            diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
+        }
+        environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
+    }
+
+    fn faces(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
+        let folder = name.path.trim_end_matches(['/', '\\']);
+        let (mut files, mut unread) = (Vec::with_capacity(6), Diagnostics::default());
+        for face in CubeMap::FACES {
+            let candidates = ["bmp", "png", "tga", "ppm"].map(|extension| format!("{folder}/{face}.{extension}"));
+            let there = candidates.iter().find(|c| self.resources.source.contains(c)).unwrap_or(&candidates[0]);
+            let file = FileName { path: there.clone(), span: name.span };
+            let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
+            files.push((file.path, bytes));
+        }
+        // All are decoded at once, so each has what the others before it leave.
+        let mut memory = self.resources.memory;
+        let mut left = Vec::with_capacity(6);
+        for (path, bytes) in &files {
+            left.push(memory);
+            memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed_raster()));
+        }
+        // Decoding takes longer than all else. The first face in order that is wrong is the one
+        // complained of.
+        let srgb = self.rules.srgb_textures;
+        let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
+            let mut own = Diagnostics::default();
+            (decode(name, path, bytes, srgb, *left, &mut own), own)
+        };
+        let decoded: Vec<(Option<Texture>, Diagnostics)> = files.par_iter().zip(&left).map(one).collect();
+        let mut faces = Vec::with_capacity(6);
+        for (face, own) in decoded {
+            diagnostics.extend(own);
+            faces.push(face?);
+        }
+        diagnostics.extend(unread);
+        let bytes = faces.iter().map(|face: &Texture| face.bytes() as u64).sum();
+        let affordable = self.charge(name, bytes, diagnostics);
+        let mirrored_back = self.rules.has(Compat::MirroredBack);
+        Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
+    }
+
+    /// Takes memory from what is left; says so where there is too little.
+    pub(super) fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
+        let left = self.resources.memory;
+        self.resources.memory = left.saturating_sub(needed);
+        if needed > left {
+            let (needed, left) = (at_least(needed), at_most(left));
+            let message = format!("`{}` needs about {needed} of memory, and what is left for it is {left}", name.path);
+            diagnostics.push(Diagnostic::error(message).at(name.span).help("see `--memory`"));
+        }
+        needed <= left
+    }
+
+    /// Reads a file; what goes wrong is said at the place that names it.
+    pub(super) fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
+        // Nobody would read of a file that is missing too.
+        if diagnostics.is_full() {
+            return None;
+        }
+        let error = match self.resources.source.read(&name.path) {
+            Ok(bytes) => return Some(bytes),
+            Err(error) => error,
+        };
+        let message = format!("the {what} cannot be had: {error}");
+        let diagnostic = Diagnostic::error(message).code("missing-file").at(name.span);
+        diagnostics.push(match error {
+            SourceError::Missing { tried, near, .. } => {
+                let (help, folder) =
+                    (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
+                // A face of a cube map is not named in the scene: only its folder is.
+                match near.filter(|_| matches!(what, "mesh" | "texture" | "picture of heights")) {
+                    Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
+                    None => diagnostic.help(help),
+                }
+            }
+            SourceError::Outside { .. } => diagnostic
+                .help("a scene may only name files in and below its own folder, unless `--allow-outside` is given"),
+            _ => diagnostic,
+        });
+        None
+    }
+}
+
+/// Where a file was looked for, and a file there that has nearly its name.
+fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
+    let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
+    match near {
+        Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
+        None => format!("looked for {}", shown.join(", ")),
+    }
+}

@@ -1,0 +1,217 @@
+//! Materials: the dialect's meaning of their words is worked in here.
+
+use super::files::Loader;
+use super::media;
+use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
+use durer_diag::{Diagnostic, Diagnostics};
+use durer_scene::bsdf::Tables;
+use durer_scene::bsdf::lobe::hair::Fibre;
+use durer_scene::dialect::{Compat, Highlight, Rules, Secondary};
+use durer_scene::material::checkerboard::Checkerboard;
+use durer_scene::material::principled::Walls;
+use durer_scene::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::math::Color;
+use durer_scene::scene::{self, MatrixOp, Scene};
+use std::sync::Arc;
+
+pub(super) fn compile(
+    scene: &Scene,
+    rules: &Rules,
+    loader: &mut Loader,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Material> {
+    check_solids(scene, diagnostics);
+    loader.decode_ahead(scene.materials.iter().filter_map(|material| match &material.value {
+        scene::Material::Principled(layers) => Some(&**layers),
+        _ => None,
+    }));
+    // Boundaries of the same index share their tables.
+    let mut tables = Vec::new();
+    let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
+        scene::Material::Solid(solid, ops) => {
+            let to_pattern = MatrixOp::product(ops, rules.compat);
+            let picture = match solid {
+                Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
+                _ => None,
+            };
+            Material::Solid(meant(solid, scene, rules), to_pattern, picture)
+        }
+        scene::Material::Principled(layers) => {
+            let maps = loader.maps(layers, diagnostics);
+            let measured = layers.base_spectrum.as_ref().and_then(|name| loader.reflectance(name, diagnostics));
+            let illuminant = layers.emission_spectrum.as_ref().and_then(|name| loader.illuminant(name, diagnostics));
+            let base_color = measured.as_ref().map_or(layers.base_color, |curve| curve.color());
+            let layers = &PrincipledMaterial { base_color, ..(**layers).clone() };
+            let shown = illuminant.as_ref().map_or(Color::ONE, |curve| curve.color());
+            let radiance = layers.emission_luminance * layers.emission_color * shown;
+            let textured = maps.emission.is_some();
+            let medium = media::inside(layers, loader, diagnostics);
+            let tables = Tables::new(layers, measured, &mut tables);
+            tables.prepare(layers);
+            let emission = Emission { radiance, textured, two_sided: layers.walls == Walls::Thin };
+            Material::Phong(Phong {
+                texture: maps.base_color,
+                tinted: true,
+                emission: (radiance.max_element() > 0.0).then_some(emission),
+                principled: Some(Arc::new(Principled {
+                    written: layers.clone(),
+                    maps,
+                    parameters: Parameters::of(layers),
+                    tables,
+                    illuminant,
+                    medium,
+                    interface: media::is_interface(layers),
+                })),
+                ..plain(layers)
+            })
+        }
+        scene::Material::Hair(hair) => {
+            let fibre = Fibre::new(hair);
+            // What Whitted's light makes of it.
+            let highlight = Some((Color::splat(0.2), 20.0, HighlightModel::Blinn));
+            let diffuse = fibre.color();
+            Material::Phong(Phong { diffuse, highlight, fibre: Some(Arc::new(fibre)), ..Phong::default() })
+        }
+        scene::Material::Phong(phong, noise) => {
+            let texture = phong.texture.as_ref().and_then(|name| loader.texture(name, diagnostics));
+            Material::Phong(phong_of(phong, noise.clone(), texture, rules))
+        }
+    };
+    scene.materials.iter().map(&mut one).collect()
+}
+
+/// A pattern with its two materials in the order of the dialect's program.
+fn meant(solid: &Solid, scene: &Scene, rules: &Rules) -> Solid {
+    let is_solid =
+        |i: u32| matches!(scene.materials.get(i as usize).map(|m| &m.value), Some(scene::Material::Solid(..)));
+    match solid {
+        Solid::Checkerboard(board)
+            if rules.has(Compat::SwappedBoards) && solid.materials().into_iter().all(is_solid) =>
+        {
+            Checkerboard { material1: board.material2, material2: board.material1 }.into()
+        }
+        _ => solid.clone(),
+    }
+}
+
+/// Refuses solids that lead to themselves, are nested too deeply, or double at each level.
+fn check_solids(scene: &Scene, diagnostics: &mut Diagnostics) {
+    const DEEPEST: u32 = 64;
+    const MOST: u64 = 4096;
+    // How deep each material is nested, and of how many parts it is made at most.
+    let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
+    for material in &scene.materials {
+        let scene::Material::Solid(solid, _) = &material.value else {
+            sizes.push((0, 1));
+            continue;
+        };
+        let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
+        let [Some(first), Some(second)] = parts else {
+            let message = "a solid material is made of earlier ones";
+            diagnostics.push(Diagnostic::error(message).at(material.span));
+            return;
+        };
+        let size = (1 + first.0.max(second.0), first.1 + second.1);
+        if size.0 > DEEPEST || size.1 > MOST {
+            let message = format!("this material is made of others {} deep and {} in all", size.0, size.1);
+            let help = format!("at most {DEEPEST} deep and {MOST} in all are allowed");
+            diagnostics.push(Diagnostic::error(message).at(material.span).help(help));
+            return;
+        }
+        sizes.push(size);
+    }
+}
+
+fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {
+    let (reflective, transparent, ior) = secondary(m, rules);
+    let diffuse = m.diffuse_color.unwrap_or(Color::ONE);
+    let ambient = match m.diffuse_color {
+        None if rules.has(Compat::WrittenAmbient) => Some(Color::ZERO),
+        _ => (!rules.ambient_textured).then_some(diffuse),
+    };
+    Phong {
+        diffuse,
+        texture,
+        tinted: false,
+        noise,
+        ambient,
+        highlight: highlight(m, rules).filter(|(color, ..)| *color != Color::ZERO),
+        reflective,
+        transparent,
+        ior: ior.unwrap_or(1.0),
+        fresnel: ior.is_some() && glass(m, rules).is_some(),
+        principled: None,
+        fibre: None,
+        emission: None,
+    }
+}
+
+/// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that
+/// are mirrors, and glass.
+fn plain(m: &PrincipledMaterial) -> Phong {
+    let base = m.base_weight * m.base_color;
+    let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
+    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models
+    // for Refraction*, 2007.
+    let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
+    let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
+    let ratio = (m.specular_ior - 1.0) / (m.specular_ior + 1.0);
+    let at_right_angles = m.specular_weight * ratio * ratio * m.specular_color;
+    let reflects = at_right_angles.lerp(base, m.base_metalness);
+    let smooth = 1.0 - m.specular_roughness;
+    let glass = m.transmission_weight > 0.0;
+    Phong {
+        diffuse: matte * base,
+        highlight: (reflects != Color::ZERO).then_some((reflects, exponent, HighlightModel::Blinn)),
+        reflective: if glass { m.specular_color } else { smooth * m.base_metalness * base },
+        transparent: m.transmission_weight * m.transmission_color,
+        // A sheet bends no light.
+        ior: if m.walls == Walls::Thin { 1.0 } else { m.specular_ior },
+        fresnel: glass && m.walls == Walls::Solid,
+        ..Phong::default()
+    }
+}
+
+fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightModel)> {
+    let blinn = |exponent: f32| Some((m.specular_color, exponent, HighlightModel::Blinn));
+    let phong = |shininess: f32| {
+        let behind = rules.has(Compat::HighlightBehind);
+        Some((m.specular_color, shininess, HighlightModel::Phong { behind }))
+    };
+    match (rules.highlight, m.exponent, m.shininess) {
+        (Highlight::None, ..) => None,
+        (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
+        (Highlight::Phong, exponent, shininess) => {
+            let shininess = shininess.or(exponent).unwrap_or(0.0);
+            // Without sharpness there is nothing to see, but for the programs that take 0 to the
+            // power of 0.
+            if shininess > 0.0 || rules.has(Compat::PowZero) { phong(shininess) } else { None }
+        }
+        (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
+        (Highlight::ByKeyword, None, Some(shininess)) => phong(shininess).filter(|_| shininess > 0.0),
+        (Highlight::ByKeyword, None, None) => blinn(1.0),
+    }
+}
+
+/// The index of glass that divides light by Fresnel's law, if it is such.
+fn glass(m: &PhongMaterial, rules: &Rules) -> Option<f32> {
+    let divides = matches!(rules.secondary, Secondary::SpecularFresnel | Secondary::ByKeyword);
+    m.refraction_index.filter(|index| divides && *index > 0.0)
+}
+
+/// Weights of the mirrored and the transmitted ray, and the index of refraction.
+fn secondary(m: &PhongMaterial, rules: &Rules) -> (Color, Color, Option<f32>) {
+    let specular = m.specular_color;
+    match (rules.secondary, glass(m, rules)) {
+        (Secondary::None, _) => (Color::ZERO, Color::ZERO, None),
+        (Secondary::Specular, _) | (Secondary::SpecularFresnel, None) => (specular, Color::ZERO, None),
+        (Secondary::SpecularFresnel, index) => (specular, specular, index),
+        (Secondary::ByKeyword, Some(index)) => {
+            let tint = if m.transparent_color == Color::ZERO { specular } else { m.transparent_color };
+            (specular, tint, Some(index))
+        }
+        (Secondary::Colors | Secondary::ByKeyword, _) => {
+            (m.reflective_color, m.transparent_color, m.index_of_refraction)
+        }
+    }
+}

@@ -1,0 +1,505 @@
+//! From the description to the world. The description ends here.
+
+mod decoded;
+mod files;
+mod kept;
+mod materials;
+mod media;
+mod pictures;
+mod solids;
+#[cfg(any(test, feature = "testing"))]
+#[doc(hidden)]
+pub mod testing;
+
+use crate::world::{Accel, Assets, Contents, Few, Geometry, Object, Phong, World};
+use durer_bvh::{Bvh, Grid, PrimitivePacks};
+use durer_diag::{Diagnostic, Diagnostics, Files, Span};
+use durer_scene::asset::AssetDecoder;
+use durer_scene::camera::{CameraBasis, Projection};
+use durer_scene::dialect::{Compat, Dialect, MeshNormals, Rules};
+use durer_scene::light::{DirectionalLight, Emitter, Light};
+use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
+use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
+use durer_scene::shape::mesh::loosened;
+use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
+use durer_scene::source::Source;
+use durer_scene::texture::Sky;
+use durer_scene::texture::sky::SUN_RADIUS;
+use glam::DAffine3;
+pub use kept::{Kept, Reuse};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Which structure finds the objects that a ray may meet.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum AccelKind {
+    /// A tree of boxes.
+    #[default]
+    Bvh,
+    /// A uniform grid, with these numbers of cells or suitable ones.
+    Grid(Option<[u32; 3]>),
+    /// None: everything is tested.
+    None,
+}
+
+/// Where files come from while a scene is compiled.
+pub struct Resources<'a> {
+    /// Reads files that the scene names.
+    pub source: &'a Source,
+    /// Decodes meshes, photometric files, spectra and densities.
+    pub decoder: &'a dyn AssetDecoder,
+    /// Remembers what was read, for diagnostics.
+    pub files: &'a mut Files,
+    /// Whether a scene whose cube map is missing is still compiled, with a warning and the
+    /// background's colour.
+    pub sky_optional: bool,
+    /// Bytes that meshes and pictures may take.
+    pub memory: u64,
+    /// About how many camera rays the world is for; as many as there can be where nobody knows.
+    pub rays: u64,
+    /// What was made of the same files before, and is kept again.
+    pub kept: Option<&'a Kept>,
+}
+
+impl<'a> Resources<'a> {
+    /// All the memory there is, for many rays, with nothing kept from before.
+    pub fn new(source: &'a Source, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
+        Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
+    }
+}
+
+/// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
+pub fn compile(
+    scene: &Scene,
+    rules: &Rules,
+    accel: AccelKind,
+    resources: Resources,
+    diagnostics: &mut Diagnostics,
+) -> Option<World> {
+    let mut own = Diagnostics::default();
+    let kept = resources.kept;
+    if let Some(kept) = kept {
+        kept.begin(rules);
+    }
+    let mut loader = files::Loader::new(resources, rules, &scene.assets);
+    let Some(camera) = scene.camera.clone() else {
+        diagnostics.push(Diagnostic::error("the scene has no camera").code("no-camera").help(match is_nodes(rules) {
+            true => "add a `Camera { ... }`",
+            false => "add a `PerspectiveCamera { ... }`",
+        }));
+        return None;
+    };
+    match camera.problem() {
+        Some(problem) => own.push(Diagnostic::error(problem).code("bad-value").at(scene.camera_span)),
+        None => check_camera(scene, camera.pose(), &mut own),
+    }
+    let materials = materials::compile(scene, rules, &mut loader, &mut own);
+    let mut flattener = SceneFlattener {
+        objects: Vec::new(),
+        loader: &mut loader,
+        rules,
+        diagnostics: &mut own,
+        material_count: materials.len() as u32,
+        plain_needed: false,
+        bare: None,
+        transforms: 0,
+        open_edges: HashMap::new(),
+    };
+    match &scene.root {
+        Some(root) => flattener.group(root, DAffine3::IDENTITY),
+        // The reader of a model has said so in its own words.
+        None if diagnostics.iter().any(|known| known.code == "no-objects") => {}
+        None => {
+            let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
+            flattener.diagnostics.push(warning.code("no-objects"));
+        }
+    }
+    flattener.warn_of_bare();
+    let SceneFlattener { objects, plain_needed, .. } = flattener;
+    let mut compiled = materials;
+    if plain_needed {
+        compiled.push(crate::world::Material::Phong(Phong::default()));
+    }
+    let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
+    check_sun(scene, &mut own);
+    check_sky(scene, &mut own);
+    let environment = loader.environment(&scene.background, scene.background_span, &mut own);
+    let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
+    let (mut lights, ambient) = lights(scene, rules, &mut own);
+    lights.extend(sun(&scene.background));
+    let mut measured = |light: &mut Light| {
+        let curve = light.spectrum().and_then(|name| loader.illuminant(name, &mut own))?;
+        light.recolor(|color| color * curve.color());
+        Some(curve)
+    };
+    let illuminants = lights.iter_mut().map(&mut measured).collect();
+    let profiles: Vec<_> = lights.iter().map(|light| loader.profile(light, &mut own)).collect();
+    for (light, profile) in lights.iter_mut().zip(&profiles) {
+        if let (Light::Photometric(lamp), Some(profile)) = (light, profile) {
+            *lamp = lamp.with_flux(profile);
+        }
+    }
+    // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
+    let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
+    let textures = loader.textures;
+    let failed = own.has_errors();
+    diagnostics.extend(own);
+    if failed {
+        return None;
+    }
+    if let Some(kept) = kept {
+        kept.finish();
+    }
+    let contents = Contents {
+        frame: CameraBasis::of(&camera, rules),
+        camera,
+        // A picture around the scene takes the place of the colour, a black one too.
+        background: if environment.is_none() && (scene.background.environment.is_some() || scene.background.is_night())
+        {
+            Color::ZERO
+        } else {
+            scene.background.color
+        },
+        ambient,
+        lights,
+        materials: compiled,
+        objects,
+        rules: rules.clone(),
+        lumens: scene.lumens,
+    };
+    let assets = Assets { cube_map, environment, fog, profiles, illuminants, textures };
+    let mut world = World::new(contents, assets, digest);
+    if let Err(error) = rebuild(&mut world, accel) {
+        diagnostics.push(*error);
+        return None;
+    }
+    Some(world)
+}
+
+/// Makes the structure over a world's objects: at first, and anew after they were moved.
+pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
+    let objects = world.objects();
+    let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
+    let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
+    let (simple, others): (Vec<u32>, Vec<u32>) =
+        (0..objects.len() as u32).partition(|&i| objects[i as usize].simple().is_some());
+    let work: usize = objects.iter().filter_map(Object::simple).sum();
+    let packed = |numbers: &[u32]| {
+        let mut packs = PrimitivePacks::default();
+        numbers.iter().for_each(|&i| objects[i as usize].add_to(&mut packs, i));
+        packs
+    };
+    let is_few = kind == AccelKind::Bvh && others.len() <= FEW && work <= FEW_SIMPLE;
+    let few = is_few.then(|| Few { simple: packed(&simple), others });
+    let of_one_ray = || bounded().filter_map(|(object, _)| object.simple_for_one_ray());
+    if kind == AccelKind::Bvh
+        && bounded().count() - of_one_ray().count() <= FEW
+        && of_one_ray().sum::<usize>() <= FEW_SIMPLE
+    {
+        boxes.fill(None);
+    }
+    let mut loose: Vec<u32> = (0_u32..).zip(&boxes).filter(|(_, b)| b.is_none()).map(|(i, _)| i).collect();
+    let is_simple = |&i: &u32| objects[i as usize].simple_for_one_ray().is_some();
+    let mut together: Vec<u32> = loose.iter().copied().filter(is_simple).collect();
+    match together.len() >= MIN_PACKED {
+        true => loose.retain(|i| !is_simple(i)),
+        false => together.clear(),
+    }
+    let packs = packed(&together);
+    let accel = build_accel(world, kind, boxes)?;
+    let spheres = match &accel {
+        Accel::Bvh(bvh) if objects.iter().any(|object| object.sphere().radius > 0.0) => {
+            bvh.primitive_indices().iter().map(|&i| objects[i as usize].sphere()).collect()
+        }
+        _ => Vec::new(),
+    };
+    (world.packs, world.few, world.loose, world.accel, world.spheres) = (packs, few, loose, accel, spheres);
+    Ok(())
+}
+
+/// So many objects are tested one after the other, and simple shapes that take as long as so many
+/// spheres eight at a time, or by eight rays: a tree over them would cost more than it saves.
+const FEW: usize = 2;
+const FEW_SIMPLE: usize = 16;
+
+/// Fewer simple shapes than this are tested one after the other: eight at a time take longer.
+const MIN_PACKED: usize = 4;
+
+/// `bounds` are those of objects that do not stand outside.
+fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
+    let cells = match kind {
+        AccelKind::None => return Ok(Accel::None),
+        AccelKind::Bvh => {
+            // What has an empty box here is left out.
+            let boxes: Vec<Aabb> = bounds.into_iter().map(|bounds| bounds.unwrap_or(Aabb::EMPTY)).collect();
+            return Ok(Accel::Bvh(Bvh::build(&boxes)));
+        }
+        AccelKind::Grid(cells) => cells,
+    };
+    let mut parts: Vec<(u32, u32)> = Vec::new();
+    let mut boxes = Vec::new();
+    for (i, object) in world.objects().iter().enumerate() {
+        for part in 0..object.parts() {
+            if let Some(bounds) = object.part_bounds(part) {
+                parts.push((i as u32, part));
+                boxes.push(bounds);
+            }
+        }
+    }
+    let bounds = boxes.iter().copied().fold(Aabb::EMPTY, Aabb::union);
+    if bounds.is_empty() {
+        return Ok(Accel::None);
+    }
+    let counts = cells.unwrap_or_else(|| Grid::suitable(bounds, boxes.len()));
+    let overlaps = |i: usize, cell: Aabb| world.objects()[parts[i].0 as usize].overlaps(&cell);
+    let grid = Grid::build(bounds, counts, &boxes, overlaps).ok_or_else(|| {
+        let [x, y, z] = counts;
+        let most = Grid::MAX_CELLS;
+        let message = format!("a grid of {x} x {y} x {z} cells cannot be made");
+        let help = format!("it must have 1 to {most} cells, and large objects must not lie in too many of them");
+        Box::new(Diagnostic::error(message).help(help))
+    })?;
+    Ok(Accel::Grid { grid, parts })
+}
+
+/// Says where the place of the sun is no place, or none from which it shines.
+fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
+    let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
+    let diagnostic = match scene.background.way_to_sun() {
+        Err(message) => Diagnostic::error(message),
+        Ok(Some(way)) if low(way) > 0.0 => {
+            let message = format!("the sun is {:.1} degrees below the horizon", low(way));
+            let warning = Diagnostic::warning(message).code("sun-below");
+            warning
+                .effect("neither it nor its sky shines")
+                .help("for dusk write a sun on the horizon, for night what lights the scene then")
+        }
+        Ok(_) => return,
+    };
+    diagnostics.push(diagnostic.at(scene.background_span));
+}
+
+/// Tells of words of the background that say how something looks which is not there.
+fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
+    let sky = &scene.background;
+    let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.way_to_sun(), Ok(None)));
+    let (clear, picture) = (sun && !standard, sky.environment.is_some());
+    let any = standard || sun || picture;
+    for (word, given, has_use, wanted) in [
+        ("zenithLuminance", sky.zenith_luminance.is_some(), standard, "`cieSky`"),
+        ("turbidity", sky.turbidity.is_some(), clear, "clear sky, which a sun without `cieSky` has"),
+        ("groundReflectance", sky.ground_reflectance.is_some(), standard || sun, "sun and no `cieSky`"),
+        ("environmentRotation", sky.environment_rotation.is_some(), any, "`environment`, sun or `cieSky`"),
+        ("environmentScale", sky.environment_scale.is_some(), any, "`environment`, sun or `cieSky`"),
+    ] {
+        if given && !has_use {
+            let message = format!("`{word}` has no effect: the background has no {wanted}");
+            diagnostics.push(Diagnostic::warning(message).at(scene.background_span));
+        }
+    }
+}
+
+fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mut Diagnostics) {
+    let parallel = pose.direction.as_dvec3().normalize_or_zero().cross(pose.up.as_dvec3().normalize_or_zero()).length();
+    if parallel < 1e-6 {
+        let message = "the camera's `up` is parallel to its `direction`, so which way is up is arbitrary";
+        let warning = Diagnostic::warning(message).code("up-parallel").at(scene.camera_span);
+        diagnostics.push(warning.help("choose another `up`"));
+    }
+}
+
+/// The sun that goes with a clear sky.
+fn sun(background: &scene::Background) -> Option<Light> {
+    // Of the standard skies it is written where the sun is, but what they give is the sky's light
+    // alone.
+    let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
+    let sky = Sky::new(way, background.turbidity());
+    let (turn, scale) = background.environment_placing();
+    let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
+    let [sin, cos] = [sin, cos].map(|x| x as f32);
+    let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
+    // A light's colour is what a white matte surface shows: illuminance over pi.
+    let color = scale * sky.sun() / std::f32::consts::PI;
+    Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
+}
+
+/// The lights, and the ambient light that goes with them.
+fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
+    let written = scene.lights.as_deref().unwrap_or_default();
+    // Light comes from surfaces or from all around.
+    if written.is_empty() && scene.is_physical() {
+        return (Vec::new(), scene.background.ambient_light);
+    }
+    if written.is_empty() {
+        let (message, ambient) = match rules.ambient_alone {
+            true => ("the scene has no lights: its ambient light is set to 1 1 1, so colours are flat", Color::ONE),
+            false => {
+                ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light)
+            }
+        };
+        // The first assignments have no lights, and ambient light of 1 1 1 as is meant.
+        let meant = scene.background.ambient_light == Color::ONE;
+        let finding = if meant { Diagnostic::note(message) } else { Diagnostic::warning(message) };
+        diagnostics.push(finding.code("no-light"));
+        return (Vec::new(), ambient);
+    }
+    for light in written {
+        if let Some(message) = light.value.contradiction() {
+            diagnostics.push(Diagnostic::error(message).at(light.span));
+        }
+        if light.value.color() == Color::ZERO {
+            let message = "this light reaches nothing: its color is 0 0 0";
+            diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
+        }
+        let missing = matches!(&light.value, Light::Point(point) if point.falloff.is_none());
+        if missing && rules.has(Compat::MissingFalloff) {
+            let message = "this light has no `falloff`, and divides by zero as the official program does";
+            let warning = Diagnostic::warning(message).code("no-falloff").at(light.span);
+            diagnostics.push(warning.help("the picture will be black; write `falloff 1`, say"));
+        }
+    }
+    (written.iter().map(|light| light.value.with_rules(rules)).collect(), scene.background.ambient_light)
+}
+
+/// Nested groups and transforms on their way to a flat list.
+struct SceneFlattener<'a, 'r> {
+    objects: Vec<Object>,
+    loader: &'a mut files::Loader<'r>,
+    rules: &'a Rules,
+    diagnostics: &'a mut Diagnostics,
+    material_count: u32,
+    /// Whether some object needs the plain material behind the last.
+    plain_needed: bool,
+    /// The first object without a material, and how many there are.
+    bare: Option<(Span, usize)>,
+    /// How many transforms are around the present object.
+    transforms: u32,
+    /// An edge at which a mesh is open, if there is one, by its path.
+    open_edges: HashMap<String, Option<[Vec3; 2]>>,
+}
+
+/// Whether scenes of a dialect are trees of nodes, for words of help.
+fn is_nodes(rules: &Rules) -> bool {
+    rules.name == Dialect::F23.name()
+}
+
+impl SceneFlattener<'_, '_> {
+    /// Says once that objects have no material.
+    fn warn_of_bare(&mut self) {
+        let Some((span, count)) = self.bare else { return };
+        let mut message = "this object has no material, and is drawn in plain grey".to_string();
+        match count {
+            1 => {}
+            2 => message += "; so is another",
+            n => message += &format!("; so are {} others", n - 1),
+        }
+        let warning = Diagnostic::warning(message).code("no-material").at(span);
+        self.diagnostics.push(warning.help(match is_nodes(self.rules) {
+            true => "write `Component<Material> { index 0 }` into its node",
+            false => "write `MaterialIndex 0` before it",
+        }));
+    }
+
+    fn group(&mut self, group: &Group, to_world: DAffine3) {
+        for object in &group.objects {
+            self.object(object, to_world);
+        }
+    }
+
+    fn object(&mut self, object: &scene::Object, to_world: DAffine3) {
+        match &object.node {
+            Node::Group(group) => self.group(group, to_world),
+            Node::Transform(ops, inner) => {
+                self.transforms += 1;
+                self.object(inner, to_world * self.product(ops));
+                self.transforms -= 1;
+            }
+            Node::Solid(operation, parts) => self.solid(object.span, *operation, parts, to_world),
+            _ => {
+                let shape = self.shape(object, to_world);
+                self.objects.extend(shape);
+            }
+        }
+    }
+
+    fn product(&self, ops: &[MatrixOp]) -> DAffine3 {
+        MatrixOp::product(ops, self.rules.compat)
+    }
+
+    /// A shape or mesh, placed in the world; `None` after an error.
+    fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
+        let flaw = match &object.node {
+            Node::Primitive(shape) => shape.flaw(),
+            Node::HeightField(field) => field.flaw(),
+            _ => None,
+        };
+        if let Some(flaw) = flaw {
+            self.diagnostics.push(Diagnostic::error(flaw).code("bad-value").at(object.span));
+            return None;
+        }
+        let geometry = match &object.node {
+            Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
+                let [vertex0, vertex1, vertex2] = loosened(t.corners());
+                Geometry::Primitive(Triangle { vertex0, vertex1, vertex2 }.into())
+            }
+            Node::Primitive(shape) => Geometry::Primitive(shape.clone()),
+            Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
+            Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
+            Node::Voxels(grid, balls) => {
+                if (grid.max - grid.min).min_element() <= 0.0 {
+                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
+                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
+                    return None;
+                }
+                let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
+                Geometry::Mesh(Arc::new(self.loader.tree(mesh)))
+            }
+            Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
+        };
+        // What is far from the origin of coordinates for its size would lose digits there.
+        let (geometry, center) = match geometry {
+            Geometry::Primitive(shape) if !self.rules.is_official() && shape.bounds().is_some_and(Aabb::is_far) => {
+                let (shape, center) = shape.centered().unwrap_or((shape, Vec3::ZERO));
+                (Geometry::Primitive(shape), center)
+            }
+            Geometry::Mesh(tree) => {
+                let center = tree.mesh.center();
+                (Geometry::Mesh(tree), center)
+            }
+            other => (other, Vec3::ZERO),
+        };
+        let to_world = to_world * DAffine3::from_translation(center.as_dvec3());
+        let to_world = match to_world == DAffine3::IDENTITY {
+            true => None,
+            false => match Affine::new(to_world) {
+                Some(affine) if affine.is_identity() => None,
+                Some(affine) => Some(affine),
+                None => {
+                    let message = "the transforms around this object flatten space, or leave the range of numbers";
+                    self.diagnostics.push(Diagnostic::error(message).code("flat-transform").at(object.span));
+                    return None;
+                }
+            },
+        };
+        let material = match object.material {
+            Some(index) if index < self.material_count => index,
+            index => {
+                if index.is_none() {
+                    self.bare.get_or_insert((object.span, 0)).1 += 1;
+                }
+                self.plain_needed = true;
+                self.material_count
+            }
+        };
+        let normal_length = match &object.node {
+            Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Compat::RawNormals) => {
+                plane.normal.length()
+            }
+            _ => 1.0,
+        };
+        Some(Object { geometry, to_world, center, material, normal_length, span: object.span })
+    }
+}
+
+#[cfg(test)]
+mod tests;

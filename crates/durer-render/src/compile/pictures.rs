@@ -1,0 +1,211 @@
+//! Pictures that materials name: each is decoded once, whatever number of textures shows it.
+
+use super::decoded::{Encoding, decode};
+use super::files::{Loader, PictureKey};
+use super::kept::Origin;
+use crate::world::{Map, Maps};
+use durer_diag::Diagnostics;
+use durer_image::Encoded;
+use durer_scene::describe::FileName;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::parameters::{Change, TEXTURED, Textured};
+use durer_scene::scene::PictureBytes;
+use durer_scene::source::Digest;
+use durer_scene::texture::{Channel, Mapping, Texture};
+use rayon::prelude::*;
+use std::collections::HashSet;
+
+impl Loader<'_> {
+    /// The number of a texture of a material in layers: an asset's, or a file's that repeats
+    /// without end.
+    fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
+        let key = (name.path.clone(), encoding);
+        if let Some(known) = self.map_numbers.get(&key) {
+            return *known;
+        }
+        let (bytes, mapping) = self.found(name);
+        let texture = match mapping.mipmaps {
+            true => self.mipmapped(name, bytes, encoding, diagnostics),
+            false => self.picture(name, bytes, encoding, diagnostics),
+        };
+        let number = texture.map(|texture| {
+            self.textures.push(texture.mapped(mapping));
+            (self.textures.len() - 1) as u32
+        });
+        self.map_numbers.insert(key, number);
+        number
+    }
+
+    /// The same of a picture of numbers.
+    pub(super) fn number_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
+        self.map(name, Encoding::Linear, diagnostics)
+    }
+
+    /// Where the bytes of a picture are, and how it lies.
+    fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
+        if let Some(asset) = self.assets.pictures.get(&name.path) {
+            return (asset.bytes.clone(), asset.mapping);
+        }
+        let word = name.path.rsplit_once(':').and_then(|(path, word)| Some((path, Channel::from_word(word)?)));
+        let mapping = Mapping { channel: word.map(|(_, channel)| channel), ..Mapping::default() };
+        (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
+    }
+
+    /// Decodes the pictures of materials side by side, as far as memory has room for all of them
+    /// together. Those that cannot be had are left to whoever asks for them, and has a place to
+    /// complain at.
+    pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
+        let mut left = self.resources.memory;
+        let (mut packed, mut seen) = (Vec::new(), HashSet::new());
+        for (name, encoding) in materials.flat_map(pictures) {
+            let (bytes, _) = self.found(name);
+            let key: PictureKey = (bytes.path().into(), encoding);
+            // Many materials may share a picture, which is looked at once.
+            if !seen.insert(key.clone()) {
+                continue;
+            }
+            let origin = self.picture_origin(&bytes);
+            if origin.and_then(|origin| self.resources.kept?.picture(&origin, encoding)).is_some() {
+                continue;
+            }
+            let bytes = match bytes {
+                PictureBytes::Here(_, bytes) => Some(bytes),
+                PictureBytes::File(path) => self.resources.source.read(&path).ok(),
+            };
+            let Some(bytes) = bytes else { continue };
+            let needed = Encoded::open(&bytes, &key.0).map_or(0, |encoded| encoded.needed_raster());
+            let Some(rest) = left.checked_sub(needed) else { break };
+            left = rest;
+            packed.push((key, bytes));
+        }
+        if packed.len() < 2 {
+            return;
+        }
+        let memory = self.resources.memory;
+        let decoded = packed.into_par_iter().filter_map(|(key, bytes)| {
+            let name = FileName { path: key.0.clone(), span: Default::default() };
+            let texture = decode(&name, &key.0, &bytes, key.1 == Encoding::Srgb, memory, &mut Diagnostics::default())?;
+            Some((key, texture))
+        });
+        self.ahead = decoded.collect();
+    }
+
+    /// The textures of a material in layers; what is wrong with one is said, and the material goes
+    /// without it.
+    pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
+        let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
+        let mut maps = Maps {
+            base_color: one(layers.base_color_texture.as_ref(), Encoding::Srgb),
+            emission: one(layers.emission_texture.as_ref(), Encoding::Srgb),
+            opacity: one(layers.opacity_texture.as_ref(), Encoding::Linear),
+            normal: one(layers.normal_texture.as_ref(), Encoding::Linear),
+            bump: one(layers.bump_texture.as_ref(), Encoding::Linear),
+            bump_height: layers.bump_height,
+            parameters: Vec::new(),
+        };
+        for (row, textured) in TEXTURED.iter().enumerate() {
+            if let Some(texture) = one((textured.picture)(layers), encoding_of(textured)) {
+                maps.parameters.push(Map { row, texture, channel: None });
+            }
+        }
+        if let Some(texture) = one(layers.metallic_roughness_texture.as_ref(), Encoding::Linear) {
+            for (row, textured) in TEXTURED.iter().enumerate() {
+                let channel = match textured.field {
+                    "specular_roughness_texture" => Channel::Green,
+                    "base_metalness_texture" => Channel::Blue,
+                    _ => continue,
+                };
+                maps.parameters.push(Map { row, texture, channel: Some(channel) });
+            }
+        }
+        maps
+    }
+
+    /// A picture, decoded once whatever number of textures shows it.
+    pub(super) fn picture(
+        &mut self,
+        name: &FileName,
+        bytes: PictureBytes,
+        encoding: Encoding,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Texture> {
+        let path = bytes.path().to_string();
+        let key = (path.clone(), encoding);
+        if let Some(known) = self.decoded.get(&key) {
+            return known.clone();
+        }
+        let origin = self.picture_origin(&bytes);
+        if let Some(known) = origin.as_ref().and_then(|origin| self.resources.kept?.picture(origin, encoding)) {
+            self.remember(&path, origin.as_ref(), known.digest);
+            let texture = Some(known.thing).filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+            self.decoded.insert(key, texture.clone());
+            return texture;
+        }
+        let texture = match self.ahead.remove(&key) {
+            Some(texture) => Some(texture),
+            None => {
+                let bytes = match bytes {
+                    PictureBytes::Here(_, bytes) => Some(bytes),
+                    PictureBytes::File(path) => self.read(&FileName { path, span: name.span }, "texture", diagnostics),
+                };
+                let (srgb, memory) = (encoding == Encoding::Srgb, self.resources.memory);
+                bytes.and_then(|bytes| decode(name, &path, &bytes, srgb, memory, diagnostics))
+            }
+        };
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
+        if let (Some(kept), Some(origin), Some(texture)) = (self.resources.kept, origin, &texture) {
+            kept.keep_picture(origin, encoding, texture, self.resources.source.digest_of(&path));
+        }
+        self.decoded.insert(key, texture.clone());
+        texture
+    }
+
+    /// A picture with smaller versions of itself.
+    fn mipmapped(
+        &mut self,
+        name: &FileName,
+        bytes: PictureBytes,
+        encoding: Encoding,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Texture> {
+        let key = (bytes.path().to_string(), encoding);
+        if let Some(known) = self.mipmapped.get(&key) {
+            return known.clone();
+        }
+        let texture = self.picture(name, bytes, encoding, diagnostics);
+        // They take a third of what it takes itself: 1/4 + 1/16 + ...
+        let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64 / 3, diagnostics));
+        let texture = texture.map(Texture::with_levels);
+        self.mipmapped.insert(key, texture.clone());
+        texture
+    }
+
+    /// What a picture is made of, if it is to be kept.
+    fn picture_origin(&self, bytes: &PictureBytes) -> Option<Origin> {
+        match bytes {
+            PictureBytes::File(path) => self.origin(path, || None),
+            PictureBytes::Here(path, bytes) => self.origin(path, || Some(Digest::of(bytes))),
+        }
+    }
+}
+
+/// The pictures of a material in layers.
+fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
+    let own = [
+        (layers.emission_texture.as_ref(), Encoding::Srgb),
+        (layers.opacity_texture.as_ref(), Encoding::Linear),
+        (layers.normal_texture.as_ref(), Encoding::Linear),
+        (layers.bump_texture.as_ref(), Encoding::Linear),
+        (layers.metallic_roughness_texture.as_ref(), Encoding::Linear),
+    ];
+    let parameters = TEXTURED.iter().map(|textured| ((textured.picture)(layers), encoding_of(textured)));
+    own.into_iter().chain(parameters).filter_map(|(name, encoding)| Some((name?, encoding)))
+}
+
+/// Encoding of the picture of a parameter: sRGB for colours, linear for numbers.
+fn encoding_of(textured: &Textured) -> Encoding {
+    match textured.change {
+        Change::Number(_) => Encoding::Linear,
+        Change::Color(_) => Encoding::Srgb,
+    }
+}

@@ -1,0 +1,150 @@
+//! Solids: what is combined must be closed.
+
+use super::SceneFlattener;
+use crate::world::csg::Csg;
+use crate::world::solid::Solid;
+use crate::world::{Geometry, Object};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{self, Group, Node, Operation};
+use durer_scene::shape::{Primitive, Shape};
+use glam::DAffine3;
+use std::sync::Arc;
+
+impl SceneFlattener<'_, '_> {
+    /// A solid with nothing but groups and transforms around it.
+    pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
+        let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
+        self.check_count(span, operation, parts);
+        if operation == Operation::Union {
+            return parts.iter().for_each(|part| self.part_of_union(part, to_world));
+        }
+        let solid = joined(operation, self.solids(parts, to_world));
+        if self.diagnostics.error_count() > errors {
+            return;
+        }
+        solid.into_iter().flat_map(Solid::pieces).for_each(|piece| self.piece(piece, span));
+        if self.objects.len() == before && self.diagnostics.error_count() == errors {
+            let message = format!("nothing is left of this `{}`: its parts do not meet", operation.keyword());
+            self.diagnostics.push(Diagnostic::warning(message).code("empty-solid").at(span));
+        }
+    }
+
+    /// Parts of a union stay as they are, but must be closed as all parts are.
+    fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
+        match &part.node {
+            Node::Group(group) => {
+                self.check_group(group, part.span);
+                group.objects.iter().for_each(|inner| self.part_of_union(inner, to_world));
+            }
+            Node::Transform(ops, inner) => self.part_of_union(inner, to_world * self.product(ops)),
+            Node::Solid(operation, parts) => self.solid(part.span, *operation, parts, to_world),
+            _ => {
+                let solid = self.closed(part, to_world);
+                solid.into_iter().for_each(|solid| self.piece(solid, part.span));
+            }
+        }
+    }
+
+    /// A piece of a solid that is apart from the others becomes an object of its own.
+    fn piece(&mut self, piece: Solid, span: Span) {
+        if let Solid::Operand(object) = piece {
+            return self.objects.push(Arc::unwrap_or_clone(object));
+        }
+        let (count, material) = {
+            let parts = piece.parts();
+            (parts.iter().map(|part| u64::from(part.parts())).sum::<u64>(), parts[0].material)
+        };
+        if count > Csg::MAX_PARTS {
+            let message = format!("the parts of this solid have more than {} triangles", Csg::MAX_PARTS);
+            self.diagnostics.push(Diagnostic::error(message).at(span));
+            return;
+        }
+        let geometry = Geometry::Solid(Arc::new(Csg::new(piece)));
+        self.objects.push(Object { geometry, to_world: None, center: Vec3::ZERO, material, normal_length: 1.0, span });
+    }
+
+    fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {
+        let name = operation.keyword();
+        match parts.len() {
+            0 => self.diagnostics.push(Diagnostic::error(format!("this `{name}` has no parts")).at(span)),
+            1 if operation == Operation::Difference => {
+                let message = "nothing is cut away: this `Difference` has one part only";
+                self.diagnostics.push(Diagnostic::warning(message).at(span));
+            }
+            _ => {}
+        }
+    }
+
+    fn solids(&mut self, parts: &[scene::Object], to_world: DAffine3) -> Vec<Solid> {
+        parts.iter().filter_map(|part| self.closed(part, to_world)).collect()
+    }
+
+    /// A part of a solid, which must be closed; `None` after an error.
+    fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
+        match &part.node {
+            Node::Group(group) => {
+                self.check_group(group, part.span);
+                Some(Solid::any(self.solids(&group.objects, to_world)))
+            }
+            Node::Transform(ops, inner) => self.closed(inner, to_world * self.product(ops)),
+            Node::Solid(operation, parts) => {
+                self.check_count(part.span, *operation, parts);
+                joined(*operation, self.solids(parts, to_world))
+            }
+            Node::Primitive(shape) => {
+                self.check_shape(shape, part.span);
+                self.shape(part, to_world).map(|object| Solid::Operand(Arc::new(object)))
+            }
+            Node::Mesh(_) | Node::HeightField(_) | Node::Voxels(..) => {
+                let object = self.shape(part, to_world)?;
+                if let Node::Mesh(mesh) = &part.node {
+                    self.check_mesh(&object, &mesh.obj_file.path, part.span);
+                }
+                Some(Solid::Operand(Arc::new(object)))
+            }
+        }
+    }
+
+    fn check_group(&mut self, group: &Group, span: Span) {
+        if group.objects.is_empty() {
+            self.diagnostics.push(Diagnostic::error("an empty `Group` cannot be part of a solid").at(span));
+        }
+    }
+
+    fn check_shape(&mut self, shape: &Primitive, span: Span) {
+        if shape.inside(glam::DVec3::ZERO).is_none() {
+            let message = "a surface without an inside cannot be part of a solid";
+            let help = "solids are made of closed shapes: a flat `Box` or `Cylinder`, say, or a `Plane`, whose inside is \
+                        all that is behind it";
+            self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
+        }
+    }
+
+    fn check_mesh(&mut self, object: &Object, path: &str, span: Span) {
+        let Geometry::Mesh(tree) = &object.geometry else { return };
+        let edge = *self.open_edges.entry(path.to_string()).or_insert_with(|| tree.mesh.open_edge());
+        if let Some([p, q]) = edge {
+            let message = format!("the mesh `{path}` is not closed, and cannot be part of a solid");
+            let text = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
+            let help = format!("the edge from {} to {} borders on an odd number of triangles", text(p), text(q));
+            self.diagnostics.push(Diagnostic::error(message).code("open-solid").at(span).help(help));
+        }
+    }
+}
+
+/// Some solids as one; `None` of none.
+fn joined(operation: Operation, mut parts: Vec<Solid>) -> Option<Solid> {
+    if parts.is_empty() {
+        return None;
+    }
+    Some(match operation {
+        Operation::Union | Operation::Merge => Solid::any(parts),
+        Operation::Intersection => Solid::all(parts, Vec::new()),
+        Operation::Xor => Solid::odd(parts),
+        Operation::Difference => {
+            let first = parts.remove(0);
+            Solid::all(vec![first], parts)
+        }
+    })
+}

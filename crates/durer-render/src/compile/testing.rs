@@ -1,0 +1,67 @@
+//! Worlds for tests of other rooms.
+
+use super::*;
+use crate::world::World;
+use durer_formats::Decoder;
+use durer_formats::course::{self, ReadOptions};
+use durer_scene::dialect::Dialect;
+use durer_scene::shape::Primitive;
+use glam::DAffine3;
+use std::cell::RefCell;
+use std::path::Path;
+
+/// The world of a scene file's text, and the findings about it.
+pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
+    let mut files = Files::default();
+    let file = files.add("scene.txt", text.as_bytes().into());
+    let mut diagnostics = Diagnostics::default();
+    let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
+    let source = Source::folder(folder);
+    let included = RefCell::new(std::mem::take(&mut files));
+    let scene = course::read_with(text.as_bytes(), file, options, &course::below(&source, &included), &mut diagnostics);
+    files = included.into_inner();
+    let resources = Resources::new(&source, &Decoder, &mut files);
+    let world = scene.and_then(|scene| compile(&scene, rules, accel, resources, &mut diagnostics));
+    (world, diagnostics)
+}
+
+/// The world of a scene file's text, by our own dialect's rules.
+pub fn read(text: &str) -> World {
+    let (world, diagnostics) = try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, Path::new("."));
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
+
+/// The words of a transform.
+pub fn matrix_words(affine: &DAffine3) -> String {
+    let rows = glam::DMat4::from(*affine).transpose().to_cols_array();
+    let words: Vec<String> = rows.iter().map(|x| format!("{:?}", *x as f32)).collect();
+    format!("Matrix {{ {} }}", words.join(" "))
+}
+
+/// The world of one object, whose files are in a folder.
+pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
+    let root = Group { objects: vec![object] };
+    let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
+    let scene = Scene { camera, root: Some(root), ..Scene::default() };
+    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder(folder), Diagnostics::default());
+    let resources = Resources::new(&source, &Decoder, &mut files);
+    let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}
+
+/// Some shapes, each moved, and nothing else.
+pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
+    let object = |node| scene::Object { node, material: None, span: Default::default() };
+    let moved = |(shape, affine): &(Primitive, DAffine3)| {
+        let shape = object(Node::Primitive(shape.clone()));
+        let rows = glam::DMat4::from(*affine).transpose().to_cols_array().map(|x| x as f32);
+        object(Node::Transform(vec![MatrixOp::Matrix(rows)], Box::new(shape)))
+    };
+    let root = Group { objects: shapes.iter().map(moved).collect() };
+    let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
+    let scene = Scene { camera, root: Some(root), ..Scene::default() };
+    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder("."), Diagnostics::default());
+    let resources = Resources::new(&source, &Decoder, &mut files);
+    let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
+    world.unwrap_or_else(|| panic!("{diagnostics:?}"))
+}

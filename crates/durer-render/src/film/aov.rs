@@ -1,0 +1,351 @@
+//! What a picture can show beside colour: one table.
+//!
+//! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the
+//! colour's samples. Files of floating point get the values as they are; eight-bit files get a
+//! picture of them between 0 and 1.
+
+use super::false_color::LightScale;
+use super::{Film, luminance_of};
+use crate::world::{Interaction, World};
+use durer_bvh::TraversalStats;
+use durer_scene::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture};
+use durer_scene::math::{Aabb, Color, Vec3};
+use durer_scene::sampler::hash;
+use durer_scene::shape::Surface;
+use serde::{Deserialize, Serialize};
+
+/// What the ray through a pixel's centre found.
+#[derive(Clone, Copy, Debug)]
+pub struct AovInput {
+    /// Whether the camera sees anything through this pixel.
+    pub covered: bool,
+    /// What it met, if anything.
+    pub hit: Option<Interaction>,
+    /// The diffuse colour hit.
+    pub albedo: Color,
+    /// The work for the pixel, with all secondary rays.
+    pub counts: TraversalStats,
+    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts; 0 unless
+    /// it is asked for.
+    pub illuminance: f32,
+}
+
+impl AovInput {
+    /// Where the camera sees nothing.
+    pub const NOTHING: AovInput = AovInput {
+        covered: false,
+        hit: None,
+        albedo: Vec3::ZERO,
+        counts: TraversalStats { rays: 0, nodes: 0, tests: 0 },
+        illuminance: 0.0,
+    };
+}
+
+/// What is known of a pixel from the samples of its colour: worked out where it is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums<'a> {
+    /// The pixel in its film; none where nothing is made of it.
+    pub pixel: Option<(&'a Film, u32, u32)>,
+    /// The size of the samples' weights where their mean is 1, as [`Film::variance`] takes it.
+    pub gain: f32,
+    /// What makes lumens of light, by colour, where that is in watts.
+    pub lumens: Option<Vec3>,
+}
+
+impl Sums<'_> {
+    /// How many there are.
+    pub fn samples(&self) -> u64 {
+        self.pixel.map_or(0, |(film, x, y)| film.samples(x, y))
+    }
+
+    /// Estimated variance of their mean luminance.
+    pub fn variance(&self) -> f64 {
+        self.pixel.map_or(f64::INFINITY, |(film, x, y)| film.variance(x, y, self.gain))
+    }
+
+    /// Luminance of their mean.
+    pub fn luminance(&self) -> f64 {
+        self.pixel.map_or(0.0, |(film, x, y)| brightness(film.resolve(x, y), self.lumens))
+    }
+}
+
+/// The luminance of light, or its lumens where it is in watts.
+pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
+    lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
+}
+
+/// Those rules of a scene's dialect that say how values are shown.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct DisplayRules {
+    /// Normals as colours.
+    pub normals: NormalsPicture,
+    /// Depth as grey.
+    pub depth: DepthPicture,
+    /// Quirks of the official program.
+    pub compat: CompatSet,
+    /// What makes lumens of light, by colour, where that is in watts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lumens: Option<Vec3>,
+}
+
+impl DisplayRules {
+    /// Those of a world.
+    pub fn of(world: &World) -> Self {
+        let rules = world.rules();
+        DisplayRules {
+            normals: rules.normals_picture,
+            depth: rules.depth_picture,
+            compat: rules.compat,
+            lumens: world.lumens(),
+        }
+    }
+
+    /// Whether a compatibility is on.
+    pub fn has(&self, compat: Compat) -> bool {
+        self.compat & compat.bit() != 0
+    }
+}
+
+/// What is needed to make a picture of values.
+#[derive(Clone, Copy, Debug)]
+pub struct Display {
+    /// How values are shown.
+    pub look: DisplayRules,
+    /// Depths that become black and white; `None`: least and greatest of the picture.
+    pub depth_range: Option<(f32, f32)>,
+    /// What false colours stand for.
+    pub light_scale: LightScale,
+    /// The box of all values where something was hit.
+    pub hits: Aabb,
+    /// The box of all values.
+    pub all: Aabb,
+}
+
+/// Whence the values of a picture come.
+#[derive(Clone, Copy, Debug)]
+pub enum Value {
+    /// From the ray through the pixel's centre.
+    Ray(fn(&AovInput) -> Vec3),
+    /// From the samples of the colour.
+    Sums(fn(&Sums) -> Vec3),
+}
+
+/// One kind of picture.
+#[derive(Debug)]
+pub struct Aov {
+    /// Its name on the command line and in files.
+    pub name: &'static str,
+    /// What it shows.
+    pub doc: &'static str,
+    /// The value at a pixel, as files of floating point have it.
+    pub value: Value,
+    /// The value as a colour; the flag tells whether anything was hit.
+    pub picture: fn(Vec3, bool, &Display) -> Color,
+    /// Whether that colour depends on the values of other pixels too.
+    pub relative: bool,
+    /// The unit of values in false colours, whose scale is drawn beside them.
+    pub unit: Option<&'static str>,
+}
+
+impl Aov {
+    /// The one of a name.
+    pub fn from_name(name: &str) -> Option<&'static Aov> {
+        AOVS.iter().find(|aov| aov.name == name)
+    }
+}
+
+/// Gives pixels without a hit the colour of the hit before them: rows from the bottom, each from
+/// the left.
+pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
+    let rows = pixels.len() / width.max(1);
+    let mut last = None;
+    for y in (0..rows).rev() {
+        for i in y * width..(y + 1) * width {
+            match (hits[i], last) {
+                (true, _) => last = Some(pixels[i]),
+                (false, Some(color)) => pixels[i] = color,
+                (false, None) => {}
+            }
+        }
+    }
+}
+
+/// All kinds of picture beside colour.
+pub static AOVS: &[Aov] = &[
+    Aov {
+        name: "depth",
+        doc: "t of the first hit: the distance, for cameras; 0 where nothing is hit",
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(f32::INFINITY, |at| at.hit.t))),
+        picture: depth_picture,
+        relative: true,
+        unit: None,
+    },
+    Aov {
+        name: "normals",
+        doc: "the shading normal in world space",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
+        picture: normal_picture,
+        // Where nothing is hit, one quirk shows the normal hit last.
+        relative: true,
+        unit: None,
+    },
+    Aov {
+        name: "geometric-normals",
+        doc: "the normal of the surface itself in world space",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.n_geo)),
+        picture: normal_picture,
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "position",
+        doc: "the point in world space; as a picture, within the box of all points seen",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.position)),
+        picture: |p, hit, display| {
+            let (size, min) = (display.hits.size(), display.hits.min);
+            let one = |axis: usize| if size[axis] > 0.0 { (p[axis] - min[axis]) / size[axis] } else { 0.5 };
+            if hit { Vec3::new(one(0), one(1), one(2)) } else { Vec3::ZERO }
+        },
+        relative: true,
+        unit: None,
+    },
+    Aov {
+        name: "uv",
+        doc: "texture coordinates in red and green, 0 where there are none; as a picture, their fraction",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.uv.get().unwrap_or_default().extend(0.0))),
+        picture: |uv, _, _| uv - uv.floor(),
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "barycentric",
+        doc: "barycentric coordinates on the triangle, 0 on other shapes",
+        value: Value::Ray(|seen| of_surface(seen, |s| s.barycentric)),
+        picture: |b, _, _| b,
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "albedo",
+        doc: "the diffuse colour, from textures and patterns too, without any light; 0 where nothing is hit",
+        value: Value::Ray(|seen| seen.albedo),
+        picture: |albedo, _, _| albedo,
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "object",
+        doc: "number of the object, -1 where there is none; as a picture, a colour of its own",
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.hit.object as f32))),
+        picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "material",
+        doc: "number of the material, -1 where there is none; as a picture, a colour of its own",
+        value: Value::Ray(|seen| Vec3::splat(seen.hit.map_or(-1.0, |at| at.material as f32))),
+        picture: |id, hit, _| if hit { id_color(id.x) } else { Vec3::ZERO },
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "luminance",
+        doc: "luminance of the colour, in cd/m^2 where the scene's light is, or in watts; as a picture, false colours with their scale",
+        value: Value::Sums(|sums| Vec3::splat(sums.luminance() as f32)),
+        picture: light_picture,
+        relative: true,
+        unit: Some("cd/m2"),
+    },
+    Aov {
+        name: "illuminance",
+        doc: "light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts, by paths; false colours with their scale",
+        value: Value::Ray(|seen| Vec3::splat(seen.illuminance)),
+        picture: |value, hit, display| if hit { light_picture(value, hit, display) } else { Vec3::ZERO },
+        relative: true,
+        unit: Some("lux"),
+    },
+    Aov {
+        name: "sample-count",
+        doc: "how many samples the colour is the mean of; as a picture, a heat map",
+        value: Value::Sums(|sums| Vec3::splat(sums.samples() as f32)),
+        picture: heat_picture,
+        relative: true,
+        unit: None,
+    },
+    Aov {
+        name: "variance",
+        doc: "estimated variance of the mean luminance, infinite for one sample; as a picture, a heat map of its root up to 0.1",
+        value: Value::Sums(|sums| Vec3::splat(sums.variance() as f32)),
+        picture: |variance, _, _| heat(variance.x.sqrt() * 10.0),
+        relative: false,
+        unit: None,
+    },
+    Aov {
+        name: "cost",
+        doc: "tests of boxes and shapes for the pixel, with all secondary rays; as a picture, a heat map",
+        value: Value::Ray(|seen| Vec3::splat((seen.counts.nodes + seen.counts.tests) as f32)),
+        picture: heat_picture,
+        relative: true,
+        unit: None,
+    },
+];
+
+fn normal_picture(n: Vec3, _: bool, display: &Display) -> Color {
+    match display.look.normals {
+        NormalsPicture::Abs => n.abs(),
+        NormalsPicture::Half => (n + 1.0) * 0.5,
+    }
+}
+
+fn light_picture(value: Vec3, _: bool, display: &Display) -> Color {
+    display.light_scale.color(value.x)
+}
+
+fn heat_picture(value: Vec3, _: bool, display: &Display) -> Color {
+    heat(value.x / display.all.max.x.max(1.0))
+}
+
+fn of_surface(seen: &AovInput, value: impl Fn(&Surface) -> Vec3) -> Vec3 {
+    seen.hit.map_or(Vec3::ZERO, |at| value(&at.surface))
+}
+
+fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
+    let look = display.look;
+    let (least, greatest) = (display.hits.min.x, display.hits.max.x);
+    let (min, max) = match display.depth_range {
+        // A range that whole numbers cannot tell apart is left as it is.
+        Some((min, max)) if look.has(Compat::WholeDepths) && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
+        Some(range) => range,
+        None => (least, if greatest > least { greatest } else { least + 1.0 }),
+    };
+    Vec3::splat(match look.depth {
+        DepthPicture::NearWhite if !hit => 0.0,
+        DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),
+        DepthPicture::NearBlack if !hit => {
+            if look.has(Compat::BlackSky) {
+                0.0
+            } else {
+                1.0
+            }
+        }
+        DepthPicture::NearBlack => ((depth.x - min) / (max - min)).clamp(0.0, 1.0),
+    })
+}
+
+/// A bright colour that differs from number to number.
+fn id_color(id: f32) -> Color {
+    let bits = hash(0, id as u32, 0, 0, 0);
+    let channel = |shift: u32| 0.25 + 0.75 * ((bits >> shift) & 0xff) as f32 / 255.0;
+    Vec3::new(channel(0), channel(8), channel(16))
+}
+
+/// Black, blue, red, yellow, white as x goes from 0 to 1.
+pub(crate) fn heat(x: f32) -> Color {
+    const STEPS: [Vec3; 5] =
+        [Vec3::ZERO, Vec3::new(0.1, 0.1, 0.8), Vec3::new(0.9, 0.1, 0.1), Vec3::new(1.0, 0.9, 0.1), Vec3::ONE];
+    let place = x.clamp(0.0, 1.0) * 4.0;
+    let step = (place as usize).min(3);
+    let part = place - step as f32;
+    (1.0 - part) * STEPS[step] + part * STEPS[step + 1]
+}

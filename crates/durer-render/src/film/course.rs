@@ -1,0 +1,180 @@
+//! The films of the course's assignments, kept as they are.
+//!
+//! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the
+//! pixel they are for, also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
+//! Each pixel is summed in one fixed order, so it is the same whatever part of the picture it is
+//! made with.
+
+use durer_scene::math::{Color, Vec2, fp};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::convert::Infallible;
+
+mod jitter;
+#[cfg(test)]
+mod tests;
+
+pub use jitter::{average_3x3, blur, blur_and_average, jittered_position};
+
+/// One sample of the 2004 film.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StoredSample {
+    /// Position in its pixel, in [0,1)^2, right and down.
+    pub position: Vec2,
+    /// What was seen there.
+    pub color: Color,
+}
+
+/// All samples of a picture, the same number in each pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoredSamples {
+    width: u32,
+    height: u32,
+    per_pixel: u32,
+    /// The samples of each row's pixels, one after the other.
+    rows: Vec<Vec<StoredSample>>,
+}
+
+impl StoredSamples {
+    /// Takes every sample: `sample(x, y, number)`, rows from the top. At least one a pixel.
+    pub fn take(width: u32, height: u32, per_pixel: u32, sample: impl Fn(u32, u32, u32) -> StoredSample) -> Self {
+        let sample = |x, y, number| Ok::<_, Infallible>(sample(x, y, number));
+        let Ok(all) = StoredSamples::try_take(width, height, per_pixel, sample);
+        all
+    }
+
+    /// The same where a sample may be refused, which ends the taking.
+    pub fn try_take<E>(
+        width: u32,
+        height: u32,
+        per_pixel: u32,
+        mut sample: impl FnMut(u32, u32, u32) -> Result<StoredSample, E>,
+    ) -> Result<Self, E> {
+        let per_pixel = per_pixel.max(1);
+        let numbers = |y| (0..width).flat_map(move |x| (0..per_pixel).map(move |number| (x, y, number)));
+        let mut take_row = |y| numbers(y).map(|(x, y, number)| sample(x, y, number)).collect();
+        let rows: Result<Vec<Vec<StoredSample>>, E> = (0..height).map(&mut take_row).collect();
+        Ok(StoredSamples { width, height, per_pixel, rows: rows? })
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// The samples of a pixel. Panics outside the picture.
+    pub fn pixel(&self, x: u32, y: u32) -> &[StoredSample] {
+        assert!(x < self.width && y < self.height, "the pixel lies in the picture");
+        let n = self.per_pixel as usize;
+        &self.rows[y as usize][x as usize * n..][..n]
+    }
+
+    /// The picture, row 0 at the top: for each pixel the weighted mean of the samples of all pixels
+    /// within the filter's support, inside the picture.
+    ///
+    /// Where all weights are zero (a filter narrower than the gaps between samples) it is the mean
+    /// of its own samples.
+    pub fn reconstruct(&self, filter: CourseFilter) -> Vec<Color> {
+        let Ok(pixels) = self.try_reconstruct(filter, (0, 0), self.size(), || Ok::<_, Infallible>(()));
+        pixels
+    }
+
+    /// A part of it, from a column and row on, asking every now and then whether to go on.
+    ///
+    /// It is as in the whole picture where the samples reach as far around the part as the filter,
+    /// or to the picture's edge.
+    pub fn try_reconstruct<E>(
+        &self,
+        filter: CourseFilter,
+        (left, top): (u32, u32),
+        (width, height): (u32, u32),
+        go_on: impl Fn() -> Result<(), E>,
+    ) -> Result<Vec<Color>, E> {
+        let places = (top..top + height).flat_map(|y| (left..left + width).map(move |x| (x, y)));
+        places
+            .map(|(x, y)| {
+                go_on()?;
+                Ok(self.filtered(filter, x, y, &go_on)?.unwrap_or_else(|| self.mean(x, y)))
+            })
+            .collect()
+    }
+
+    fn mean(&self, x: u32, y: u32) -> Color {
+        let sum: DVec3 = self.pixel(x, y).iter().map(|s| s.color.as_dvec3()).sum();
+        (sum / f64::from(self.per_pixel)).as_vec3()
+    }
+
+    /// Weighted mean around a pixel, or nothing where no sample counts.
+    fn filtered<E>(
+        &self,
+        filter: CourseFilter,
+        x: u32,
+        y: u32,
+        go_on: impl Fn() -> Result<(), E>,
+    ) -> Result<Option<Color>, E> {
+        let support = filter.support();
+        let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+        for row in y.saturating_sub(support)..=y.saturating_add(support).min(self.height - 1) {
+            go_on()?;
+            for column in x.saturating_sub(support)..=x.saturating_add(support).min(self.width - 1) {
+                for sample in self.pixel(column, row) {
+                    let weight = f64::from(filter.weight_between((column, row), sample.position, (x, y)));
+                    sum += weight * sample.color.as_dvec3();
+                    total += weight;
+                }
+            }
+        }
+        Ok((total > 0.0).then(|| (sum / total).as_vec3()))
+    }
+}
+
+/// A filter of the 2004 course. Lengths in pixels; weights are not normalised, the greatest is 1.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum CourseFilter {
+    /// 1 where both distances are at most the radius.
+    Box {
+        /// Half the width.
+        radius: f32,
+    },
+    /// A cone: 1 at the centre, 0 at the radius.
+    Tent {
+        /// Radius of the cone's foot.
+        radius: f32,
+    },
+    /// exp(-d^2 / (2 sigma^2)), not cut at 2 sigma but with the pixels of the support.
+    Gaussian {
+        /// Standard deviation.
+        sigma: f32,
+    },
+}
+
+impl CourseFilter {
+    /// The weight of a sample at an offset from the centre of the pixel.
+    pub fn weight(self, offset: Vec2) -> f32 {
+        match self {
+            CourseFilter::Box { radius } => f32::from(offset.abs().max_element() <= radius),
+            // A radius of 0 has no samples but those on the centre.
+            CourseFilter::Tent { radius } => (1.0 - offset.length() / radius.max(f32::MIN_POSITIVE)).max(0.0),
+            CourseFilter::Gaussian { sigma } => {
+                fp::exp(-offset.length_squared() / (2.0 * sigma * sigma).max(f32::MIN_POSITIVE))
+            }
+        }
+    }
+
+    /// The weight in a pixel of a sample at a position in another.
+    pub fn weight_between(self, (column, row): (u32, u32), position: Vec2, (x, y): (u32, u32)) -> f32 {
+        // From the centre of the pixel to the corner of the other.
+        let corner = Vec2::new(column as f32 - x as f32, row as f32 - y as f32) - 0.5;
+        self.weight(corner + position)
+    }
+
+    /// How many pixels to each side of the pixel are looked at.
+    pub fn support(self) -> u32 {
+        let reach = match self {
+            CourseFilter::Box { radius } | CourseFilter::Tent { radius } => radius,
+            CourseFilter::Gaussian { sigma } => 2.0 * sigma,
+        };
+        // Negative numbers give 0.
+        (reach - 0.5).ceil() as u32
+    }
+}

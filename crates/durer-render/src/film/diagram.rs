@@ -1,0 +1,86 @@
+//! The diagrams of the 2004 course: where samples lie in their pixels, and how a filter weights its
+//! surroundings.
+//!
+//! Both enlarge each pixel to `zoom` times `zoom` pixels.
+
+use super::course::{CourseFilter, StoredSamples};
+use durer_scene::math::{Color, Vec2, Vec3};
+
+#[cfg(test)]
+mod tests;
+
+/// A picture made by this file, row 0 at the top.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Diagram {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Colours between 0 and 1, to be written as trunc(255 c).
+    pub pixels: Vec<Color>,
+}
+
+impl Diagram {
+    fn new(width: u32, height: u32, color: impl Fn(u32, u32) -> Color) -> Self {
+        let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Diagram { width, height, pixels: rows.map(|(x, y)| color(x, y)).collect() }
+    }
+}
+
+/// One dot in the sample's colour for each sample, on a chessboard of black and dark grey pixels,
+/// the bottom left one grey.
+///
+/// `-render_samples`: `width * zoom` columns. A `zoom` of 0 is taken as 1; the caller bounds the
+/// size.
+pub fn samples(samples: &StoredSamples, zoom: u32) -> Diagram {
+    let zoom = zoom.max(1);
+    let (width, height) = samples.size();
+    let mut diagram = Diagram::new(width * zoom, height * zoom, |x, y| {
+        let from_bottom = height - 1 - y / zoom;
+        if (x / zoom + from_bottom).is_multiple_of(2) { Vec3::splat(0.2) } else { Vec3::ZERO }
+    });
+    for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+        for sample in samples.pixel(x, y) {
+            // The course counts rows upwards, so a dot between two rows goes to the upper one.
+            let across = (sample.position.x * zoom as f32) as u32;
+            let up = ((1.0 - sample.position.y) * zoom as f32) as u32;
+            let (column, row) = (x * zoom + across.min(zoom - 1), y * zoom + (zoom - 1 - up.min(zoom - 1)));
+            let place = row as usize * diagram.width as usize + column as usize;
+            diagram.pixels[place] = sample.color.clamp(Vec3::ZERO, Vec3::ONE);
+        }
+    }
+    diagram
+}
+
+/// A filter's weights in grey over the pixels of its support around the middle pixel; the others
+/// are dark blue, and blue lines part the pixels.
+///
+/// `-render_filter`: `width * zoom + 1` columns. A `zoom` of 0 is taken as 1; the caller bounds the
+/// size.
+pub fn filter(width: u32, height: u32, zoom: u32, filter: CourseFilter) -> Diagram {
+    weights(width, height, zoom, filter.support(), |offset| filter.weight(offset))
+}
+
+/// As `filter`, for any function of the offset (right and down, in pixels) whose greatest value is
+/// 1.
+pub fn weights(width: u32, height: u32, zoom: u32, support: u32, weight: impl Fn(Vec2) -> f32) -> Diagram {
+    let zoom = zoom.max(1);
+    // The middle pixel, counted from the left and from the bottom.
+    let (middle_x, middle_y) = (width / 2, height / 2);
+    // Twice the offset in diagram pixels is whole, so that a rounding comes only with the division.
+    let offset = |at: u32, middle: u32| {
+        let doubled = 2 * i64::from(at) - i64::from(zoom) * (2 * i64::from(middle) + 1);
+        doubled as f32 / (2 * zoom) as f32
+    };
+    Diagram::new(width * zoom + 1, height * zoom + 1, |x, y| {
+        let up = height * zoom - y;
+        if x.is_multiple_of(zoom) || up.is_multiple_of(zoom) {
+            return Vec3::Z;
+        }
+        if (x / zoom).abs_diff(middle_x) > support || (up / zoom).abs_diff(middle_y) > support {
+            return Vec3::new(0.0, 0.0, 0.5);
+        }
+        let offset = Vec2::new(offset(x, middle_x), -offset(up, middle_y));
+        Vec3::splat(weight(offset).clamp(0.0, 1.0))
+    })
+}

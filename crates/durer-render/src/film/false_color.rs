@@ -1,0 +1,185 @@
+//! Light in false colours, with a scale beside it, as lighting engineers read pictures.
+
+use durer_scene::math::{Color, Vec3, fp};
+use serde::{Deserialize, Serialize};
+
+/// Which values the colours stand for.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LightScale {
+    /// The value of the first colour, dark blue.
+    pub low: f32,
+    /// The value of the last, red; more than `low`.
+    pub high: f32,
+    /// Whether equal ratios are equal steps, and not equal differences; then `low` is more than 0.
+    pub logarithmic: bool,
+}
+
+impl LightScale {
+    /// From 0 to what all but the brightest fiftieth of some values stay below: a lamp in sight
+    /// would leave no colours for the rest.
+    pub fn over(values: impl Iterator<Item = f32>) -> Self {
+        let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
+        all.sort_by(f32::total_cmp);
+        let high = all.get(all.len() * 49 / 50).copied().unwrap_or(1.0);
+        LightScale { low: 0.0, high, logarithmic: false }
+    }
+
+    /// Where a value lies, from 0 to 1.
+    pub fn place(&self, value: f32) -> f32 {
+        let share = match self.logarithmic {
+            true if value <= 0.0 => 0.0,
+            true => fp::ln(value / self.low) / fp::ln(self.high / self.low),
+            false => (value - self.low) / (self.high - self.low),
+        };
+        share.clamp(0.0, 1.0)
+    }
+
+    /// The value at a place from 0 to 1.
+    fn value(&self, place: f32) -> f32 {
+        match self.logarithmic {
+            true => self.low * fp::exp(place * fp::ln(self.high / self.low)),
+            false => self.low + place * (self.high - self.low),
+        }
+    }
+
+    /// The colour of a value.
+    pub fn color(&self, value: f32) -> Color {
+        const STEPS: [Vec3; 6] = [
+            Vec3::new(0.02, 0.0, 0.12),
+            Vec3::new(0.05, 0.1, 0.9),
+            Vec3::new(0.0, 0.65, 0.75),
+            Vec3::new(0.1, 0.8, 0.1),
+            Vec3::new(1.0, 0.85, 0.0),
+            Vec3::new(0.9, 0.02, 0.02),
+        ];
+        let place = self.place(value) * (STEPS.len() - 1) as f32;
+        let step = (place as usize).min(STEPS.len() - 2);
+        STEPS[step].lerp(STEPS[step + 1], place - step as f32)
+    }
+
+    /// Draws the scale over the right border of a picture: what colours mean, with numbers and
+    /// their unit. Small pictures have no room for it.
+    pub fn draw(&self, pixels: &mut [Color], width: usize, unit: &str) {
+        const ROWS: usize = 8;
+        let height = pixels.len() / width.max(1);
+        let labels: Vec<String> = (0..=ROWS).map(|i| number(self.value(1.0 - i as f32 / ROWS as f32))).collect();
+        let longest = labels.iter().map(String::len).chain([unit.len()]).max().unwrap_or(0);
+        // A letter is three points wide and five high, with one between.
+        let zoom = (height / 120).clamp(1, 8);
+        let (bar, line) = (6 * zoom, 7 * zoom);
+        let wide = bar + (4 * longest + 3) * zoom;
+        if width < 2 * wide || height < (ROWS + 3) * line {
+            return;
+        }
+        let (left, top, bottom) = (width - wide, 2 * line, height - line);
+        for y in 0..height {
+            for x in left..width {
+                let in_bar = x < left + bar && (top..bottom).contains(&y);
+                let place = 1.0 - (y.saturating_sub(top)) as f32 / (bottom - top) as f32;
+                pixels[y * width + x] = if in_bar { self.color(self.value(place)) } else { Color::ZERO };
+            }
+        }
+        let mut write = |text: &str, middle: usize| {
+            for (i, letter) in text.chars().enumerate() {
+                let (rows, x) = (glyph(letter), left + bar + (2 + 4 * i) * zoom);
+                for (row, column) in (0..5 * zoom).flat_map(|row| (0..3 * zoom).map(move |column| (row, column))) {
+                    let y = (middle + row).saturating_sub(5 * zoom / 2);
+                    if rows[row / zoom] >> (2 - column / zoom) & 1 == 1 && y < height {
+                        pixels[y * width + x + column] = Color::ONE;
+                    }
+                }
+            }
+        };
+        write(unit, line / 2 + zoom);
+        for (i, label) in labels.iter().enumerate() {
+            write(label, top + i * (bottom - top) / ROWS);
+        }
+    }
+}
+
+/// Three digits of a number that count, without needless zeros.
+fn number(value: f32) -> String {
+    let rounded = format!("{value:.2e}").parse::<f64>().unwrap_or(0.0);
+    let text = if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) {
+        format!("{rounded:e}")
+    } else {
+        rounded.to_string()
+    };
+    text.to_lowercase()
+}
+
+/// A letter of three by five points, its rows from the top; blank where there is none.
+fn glyph(letter: char) -> [u8; 5] {
+    match letter {
+        '0' => [7, 5, 5, 5, 7],
+        '1' => [2, 6, 2, 2, 7],
+        '2' => [7, 1, 7, 4, 7],
+        '3' => [7, 1, 7, 1, 7],
+        '4' => [5, 5, 7, 1, 1],
+        '5' => [7, 4, 7, 1, 7],
+        '6' => [7, 4, 7, 5, 7],
+        '7' => [7, 1, 1, 2, 2],
+        '8' => [7, 5, 7, 5, 7],
+        '9' => [7, 5, 7, 1, 7],
+        '.' => [0, 0, 0, 0, 2],
+        '-' => [0, 0, 7, 0, 0],
+        '/' => [1, 1, 2, 4, 4],
+        'c' => [0, 7, 4, 4, 7],
+        'd' => [1, 1, 7, 5, 7],
+        'e' => [7, 5, 7, 4, 7],
+        'l' => [2, 2, 2, 2, 3],
+        'm' => [0, 7, 7, 5, 5],
+        'u' => [0, 5, 5, 5, 7],
+        'x' => [0, 5, 2, 2, 5],
+        _ => [0; 5],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_values_are_each_other_s_inverse() {
+        for scale in [LightScale::over([250.0].into_iter()), LightScale { low: 0.5, high: 5e4, logarithmic: true }] {
+            for i in 0..=10 {
+                let place = i as f32 / 10.0;
+                assert!((scale.place(scale.value(place)) - place).abs() < 1e-5);
+            }
+            // What lies outside has the colours at the ends.
+            assert_eq!(scale.color(-1.0), scale.color(scale.low));
+            assert_eq!(scale.color(f32::INFINITY), scale.color(scale.high));
+        }
+        // A decade is as long as any other.
+        let scale = LightScale { low: 1.0, high: 1e4, logarithmic: true };
+        assert!((scale.place(10.0) - 0.25).abs() < 1e-6 && (scale.place(100.0) - 0.5).abs() < 1e-6);
+        assert_eq!(LightScale::over([f32::NAN, 0.0].into_iter()).high, 1.0);
+        assert_eq!(LightScale::over((1..=100).map(|i| i as f32)).high, 99.0);
+    }
+
+    #[test]
+    fn numbers_have_three_digits() {
+        for (value, text) in
+            [(0.0, "0"), (12.5, "12.5"), (1234.0, "1230"), (0.0125, "0.0125"), (2.5e9, "2.5e9"), (1.0 / 3.0, "0.333")]
+        {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn the_scale_stays_at_its_border_and_leaves_small_pictures_alone() {
+        let (width, height) = (320, 200);
+        let mut pixels = vec![Color::splat(0.25); width * height];
+        LightScale::over([1000.0].into_iter()).draw(&mut pixels, width, "cd/m2");
+        let touched = |x: usize| (0..height).any(|y| pixels[y * width + x] != Color::splat(0.25));
+        assert!(touched(width - 1) && touched(width - 20) && !touched(width / 2));
+        // Its bar goes from red on top to dark blue.
+        let column: Vec<Color> = (0..height).map(|y| pixels[y * width + width - 29]).collect();
+        let scale = LightScale::over([1.0].into_iter());
+        assert!(column.iter().any(|color| (*color - scale.color(1.0)).length() < 0.05), "{column:?}");
+        assert!(column.iter().any(|color| (*color - scale.color(0.0)).length() < 0.05));
+        let mut small = vec![Color::splat(0.25); 40 * 30];
+        LightScale::over([1000.0].into_iter()).draw(&mut small, 40, "lux");
+        assert!(small.iter().all(|color| *color == Color::splat(0.25)));
+    }
+}

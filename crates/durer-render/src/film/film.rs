@@ -1,0 +1,461 @@
+//! Exact sums: samples are added as integers, so the order of adding and merging changes nothing.
+
+use super::bytes::{Bytes, put, put_signed};
+use durer_scene::math::{Color, Vec3};
+
+#[cfg(test)]
+mod tests;
+
+/// A window of a picture that adds up weighted samples, each pixel for itself.
+///
+/// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a
+/// multiple of 2^-48 (ties to even). From then on everything is integer addition. Colours are cut
+/// at 2^44 either way, and weights are up to 2^10: there is room in a pixel for 2^25 samples of the
+/// greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
+///
+/// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28
+/// and cut at 2^14 either way, and their squares, with room for 2^21 samples.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Film {
+    left: u32,
+    top: u32,
+    width: u32,
+    height: u32,
+    pub(super) pixels: Vec<Pixel>,
+    rejected: u64,
+    first_rejected: Vec<Rejected>,
+}
+
+/// Sums of one pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Pixel {
+    /// Weighted colour, in units of 2^-48.
+    pub(super) color: [i128; 3],
+    /// Squares of luminances, in units of 2^-56.
+    pub(super) squares: i128,
+    /// Luminances, not weighted, in units of 2^-28.
+    pub(super) luminance: i64,
+    /// Weight, in units of 2^-24.
+    pub(super) weight: i64,
+    /// The part of that weight whose samples saw something, in the same units.
+    pub(super) covered: i64,
+    pub(super) samples: u64,
+}
+
+impl Pixel {
+    /// Adds a sample that covers a share of the pixel; `false` if it is no finite number.
+    #[inline]
+    pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
+        // Nearly all samples are small.
+        if share == 1.0 && Small::holds(color, weight) {
+            let mut small = Small::default();
+            small.add(color, weight);
+            self.add_small(&small);
+            return true;
+        }
+        self.add(color.to_array().map(f64::from), weight.into(), share.into())
+    }
+
+    /// The same; `false` if it is no finite number. What is too bright to be kept is cut.
+    fn add(&mut self, rgb: [f64; 3], weight: f64, share: f64) -> bool {
+        let weight = weight * WEIGHT_SCALE;
+        if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.is_finite())) {
+            return false;
+        }
+        let rgb = rgb.map(|c| c.clamp(-GREATEST_COLOR, GREATEST_COLOR));
+        // At most 24 significant bits are left of the weight, so each product below is exact before
+        // its rounding.
+        let weight = weight.round_ties_even();
+        let scale = weight * (COLOR_SCALE / WEIGHT_SCALE);
+        let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE) * LUMINANCE_SCALE;
+        self.sum(rgb.map(|c| (c * scale).round_ties_even() as i128), weight as i64, luminance.round_ties_even() as i64);
+        self.covered = self.covered.wrapping_add((weight * share).round_ties_even() as i64);
+        true
+    }
+
+    /// Whether so many samples, or fewer, can have these sums.
+    fn is_possible(&self, most_samples: u32) -> bool {
+        let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
+        let within =
+            |sum: i128, greatest: i128| sum.unsigned_abs() <= n.unsigned_abs().saturating_mul(greatest as u128);
+        let luminance = most(GREATEST_LUMINANCE, LUMINANCE_SCALE);
+        self.samples <= u64::from(most_samples)
+            && within(self.weight.into(), most(GREATEST_WEIGHT, WEIGHT_SCALE))
+            && within(self.covered.into(), most(GREATEST_WEIGHT, WEIGHT_SCALE))
+            && self.color.iter().all(|&sum| within(sum, most(GREATEST_COLOR * GREATEST_WEIGHT, COLOR_SCALE)))
+            && within(self.luminance.into(), luminance)
+            && self.squares >= 0
+            && within(self.squares, luminance * luminance)
+    }
+
+    /// Adds what [`Small`] has.
+    fn add_small(&mut self, small: &Small) {
+        self.color.iter_mut().zip(small.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c.into()));
+        self.luminance = self.luminance.wrapping_add(small.luminance);
+        self.squares = self.squares.wrapping_add(small.squares);
+        self.weight = self.weight.wrapping_add(small.weight);
+        self.covered = self.covered.wrapping_add(small.weight);
+        self.samples += small.samples;
+    }
+
+    /// The sums of one sample of weight 1 that saw something.
+    pub(super) fn of_single(color: Color) -> Self {
+        let mut pixel = Pixel::default();
+        pixel.add_any(color, 1.0, 1.0);
+        pixel
+    }
+
+    /// The colour of which [`Pixel::of_single`] makes these sums. One sample of weight 1 has one:
+    /// what its colour is rounded to is a number of single precision again.
+    #[inline]
+    pub(super) fn single(&self) -> Option<Color> {
+        if self.samples != 1 || self.weight != WEIGHT_SCALE as i64 || self.covered != self.weight {
+            return None;
+        }
+        let mut color = [0.0_f32; 3];
+        for (channel, &sum) in color.iter_mut().zip(&self.color) {
+            *channel = (rounded(sum) / COLOR_SCALE) as f32;
+        }
+        let rgb = color.map(f64::from);
+        if rgb.iter().map(|c| c.abs()).sum::<f64>() >= f64::from(SMALL_COLOR) {
+            let color = Color::from(color);
+            return (Pixel::of_single(color) == *self).then_some(color);
+        }
+        // What `add_small` makes of it.
+        let is_same = rgb.iter().zip(&self.color).all(|(c, &sum)| i128::from((c * COLOR_SCALE) as i64) == sum)
+            && whole_number(luminance(rgb) * LUMINANCE_SCALE) == self.luminance
+            && i128::from(self.luminance) * i128::from(self.luminance) == self.squares;
+        is_same.then(|| Color::from(color))
+    }
+
+    /// As [`Film::resolve`].
+    #[inline]
+    pub(super) fn mean(&self) -> Color {
+        if self.weight == 0 {
+            return Vec3::ZERO;
+        }
+        // Each sum is rounded to double precision, then divided: two roundings, and one to single.
+        let weight = self.weight as f64 / WEIGHT_SCALE;
+        Vec3::from(self.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
+    }
+
+    /// As [`Film::coverage`].
+    #[inline]
+    pub(super) fn coverage(&self) -> f32 {
+        // Also where the weights sum to nothing: there all is seen that was looked for.
+        if self.covered == self.weight {
+            return 1.0;
+        }
+        // Filters with negative weights may leave the range; where the weights sum to 0 the
+        // quotient is infinite.
+        (self.covered as f64 / self.weight as f64).clamp(0.0, 1.0) as f32
+    }
+
+    #[inline]
+    fn sum(&mut self, color: [i128; 3], weight: i64, luminance: i64) {
+        self.color.iter_mut().zip(color).for_each(|(sum, c)| *sum = sum.wrapping_add(c));
+        self.luminance = self.luminance.wrapping_add(luminance);
+        self.squares = self.squares.wrapping_add(i128::from(luminance) * i128::from(luminance));
+        self.weight = self.weight.wrapping_add(weight);
+        self.samples += 1;
+    }
+}
+
+/// Sums of up to [`MOST_SMALL`] samples of one pixel that cover it, of colours below [`SMALL_COLOR`]
+/// and weights of at most 1: the numbers that [`Pixel::add`] has, faster.
+#[derive(Default)]
+struct Small {
+    color: [i64; 3],
+    squares: i128,
+    luminance: i64,
+    weight: i64,
+    samples: u64,
+}
+
+impl Small {
+    #[inline(always)]
+    fn holds(color: Color, weight: f32) -> bool {
+        color.x.abs() + color.y.abs() + color.z.abs() < SMALL_COLOR && weight.abs() <= 1.0
+    }
+
+    #[inline(always)]
+    fn add(&mut self, color: Color, weight: f32) {
+        let rgb = color.to_array().map(f64::from);
+        let weight = whole_number(f64::from(weight) * WEIGHT_SCALE);
+        let scale = weight as f64 * (COLOR_SCALE / WEIGHT_SCALE);
+        (0..3).for_each(|i| self.color[i] += whole_number(rgb[i] * scale));
+        let luminance = whole_number(luminance(rgb) * LUMINANCE_SCALE);
+        self.luminance += luminance;
+        // Below 2^62.
+        self.squares += i128::from(luminance * luminance);
+        self.weight += weight;
+        self.samples += 1;
+    }
+}
+
+/// Sums of the sizes of a sample's red, green and blue below this, and weights up to 1, give
+/// products below 2^51 units.
+const SMALL_COLOR: f32 = 8.0;
+
+/// The products of so many fit 64 bits.
+const MOST_SMALL: usize = 1 << 11;
+
+const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
+const WEIGHT_SCALE: f64 = (1_u64 << 24) as f64;
+/// A weight of 1 in units.
+pub(super) const WEIGHT_ONE: i64 = WEIGHT_SCALE as i64;
+const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
+const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
+const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
+const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
+/// What red, green and blue of Rec. 709 give to the luminance. Source: ITU-R BT.709.
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// A sample that was left out because it is infinite or not a number. Ordered by row, column,
+/// sample.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Rejected {
+    /// Row from the top.
+    pub y: u32,
+    /// Column from the left.
+    pub x: u32,
+    /// Number of the sample in its pixel.
+    pub sample: u32,
+}
+
+/// How many rejected samples are remembered.
+const REMEMBERED: usize = 16;
+
+/// The window of the film to merge does not lie in that of the other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("a film of other pixels cannot be merged into this one")]
+pub struct WrongWindow;
+
+impl Film {
+    /// A black film of a whole picture.
+    pub fn new(width: u32, height: u32) -> Self {
+        Film::window(0, 0, width, height)
+    }
+
+    /// A black film of a part of a picture. Pixels keep their places in the whole.
+    pub fn window(left: u32, top: u32, width: u32, height: u32) -> Self {
+        let pixels = vec![Pixel::default(); width as usize * height as usize];
+        Film { left, top, width, height, pixels, rejected: 0, first_rejected: Vec::new() }
+    }
+
+    /// Columns and rows.
+    pub fn size(&self) -> (u32, u32) {
+        (self.width, self.height)
+    }
+
+    /// Adds a sample of some weight (up to 2^10 in size) to a pixel. Panics outside the window.
+    pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
+        self.add_if_seen(x, y, sample, Some(color), weight);
+    }
+
+    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent
+    /// by its weight.
+    pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
+        self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
+    }
+
+    /// The same for samples of one pixel that follow each other, with a weight for each colour.
+    pub fn add_seen(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
+        let holds = |&(color, weight): &(&Color, &f32)| Small::holds(*color, *weight);
+        let small = colors.iter().zip(weights).take(MOST_SMALL).take_while(holds).count();
+        // Nothing is called in this loop, so that sums stay in registers.
+        let mut sums = Small::default();
+        for (&color, &weight) in colors[..small].iter().zip(&weights[..small]) {
+            sums.add(color, weight);
+        }
+        self.pixel_mut(x, y).add_small(&sums);
+        // Nearly always there are no others.
+        for i in small..colors.len() {
+            self.add(x, y, first + i as u32, colors[i], weights[i]);
+        }
+    }
+
+    /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
+    pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
+        if !self.pixel_mut(x, y).add_any(color, share, weight) {
+            self.reject(Rejected { y, x, sample });
+        }
+    }
+
+    fn pixel_mut(&mut self, x: u32, y: u32) -> &mut Pixel {
+        let index = self.index(x, y).expect("the pixel lies in the film's window");
+        &mut self.pixels[index]
+    }
+
+    /// Counts a sample as left out; the first few in reading order are remembered.
+    fn reject(&mut self, what: Rejected) {
+        self.rejected += 1;
+        let place = self.first_rejected.partition_point(|old| *old <= what);
+        if place < REMEMBERED {
+            self.first_rejected.insert(place, what);
+            self.first_rejected.truncate(REMEMBERED);
+        }
+    }
+
+    /// Adds everything that a film of the same pixels or some of them holds.
+    pub fn merge(&mut self, other: &Film) -> Result<(), WrongWindow> {
+        if other.pixels.is_empty() {
+            return Ok(());
+        }
+        // Where both corners lie inside, all between does.
+        let (right, bottom) = (other.width - 1, other.height - 1);
+        let far = other.left.checked_add(right).zip(other.top.checked_add(bottom));
+        let far = far.and_then(|(x, y)| self.index(x, y));
+        let first = self.index(other.left, other.top).zip(far).ok_or(WrongWindow)?.0;
+        for (row, source) in other.pixels.chunks_exact(other.width as usize).enumerate() {
+            let start = first + row * self.width as usize;
+            for (to, from) in self.pixels[start..].iter_mut().zip(source) {
+                // Sums from a file may be anything; wrapping, they are still the same in any order.
+                to.color.iter_mut().zip(from.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c));
+                to.squares = to.squares.wrapping_add(from.squares);
+                to.luminance = to.luminance.wrapping_add(from.luminance);
+                to.weight = to.weight.wrapping_add(from.weight);
+                to.covered = to.covered.wrapping_add(from.covered);
+                to.samples = to.samples.wrapping_add(from.samples);
+            }
+        }
+        // Those not remembered come after sixteen others, and so they do in the union.
+        other.first_rejected.iter().for_each(|&r| self.reject(r));
+        self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
+        Ok(())
+    }
+
+    /// Appends the sums, and what was left out, as bytes: the same for the same sums. The window is
+    /// not among them.
+    pub fn write(&self, out: &mut Vec<u8>) {
+        for pixel in &self.pixels {
+            put(out, pixel.samples.into());
+            put_signed(out, pixel.weight.into());
+            // Mostly nothing.
+            put_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
+            pixel.color.iter().for_each(|&sum| put_signed(out, sum));
+            put_signed(out, pixel.luminance.into());
+            put_signed(out, pixel.squares);
+        }
+        put(out, self.rejected.into());
+        put(out, self.first_rejected.len() as u128);
+        for Rejected { y, x, sample } in &self.first_rejected {
+            [y, x, sample].into_iter().for_each(|&number| put(out, number.into()));
+        }
+    }
+
+    /// Reads what [`Film::write`] wrote into this film, which must have the same window and got at
+    /// most so many samples a pixel. `None` if the bytes are something else, or sums that no
+    /// samples have.
+    pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
+        for pixel in &mut self.pixels {
+            pixel.samples = bytes.whole()?;
+            pixel.weight = bytes.signed()?;
+            pixel.covered = pixel.weight.checked_sub(bytes.signed()?)?;
+            for sum in &mut pixel.color {
+                *sum = bytes.signed()?;
+            }
+            pixel.luminance = bytes.signed()?;
+            pixel.squares = bytes.signed()?;
+            if !pixel.is_possible(most_samples) {
+                return None;
+            }
+        }
+        self.rejected = bytes.whole()?;
+        let remembered: usize = bytes.whole()?;
+        if remembered as u64 > self.rejected || remembered > REMEMBERED {
+            return None;
+        }
+        for _ in 0..remembered {
+            let (y, x, sample) = (bytes.whole()?, bytes.whole()?, bytes.whole()?);
+            self.first_rejected.push(Rejected { y, x, sample });
+        }
+        self.first_rejected.is_sorted().then_some(self)
+    }
+
+    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the
+    /// weights sum to nothing. Panics outside the window.
+    pub fn resolve(&self, x: u32, y: u32) -> Color {
+        self.pixel(x, y).mean()
+    }
+
+    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside
+    /// the window.
+    pub fn coverage(&self, x: u32, y: u32) -> f32 {
+        self.pixel(x, y).coverage()
+    }
+
+    /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected
+    /// of the square of its error. Infinite for fewer than two samples. Panics outside the
+    /// window.
+    ///
+    /// For n samples y of mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the size of the
+    /// samples' weights where their mean is 1 (see [`super::FilterSampler::gain`]); each error
+    /// counts that much more.
+    pub fn variance(&self, x: u32, y: u32, gain: f32) -> f64 {
+        let pixel = self.pixel(x, y);
+        let n = pixel.samples as f64;
+        if pixel.samples < 2 {
+            return f64::INFINITY;
+        }
+        // Cut as those of the samples are.
+        let mean = luminance(self.resolve(x, y).to_array().map(f64::from));
+        let mean = mean.clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
+        let sum = pixel.luminance as f64 / LUMINANCE_SCALE;
+        let squares = pixel.squares as f64 / (LUMINANCE_SCALE * LUMINANCE_SCALE);
+        // Of equal samples a rounding is left, which may be negative.
+        let deviation = (squares - 2.0 * mean * sum + mean * mean * n).max(0.0);
+        deviation / (n * (n - 1.0)) * f64::from(gain) * f64::from(gain)
+    }
+
+    /// How many samples a pixel holds, without those left out. Panics outside the window.
+    pub fn samples(&self, x: u32, y: u32) -> u64 {
+        self.pixel(x, y).samples
+    }
+
+    /// How many samples were left out.
+    pub fn rejected(&self) -> u64 {
+        self.rejected
+    }
+
+    /// The first sixteen of the samples left out, whatever the order they came in.
+    pub fn first_rejected(&self) -> &[Rejected] {
+        &self.first_rejected
+    }
+
+    fn pixel(&self, x: u32, y: u32) -> &Pixel {
+        &self.pixels[self.index(x, y).expect("the pixel lies in the film's window")]
+    }
+
+    fn index(&self, x: u32, y: u32) -> Option<usize> {
+        let (column, row) = (x.checked_sub(self.left)?, y.checked_sub(self.top)?);
+        (column < self.width && row < self.height).then(|| row as usize * self.width as usize + column as usize)
+    }
+}
+
+/// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an
+/// instruction.
+fn rounded(sum: i128) -> f64 {
+    i64::try_from(sum).map_or_else(|_| sum as f64, |small| small as f64)
+}
+
+/// The luminance of a colour.
+pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
+}
+
+/// The same of a colour in single precision.
+pub fn luminance_of(color: Color) -> f64 {
+    luminance(color.to_array().map(f64::from))
+}
+
+/// The nearest whole number, ties to even, of a number below 2^51 in size.
+///
+/// A sum with 3 * 2^51 has no bits below 1 left, so it is rounded, and its bits count on from those
+/// of 3 * 2^51 by one for each whole number. There is no instruction that rounds in what all
+/// processors of a kind have.
+fn whole_number(x: f64) -> i64 {
+    const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
+    debug_assert!(x.abs() < (1_u64 << 51) as f64);
+    ((x + MAGIC).to_bits() as i64).wrapping_sub(MAGIC.to_bits() as i64)
+}

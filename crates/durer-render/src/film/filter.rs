@@ -1,0 +1,237 @@
+//! Reconstruction filters: how much a sample at some offset from a pixel's centre counts for the
+//! pixel.
+//!
+//! All are products of one function of `dx` and the same of `dy`, zero beyond the radius. They are
+//! importance-sampled: a uniform position is warped to an offset whose density is the filter's
+//! absolute value, so every sample of a pixel counts the same (but for a sign) and none touches
+//! another pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition,
+//! section 8.8.
+
+use durer_scene::math::{Vec2, fp};
+use serde::{Deserialize, Serialize};
+use std::f32::consts::PI;
+
+#[cfg(test)]
+mod tests;
+
+/// A reconstruction filter. Lengths are in pixels and must be positive and finite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Filter {
+    /// The same weight everywhere: sharp, aliases.
+    Box {
+        /// Half the width.
+        radius: f32,
+    },
+    /// Falls linearly to zero at the radius.
+    Tent {
+        /// Half the width.
+        radius: f32,
+    },
+    /// exp(-d^2 / (2 sigma^2)), lowered so that it meets zero at the radius.
+    Gaussian {
+        /// Standard deviation.
+        sigma: f32,
+        /// Half the width.
+        radius: f32,
+    },
+    /// A sum of four cosines, close to a Gaussian without its tail: smooth, no ringing.
+    ///
+    /// Source: Harris, *On the Use of Windows for Harmonic Analysis*, Proc. IEEE 66(1), 1978.
+    BlackmanHarris {
+        /// Half the width.
+        radius: f32,
+    },
+    /// A cubic with negative lobes, B = C = 1/3: the sharpest, may ring.
+    ///
+    /// Source: Mitchell, Netravali, *Reconstruction Filters in Computer Graphics*, SIGGRAPH 1988.
+    Mitchell {
+        /// Half the width.
+        radius: f32,
+    },
+}
+
+impl Default for Filter {
+    fn default() -> Self {
+        Filter::BlackmanHarris { radius: 1.5 }
+    }
+}
+
+impl Filter {
+    /// Every filter at its usual size, with its name on the command line.
+    pub const NAMES: [(&'static str, Filter); 5] = [
+        ("box", Filter::Box { radius: 0.5 }),
+        ("tent", Filter::Tent { radius: 1.0 }),
+        ("gaussian", Filter::Gaussian { sigma: 0.5, radius: 1.5 }),
+        ("blackman-harris", Filter::BlackmanHarris { radius: 1.5 }),
+        ("mitchell", Filter::Mitchell { radius: 2.0 }),
+    ];
+
+    /// The filter of a name at its usual size, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, filter)| filter)
+    }
+
+    /// The same filter with another radius; a Gaussian's sigma grows with it.
+    pub fn with_radius(self, radius: f32) -> Self {
+        match self {
+            Filter::Box { .. } => Filter::Box { radius },
+            Filter::Tent { .. } => Filter::Tent { radius },
+            Filter::Gaussian { sigma, radius: old } => Filter::Gaussian { sigma: sigma * (radius / old), radius },
+            Filter::BlackmanHarris { .. } => Filter::BlackmanHarris { radius },
+            Filter::Mitchell { .. } => Filter::Mitchell { radius },
+        }
+    }
+
+    /// Half the width in pixels: the weight is zero farther out.
+    pub fn radius(self) -> f32 {
+        match self {
+            Filter::Box { radius }
+            | Filter::Tent { radius }
+            | Filter::Gaussian { radius, .. }
+            | Filter::BlackmanHarris { radius }
+            | Filter::Mitchell { radius } => radius,
+        }
+    }
+
+    /// The weight at an offset from the pixel's centre, in pixels. Not normalised; negative in
+    /// Mitchell's lobes.
+    pub fn weight(self, dx: f32, dy: f32) -> f32 {
+        self.profile(dx.abs()) * self.profile(dy.abs())
+    }
+
+    /// The filter along one axis, at a distance of 0 or more.
+    fn profile(self, d: f32) -> f32 {
+        if d > self.radius() {
+            return 0.0;
+        }
+        match self {
+            Filter::Box { .. } => 1.0,
+            Filter::Tent { radius } => 1.0 - d / radius,
+            Filter::Gaussian { sigma, radius } => {
+                let bell = |x: f32| fp::exp(-x * x / (2.0 * sigma * sigma));
+                bell(d) - bell(radius)
+            }
+            Filter::BlackmanHarris { radius } => {
+                let a = PI * (d / radius);
+                0.35875 + 0.48829 * fp::cos(a) + 0.14128 * fp::cos(2.0 * a) + 0.01168 * fp::cos(3.0 * a)
+            }
+            Filter::Mitchell { radius } => {
+                let x = 2.0 * d / radius;
+                if x < 1.0 {
+                    (7.0 * x - 12.0) * x * x * (1.0 / 6.0) + 16.0 / 18.0
+                } else {
+                    ((-7.0 / 3.0 * x + 12.0) * x - 20.0) * x * (1.0 / 6.0) + 32.0 / 18.0
+                }
+            }
+        }
+    }
+
+    /// Prepares importance sampling: a table of 16 KiB, made once a render.
+    pub fn sampler(self) -> FilterSampler {
+        FilterSampler::new(self)
+    }
+}
+
+/// Draws offsets in proportion to a filter's absolute value.
+///
+/// Along an axis the filter's integral is inverted once, at `SHARES + 1` knots; between two knots
+/// all distances are equally likely. So each share of the filter lies where it belongs, and an
+/// offset is off by less than the width of its share: on average by less than a thousandth of the
+/// radius (a test).
+#[derive(Clone, Debug)]
+pub struct FilterSampler {
+    filter: Filter,
+    /// The distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
+    knots: Box<[f32; SHARES + 1]>,
+    /// Integral of the absolute filter over that of the filter: how much a sample must count.
+    gain: f32,
+}
+
+const SHARES: usize = 2048;
+
+/// Steps from the centre to the radius in which the filter is integrated, as linear in each.
+const BINS: usize = 1024;
+
+impl FilterSampler {
+    fn new(filter: Filter) -> Self {
+        let value = |i: usize| f64::from(filter.profile(filter.radius() * (i as f32 / BINS as f32)));
+        let values: Vec<f64> = (0..=BINS).map(value).collect();
+        let trapezoid = |a: f64, b: f64| 0.5 * (a + b);
+        let signed: f64 = values.windows(2).map(|pair| trapezoid(pair[0], pair[1])).sum();
+        // The integral of the absolute filter from the centre up to each bin's end.
+        let parts = values.windows(2).map(|pair| trapezoid(pair[0].abs(), pair[1].abs()));
+        let integral: Vec<f64> = std::iter::once(0.0)
+            .chain(parts.scan(0.0, |sum, part| {
+                *sum += part;
+                Some(*sum)
+            }))
+            .collect();
+        let absolute = integral[BINS];
+        // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no
+        // gain.
+        let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
+        let distance = |share: usize| {
+            let target = share as f64 / SHARES as f64 * absolute;
+            let bin = (integral.partition_point(|&sum| sum <= target)).clamp(1, BINS) - 1;
+            let (start, end) = (values[bin].abs(), values[bin + 1].abs());
+            // In the bin: start * t + (end - start) * t^2 / 2 = rest, solved without cancellation.
+            let rest = target - integral[bin];
+            let root = (start * start + 2.0 * (end - start) * rest).max(0.0).sqrt();
+            let t = if rest > 0.0 { (2.0 * rest / (start + root)).min(1.0) } else { 0.0 };
+            ((bin as f64 + t) / BINS as f64 * f64::from(filter.radius())) as f32
+        };
+        FilterSampler { filter, knots: Box::new(std::array::from_fn(distance)), gain: gain as f32 }
+    }
+
+    /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
+    pub fn gain(&self) -> f32 {
+        match self.filter {
+            Filter::Mitchell { .. } => self.gain,
+            _ => 1.0,
+        }
+    }
+
+    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of
+    /// the sample there.
+    ///
+    /// The weight is 1 for filters without negative lobes; otherwise its size is the same
+    /// everywhere, its sign the filter's, its mean 1. Offsets grow with positions, so an even
+    /// pattern stays even.
+    pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
+        let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
+        (offset, self.weight(offset))
+    }
+
+    /// The same of several positions side by side: x of all, then y.
+    #[inline(always)]
+    pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([[f32; N]; 2], [f32; N]) {
+        let (mut offsets, mut weights) = ([[0.0; N]; 2], [1.0; N]);
+        for axis in 0..2 {
+            for i in 0..N {
+                offsets[axis][i] = self.warp(positions[axis][i]);
+            }
+        }
+        for i in 0..N {
+            weights[i] = self.weight(Vec2::new(offsets[0][i], offsets[1][i]));
+        }
+        (offsets, weights)
+    }
+
+    #[inline]
+    fn weight(&self, offset: Vec2) -> f32 {
+        match self.filter {
+            Filter::Mitchell { .. } => self.gain.copysign(self.filter.weight(offset.x, offset.y)),
+            _ => 1.0,
+        }
+    }
+
+    /// The distance from the centre for a share of the filter, on the side that `u` lies on.
+    #[inline(always)]
+    fn warp(&self, u: f32) -> f32 {
+        let v = 2.0 * u - 1.0;
+        let place = v.abs() * SHARES as f32;
+        let share = (place as usize).min(SHARES - 1);
+        let (near, far) = (self.knots[share], self.knots[share + 1]);
+        (near + (place - share as f32) * (far - near)).copysign(v)
+    }
+}

@@ -1,0 +1,182 @@
+//! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
+
+use super::film::{Film, Pixel, WEIGHT_ONE};
+use durer_scene::math::Color;
+
+/// A film that nothing is added to for a while. It is the same film: what comes out is what went
+/// in.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Packed {
+    /// Each pixel has one sample of weight 1, which saw something, and of which its colour tells
+    /// all.
+    Single(Box<[Color]>),
+    /// As in [`Packed::Small`], of samples of weight 1, as filters that are nowhere negative make
+    /// them.
+    Even(Box<[Even]>),
+    /// Sums of 64 bits are enough, and all samples saw something.
+    Small(Box<[Small]>),
+    /// All that a film can hold.
+    Whole(Box<Film>),
+}
+
+/// The sums of [`Pixel`], as far as they are not known otherwise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Small {
+    color: [i64; 3],
+    /// In two words, so that nothing lies empty.
+    squares: [u64; 2],
+    luminance: i64,
+    weight: i64,
+    samples: u32,
+}
+
+impl Small {
+    fn of(pixel: &Pixel) -> Option<Self> {
+        let [r, g, b] = pixel.color;
+        (pixel.covered == pixel.weight).then_some(())?;
+        Some(Small {
+            color: [r.try_into().ok()?, g.try_into().ok()?, b.try_into().ok()?],
+            squares: words(pixel.squares),
+            luminance: pixel.luminance,
+            weight: pixel.weight,
+            samples: pixel.samples.try_into().ok()?,
+        })
+    }
+
+    fn squares(&self) -> i128 {
+        let [low, high] = self.squares.map(u128::from);
+        (high << 64 | low) as i128
+    }
+
+    fn pixel(&self) -> Pixel {
+        Pixel {
+            color: self.color.map(i128::from),
+            squares: self.squares(),
+            luminance: self.luminance,
+            weight: self.weight,
+            covered: self.weight,
+            samples: self.samples.into(),
+        }
+    }
+}
+
+/// The same without the weight, in words, so that nothing lies empty.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Even {
+    color: [[u32; 2]; 3],
+    squares: [u32; 3],
+    luminance: [u32; 2],
+    samples: u32,
+}
+
+impl Even {
+    fn of(pixel: &Pixel) -> Option<Self> {
+        let Small { color, squares: [low, high], luminance, weight, samples } = Small::of(pixel)?;
+        let [low, middle] = halves(low);
+        let squares = [low, middle, high.try_into().ok()?];
+        (weight == i64::from(samples) * WEIGHT_ONE).then_some(())?;
+        Some(Even { color: color.map(|sum| halves(sum as u64)), squares, luminance: halves(luminance as u64), samples })
+    }
+
+    fn pixel(&self) -> Pixel {
+        let whole = |[low, high]: [u32; 2]| u64::from(high) << 32 | u64::from(low);
+        let [low, middle, high] = self.squares;
+        Small {
+            color: self.color.map(|sum| whole(sum) as i64),
+            squares: [whole([low, middle]), high.into()],
+            luminance: whole(self.luminance) as i64,
+            weight: i64::from(self.samples) * WEIGHT_ONE,
+            samples: self.samples,
+        }
+        .pixel()
+    }
+}
+
+/// The lower and the upper half.
+fn halves(number: u64) -> [u32; 2] {
+    [number as u32, (number >> 32) as u32]
+}
+
+/// All of a film's pixels made smaller, if all can be.
+fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
+    let mut made = Vec::with_capacity(film.pixels.len());
+    for pixel in &film.pixels {
+        made.push(smaller(pixel)?);
+    }
+    Some(made)
+}
+
+/// The lower and the upper half.
+fn words(number: i128) -> [u64; 2] {
+    [number as u64, (number >> 64) as u64]
+}
+
+impl Packed {
+    /// A film, packed; `samples`: how many its pixels will have in all. What grows later is as wide
+    /// from the start, so that no memory is left between what was smaller.
+    pub fn new(film: Film, samples: u32) -> Self {
+        if film.rejected() > 0 {
+            return Packed::Whole(Box::new(film));
+        }
+        if samples == 1
+            && let Some(singles) = all(&film, Pixel::single)
+        {
+            return Packed::Single(singles.into());
+        }
+        if let Some(even) = all(&film, Even::of) {
+            return Packed::Even(even.into());
+        }
+        match all(&film, Small::of) {
+            Some(small) => Packed::Small(small.into()),
+            None => Packed::Whole(Box::new(film)),
+        }
+    }
+
+    /// The film, whose window is given again: its left and upper edge, its width and height.
+    pub fn film(&self, [left, top, width, height]: [u32; 4]) -> Film {
+        let film = |pixels: Vec<Pixel>| {
+            let mut film = Film::window(left, top, width, height);
+            film.pixels = pixels;
+            film
+        };
+        match self {
+            Packed::Single(colors) => film(colors.iter().copied().map(Pixel::of_single).collect()),
+            Packed::Even(pixels) => film(pixels.iter().map(Even::pixel).collect()),
+            Packed::Small(pixels) => film(pixels.iter().map(Small::pixel).collect()),
+            Packed::Whole(film) => Film::clone(film),
+        }
+    }
+
+    /// The mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
+    /// [`Film::coverage`].
+    pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
+        let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
+        match self {
+            Packed::Single(colors) => colors.iter().for_each(|&color| offer(color, 1.0)),
+            Packed::Even(pixels) => pixels.iter().for_each(|even| offer_pixel(&even.pixel())),
+            Packed::Small(pixels) => pixels.iter().for_each(|small| offer_pixel(&small.pixel())),
+            Packed::Whole(film) => film.pixels.iter().for_each(offer_pixel),
+        }
+    }
+
+    /// Whether all of each pixel saw something.
+    pub fn is_covered(&self) -> bool {
+        match self {
+            Packed::Single(_) | Packed::Even(_) | Packed::Small(_) => true,
+            Packed::Whole(film) => film.pixels.iter().all(|pixel| pixel.coverage() == 1.0),
+        }
+    }
+
+    /// The film itself, where samples were left out: others pack.
+    pub fn with_rejected(&self) -> Option<&Film> {
+        match self {
+            Packed::Whole(film) => Some(film),
+            Packed::Single(..) | Packed::Even(_) | Packed::Small(_) => None,
+        }
+    }
+
+    /// Bytes that a pixel of so many samples takes at most, where light is not stronger than usual.
+    pub fn pixel_bytes(samples: u32) -> u64 {
+        (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
+    }
+}

@@ -1,0 +1,70 @@
+//! Ambient occlusion: the share of the sky over a surface that nothing nearby hides.
+//!
+//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each
+//! direction counts by its cosine.
+
+use super::spawn::spawn_ray;
+use super::trace::{HitRecord, RayKind, TermKind, TraceListener};
+use super::{Integrate, Parameters, Setup};
+use crate::world::World;
+use durer_scene::bsdf::{Frame, warp};
+use durer_scene::describe::{Rule, described};
+use durer_scene::dialect::set;
+use durer_scene::math::{Color, Ray, Ray64};
+use durer_scene::sampler::SampleId;
+
+described! {
+    /// how much of the sky is free
+    AoParameters ["ao" in set::DURER] {
+        /// How far things count, in units of the world [default: all count]
+        radius: Option<f32> = None, optional, Rule::Positive, ["ao-radius" in set::DURER];
+    }
+}
+
+impl Copy for AoParameters {}
+
+impl Parameters for AoParameters {
+    type Integrator<'w> = AmbientOcclusion<'w>;
+
+    fn over(self, setup: Setup<'_>) -> AmbientOcclusion<'_> {
+        AmbientOcclusion { world: setup.world, radius: self.radius.unwrap_or(f32::INFINITY) }
+    }
+}
+
+/// The integrator over one world.
+#[derive(Clone, Copy, Debug)]
+pub struct AmbientOcclusion<'w> {
+    /// What is seen.
+    pub world: &'w World,
+    /// How far things count, in units of the world; infinite: all.
+    pub radius: f32,
+}
+
+impl Integrate for AmbientOcclusion<'_> {
+    /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
+    /// not; white where nothing is hit.
+    fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
+        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        let color = self.trace(&ray.into(), id, tally);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+}
+
+impl AmbientOcclusion<'_> {
+    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
+        let mut color = Color::ONE;
+        if let Some(at) = self.world.intersect(ray, tally) {
+            let (surface, inside) = (&at.surface, at.inside());
+            let n = if inside { -surface.n_geo } else { surface.n_geo };
+            tally.hit(|| HitRecord::new(self.world, &at, n, inside, false));
+            let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
+            if self.world.occluded(spawn_ray(surface, dir, self.radius, None), tally) {
+                color = Color::ZERO;
+            }
+        }
+        tally.begin(|| TermKind::Sky);
+        tally.end(Color::ONE, Color::ONE, color);
+        color
+    }
+}

@@ -1,0 +1,202 @@
+//! What a ray runs in: air, or one thing of glass in another.
+
+use crate::world::{Interaction, World};
+use durer_scene::math::Vec3;
+use smallvec::SmallVec;
+
+/// How light goes through a surface.
+pub struct Passage {
+    /// Index of refraction before it.
+    pub here: f32,
+    /// Index of refraction behind it.
+    pub there: f32,
+    /// What a ray runs in behind it.
+    pub behind: Media,
+    /// Whether something else fills the place on both sides, so that there is no surface.
+    pub hidden: bool,
+}
+
+impl Passage {
+    /// The index of refraction behind the surface over that before it.
+    pub(crate) fn eta(&self) -> f32 {
+        self.there / self.here
+    }
+}
+
+impl Default for Passage {
+    fn default() -> Self {
+        Passage { here: 1.0, there: 1.0, behind: Media::default(), hidden: false }
+    }
+}
+
+/// A thing that light goes into, as a ray is in it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Body {
+    /// Number of the object.
+    pub object: u32,
+    /// Its index of refraction.
+    pub ior: f32,
+    /// Half the area of its box; `None` for an open surface, which has no inside that is its own.
+    pub size: Option<f32>,
+}
+
+impl Body {
+    fn new(world: &World, object: u32, ior: f32) -> Self {
+        Body { object, ior, size: world.extent(object) }
+    }
+
+    /// Whether it fills the space that it shares with another one. Of two closed things that is the
+    /// smaller one, so that ice displaces water wherever they overlap, from whatever side a ray
+    /// comes. Of others it is the one met last.
+    fn fills(&self, other: &Body, met_later: bool) -> bool {
+        match (self.size, other.size) {
+            (Some(a), Some(b)) if a != b => a < b,
+            (Some(_), Some(_)) => self.object > other.object,
+            _ => met_later,
+        }
+    }
+}
+
+/// All that a ray is in, what fills the place last.
+///
+/// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
+/// Images*, Journal of Graphics Tools 7(2), 2002; there the order is given by priorities that are
+/// written.
+#[derive(Debug, Default, PartialEq)]
+pub struct Media(SmallVec<[Body; 2]>);
+
+impl Clone for Media {
+    // Faster than one after another.
+    fn clone(&self) -> Self {
+        Media(SmallVec::from_slice(&self.0))
+    }
+}
+
+impl Media {
+    /// What is around a point.
+    pub fn around(world: &World, point: Vec3) -> Self {
+        Media::within(world, world.bodies_around(point))
+    }
+
+    /// Of all things that it is in, with their indices of refraction.
+    fn within(world: &World, bodies: impl Iterator<Item = (u32, f32)>) -> Self {
+        bodies.fold(Media::default(), |media, (object, ior)| media.entered(Body::new(world, object, ior)))
+    }
+
+    /// Nothing but this.
+    pub fn only(medium: Body) -> Self {
+        Media(SmallVec::from_slice(&[medium]))
+    }
+
+    /// Whether the ray runs in air.
+    pub fn is_air(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The index of refraction.
+    pub fn ior(&self) -> f32 {
+        self.0.last().map_or(1.0, |medium| medium.ior)
+    }
+
+    /// Whether the ray is in an object.
+    pub fn holds(&self, object: u32) -> bool {
+        self.0.iter().any(|medium| medium.object == object)
+    }
+
+    /// The object that fills the place.
+    pub fn object(&self) -> Option<u32> {
+        self.0.last().map(|medium| medium.object)
+    }
+
+    /// What it is after entering a thing.
+    pub fn entered(&self, medium: Body) -> Self {
+        if self.is_air() {
+            return Media::only(medium);
+        }
+        let mut inside = self.0.clone();
+        let behind = inside.iter().rev().take_while(|other| !medium.fills(other, true)).count();
+        inside.insert(inside.len() - behind, medium);
+        Media(inside)
+    }
+
+    /// What it is after leaving an object.
+    pub fn left(&self, object: u32) -> Self {
+        if let [only] = &self.0[..] {
+            return if only.object == object { Media::default() } else { Media::only(*only) };
+        }
+        let mut inside = self.0.clone();
+        if let Some(place) = inside.iter().rposition(|medium| medium.object == object) {
+            inside.remove(place);
+        }
+        Media(inside)
+    }
+
+    /// Ours: things of glass may be inside each other and overlap.
+    pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
+        self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
+    }
+
+    /// The same through the surface of an object, which light sets out for from a point.
+    pub(crate) fn passage_into(&self, world: &World, (object, start): (u32, Vec3), ior: f32, leaving: bool) -> Passage {
+        let own = Body::new(world, object, ior);
+        if !leaving {
+            let behind = self.entered(own);
+            let hidden = !self.is_air() && behind.object() == self.object() && self.object() != Some(object);
+            return Passage { here: self.ior(), there: behind.ior(), behind, hidden };
+        }
+        let found = if self.holds(object) {
+            self.clone()
+        } else if own.size.is_none() {
+            self.entered(own)
+        } else if world.objects()[object as usize].contains(start) {
+            // A ray that leaves what it never entered began inside.
+            let others = world.glass_around(start).filter(|&(other, _)| other != object);
+            Media::within(world, others.chain([(object, ior)]))
+        } else {
+            // Turned inside out, it is the wall of a cavity in what is around.
+            let behind = self.object().map_or(Media::default(), |around| self.left(around));
+            return Passage {
+                here: if self.is_air() { own.ior } else { self.ior() },
+                there: behind.ior(),
+                behind,
+                hidden: false,
+            };
+        };
+        let behind = found.left(object);
+        let hidden = found.object() != Some(object);
+        Passage { here: found.ior(), there: behind.ior(), behind, hidden }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GLASS: Body = Body { object: 7, ior: 1.5, size: Some(9.0) };
+    const WATER: Body = Body { object: 3, ior: 1.33, size: Some(5.0) };
+    const ICE: Body = Body { object: 5, ior: 1.31, size: Some(1.0) };
+    const PANE: Body = Body { object: 1, ior: 1.4, size: None };
+
+    #[test]
+    fn the_smallest_closed_thing_fills_the_place_in_any_order_of_entering() {
+        for order in [[GLASS, WATER, ICE], [ICE, WATER, GLASS], [WATER, ICE, GLASS], [ICE, GLASS, WATER]] {
+            let all = order.into_iter().fold(Media::default(), |media, medium| media.entered(medium));
+            assert_eq!((all.ior(), all.object()), (1.31, Some(5)));
+            assert_eq!((all.left(5).ior(), all.left(5).left(3).ior()), (1.33, 1.5));
+            assert_eq!(all.left(3).ior(), 1.31);
+            assert!(all.left(3).left(5).left(7).is_air());
+        }
+        // Twice in one that overlaps itself.
+        let twice = Media::only(ICE).entered(ICE);
+        assert!(twice.left(5).holds(5) && twice.left(5).left(5).is_air());
+        assert_eq!(Media::default().left(2), Media::default());
+    }
+
+    #[test]
+    fn an_open_surface_hides_nothing() {
+        let behind = Media::only(PANE);
+        assert_eq!((behind.ior(), behind.entered(GLASS).ior()), (1.4, 1.5));
+        assert_eq!(behind.entered(GLASS).left(7).ior(), 1.4);
+        assert_eq!(Media::only(ICE).entered(PANE).ior(), 1.4);
+    }
+}

@@ -1,0 +1,172 @@
+//! What those who trace paths are told.
+
+use super::{Path, Photons};
+use crate::integrator::{Parameters, Setup};
+use durer_scene::describe::{Describe, Field, FieldType, Kind, Rule, Value, described};
+use durer_scene::dialect::{DialectSet, set};
+use durer_scene::spectrum::ColorMode;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+described! {
+    /// all light
+    Transport ["path" in set::DURER] {
+        /// Light that was scattered more than once is not brighter than this in a sample; takes
+        /// away bright specks, and light with them [default: no limit]
+        clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
+        /// What light is made of: rgb, or spectral (four wavelengths at a time: coloured light on
+        /// coloured things, prisms) [default: rgb]
+        color: ColorMode = ColorMode::Rgb, optional, Rule::Any, ["color" in set::DURER];
+        /// How light straight from lamps is found: both (by points of lamps and by the directions
+        /// in which surfaces scatter, weighed), lights or bsdf (one of these alone: the same mean
+        /// and more noise, to see what each is good for) [default: both]
+        direct: Direct = Direct::Both, optional, Rule::Any, ["direct" in set::DURER];
+    }
+}
+
+impl Copy for Transport {}
+
+impl Parameters for Transport {
+    type Integrator<'w> = Path<'w>;
+
+    fn over(self, Setup { world, settings, cone, cancel, .. }: Setup<'_>) -> Path<'_> {
+        // Else nobody asks for it.
+        let cone = cone.filter(|_| world.has_mipmaps());
+        Path { cancel, cone, ..Path::new(world, settings, self) }
+    }
+
+    fn transport(&self) -> Option<Transport> {
+        Some(*self)
+    }
+}
+
+/// Paths and photons.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PhotonParameters {
+    /// As for paths alone.
+    #[serde(flatten)]
+    pub transport: Transport,
+    /// How many photons each sample sends out.
+    pub count: u32,
+    /// How far the first sample looks for photons, in units of the world.
+    pub radius: Option<f32>,
+    /// Whether their bias is taken out to second order, with more noise: see
+    /// [`Photons::corrected`].
+    pub corrected: bool,
+}
+
+impl Default for PhotonParameters {
+    fn default() -> Self {
+        PhotonParameters { transport: Transport::default(), count: 100_000, radius: None, corrected: false }
+    }
+}
+
+impl Describe for PhotonParameters {
+    const KEYWORDS: &'static [(&'static str, DialectSet)] = &[("photons", set::DURER)];
+    const DOC: &'static str = "all light, with what mirrors and glass throw on things by photons: caustics";
+    const FIELDS: &'static [Field] = &[
+        Transport::FIELDS[0],
+        Transport::FIELDS[1],
+        Transport::FIELDS[2],
+        Field {
+            name: "count",
+            kind: Kind::Int,
+            required: false,
+            rule: Rule::Numbered(100_000_000),
+            spellings: &[("photons", set::DURER)],
+            doc: "How many each sample sends out [default: 100000]",
+        },
+        Field {
+            name: "radius",
+            kind: Kind::Float,
+            required: false,
+            rule: Rule::Positive,
+            spellings: &[("photon-radius", set::DURER)],
+            doc: "How far the first sample looks for them, in units of the world; later ones look less far [default: a \
+                  twentieth of the radius of the smallest thing that mirrors or refracts]",
+        },
+    ];
+
+    fn get(&self, field: usize) -> Option<Value> {
+        match field {
+            0..3 => self.transport.get(field),
+            3 => self.count.value(),
+            _ => self.radius.value(),
+        }
+    }
+
+    fn set(&mut self, field: usize, value: Value) {
+        match field {
+            0..3 => self.transport.set(field, value),
+            3 => self.count = FieldType::from_value(value).unwrap_or(self.count),
+            _ => self.radius = FieldType::from_value(value).unwrap_or(self.radius),
+        }
+    }
+}
+
+impl Parameters for PhotonParameters {
+    type Integrator<'w> = Path<'w>;
+
+    const PREPARES: bool = true;
+
+    fn over(self, setup: Setup<'_>) -> Path<'_> {
+        let photons = Photons::new(setup.world, setup.seed, self.count, self.radius);
+        let photons = if self.corrected { photons.corrected() } else { photons };
+        Path { photons: Some(Arc::new(photons)), ..self.transport.over(setup) }
+    }
+
+    fn transport(&self) -> Option<Transport> {
+        Some(self.transport)
+    }
+}
+
+/// How paths find light that comes straight from lamps and surroundings with an extent. All but
+/// [`Direct::Middle`] have the same mean; they differ in noise.
+///
+/// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direct {
+    /// Points of lights and directions of the surface are chosen; what both can find is weighed by
+    /// the power heuristic.
+    #[default]
+    Both,
+    /// Points of lights alone; a direction counts only where it meets what is never chosen.
+    Lights,
+    /// Directions alone; points only of lights that no direction meets.
+    Bsdf,
+    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a
+    /// sphere, disc or rectangle. Shadows are hard: wrong, and for lessons alone.
+    Middle,
+}
+
+impl Direct {
+    /// Those that can be asked for.
+    pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
+
+    /// Their names.
+    const NAMES: [&str; 3] = [Direct::CHOICES[0].name(), Direct::CHOICES[1].name(), Direct::CHOICES[2].name()];
+
+    /// Its name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Direct::Both => "both",
+            Direct::Lights => "lights",
+            Direct::Bsdf => "bsdf",
+            Direct::Middle => "middle",
+        }
+    }
+}
+
+impl FieldType for Direct {
+    const KIND: Kind = Kind::Word(&Direct::NAMES);
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Word(self.name().into()))
+    }
+
+    fn from_value(value: Value) -> Option<Self> {
+        let Value::Word(word) = value else { return None };
+        Direct::CHOICES.into_iter().find(|direct| direct.name() == word)
+    }
+}

@@ -1,0 +1,116 @@
+//! Glass in glass: indices along a ray, against Snell's law written down.
+
+use super::*;
+use crate::compile::testing;
+use crate::integrator::{TraceNode, TraceRecorder};
+
+const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1 angle 40 }
+    Materials {
+      Material { specularColor 1 1 1 transparentColor 1 1 1 refractionIndex 1.5 }
+      Material { specularColor 1 1 1 transparentColor 1 1 1 refractionIndex 1.33 }
+      Material { specularColor 1 1 1 transparentColor 1 1 1 refractionIndex 1.31 }
+      Material { transparentColor 1 1 1 indexOfRefraction 1 }
+      Material { diffuseColor 1 1 1 } }\n";
+
+/// Indices of what a ray runs in from surface to surface, by the sines of its angles to y: flat
+/// layers keep index times sine.
+fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
+    along(&testing::read(&format!("{CAMERA}Group {{ {objects} }}")), origin, sine)
+}
+
+fn along(world: &World, origin: [f32; 3], sine: f32) -> Vec<f32> {
+    let settings = Settings {
+        bounces: 10,
+        shadows: false,
+        shade_back: true,
+        transparent_shadows: false,
+        reflection: false,
+        refraction: true,
+        least_weight: 0.0,
+    };
+    let ray = Ray::new(origin.into(), Vec3::new(sine, -(1.0 - sine * sine).sqrt(), 0.0));
+    let mut account = TraceRecorder::default();
+    Whitted { world, settings, cancel: None }.radiance(&ray, &mut account);
+    let mut found = Vec::new();
+    transmitted(&account.into_tree().unwrap().root, &mut found);
+    // Rounded to thousandths.
+    found.iter().map(|dir| (1e3 * sine / dir.x).round() / 1e3).collect()
+}
+
+fn transmitted(node: &TraceNode, found: &mut Vec<Vec3>) {
+    if let TermKind::Ray { from: RayKind::Transmitted, ray, .. } = &node.what {
+        found.push(ray.dir);
+    }
+    node.terms.iter().for_each(|term| transmitted(term, found));
+}
+
+fn slab(material: u32, low: f32, high: f32, half: f32) -> String {
+    format!("MaterialIndex {material} Box {{ min -{half} {low} -{half} max {half} {high} {half} }} ")
+}
+
+#[test]
+fn layers_inside_each_other_bend_by_their_own_indices_in_any_order() {
+    let layers = [slab(0, -3.0, 3.0, 30.0), slab(1, -2.0, 2.0, 20.0), slab(2, -1.0, 1.0, 10.0)];
+    for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0], [0, 2, 1]] {
+        let objects: String = order.map(|i| layers[i].as_str()).concat();
+        for sine in [0.1, 0.5, 0.9] {
+            assert_eq!(indices(&objects, [0.0, 6.0, 0.0], sine), [1.5, 1.33, 1.31, 1.33, 1.5, 1.0]);
+        }
+        // From inside the ice, the water and the glass; the sines are those of a ray in there.
+        assert_eq!(
+            indices(&objects, [0.0, 0.0, 0.0], 0.5).iter().map(|n| n * 1.31).map(short).collect::<Vec<_>>(),
+            [1.33, 1.5, 1.0]
+        );
+        assert_eq!(
+            indices(&objects, [0.0, -1.5, 0.0], 0.5).iter().map(|n| n * 1.33).map(short).collect::<Vec<_>>(),
+            [1.5, 1.0]
+        );
+    }
+}
+
+fn short(index: f32) -> f32 {
+    (index * 100.0).round() / 100.0
+}
+
+#[test]
+fn ice_that_stands_out_of_water_displaces_it() {
+    let (water, ice) = (slab(1, -2.0, 0.0, 20.0), slab(2, -1.0, 1.0, 10.0));
+    for objects in [format!("{water}{ice}"), format!("{ice}{water}")] {
+        // The water's surface inside the ice is no surface.
+        assert_eq!(indices(&objects, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33, 1.0]);
+        // Beside the ice there is water alone.
+        assert_eq!(indices(&objects, [12.0, 6.0, 0.0], 0.5), [1.33, 1.0]);
+    }
+    // A sea has no end, and ice is in it all the same. Nothing is below it: the ray stays inside.
+    let sea = format!("{ice}MaterialIndex 1 Plane {{ normal 0 1 0 offset 0 }}");
+    assert_eq!(indices(&sea, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33]);
+}
+
+#[test]
+fn a_bubble_is_air_and_a_pane_hides_nothing() {
+    let bubble = format!("{}{}", slab(0, -2.0, 2.0, 20.0), slab(3, -1.0, 1.0, 10.0));
+    assert_eq!(indices(&bubble, [0.0, 6.0, 0.0], 0.5), [1.5, 1.0, 1.5, 1.0]);
+    // What is opaque inside glass is seen in it, whole.
+    let stone = format!("{}MaterialIndex 4 Sphere {{ center 0 0 0 radius 1 }}", slab(0, -2.0, 2.0, 20.0));
+    assert_eq!(indices(&stone, [-4.2, 8.0, 0.0], 0.5), [1.5]);
+    // A pane without thickness has no inside; behind it other glass is met as ever.
+    let pane = "MaterialIndex 2 Rectangle { corner -30 3 -30 edge0 0 0 60 edge1 60 0 0 } ";
+    let behind = indices(&format!("{pane}{}", slab(0, -1.0, 1.0, 20.0)), [0.0, 6.0, 0.0], 0.5);
+    assert_eq!(behind[..2], [1.31, 1.5]);
+}
+
+#[test]
+fn a_wall_turned_inside_out_is_that_of_a_cavity() {
+    let folder = tempfile::tempdir().unwrap();
+    // A box of twelve triangles whose front is inside.
+    let corners: String = (0..8)
+        .map(|i| format!("v {} {} {}\n", 10 * (2 * (i & 1) - 1), 2 * (i >> 1 & 1) - 1, 10 * (2 * (i >> 2) - 1)))
+        .collect();
+    let faces = "f 1 2 4 3\nf 5 7 8 6\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
+    std::fs::write(folder.path().join("cavity.obj"), corners + faces).unwrap();
+    let text = format!("{CAMERA}Group {{ {} TriangleMesh {{ obj_file cavity.obj }} }}", slab(0, -2.0, 2.0, 20.0));
+    let rules = durer_scene::dialect::Dialect::Durer.rules();
+    let (world, findings) = testing::try_read(&text, rules, crate::compile::AccelKind::Bvh, folder.path());
+    let world = world.unwrap_or_else(|| panic!("{findings:?}"));
+    assert_eq!(along(&world, [0.0, 6.0, 0.0], 0.5), [1.5, 1.0, 1.5, 1.0]);
+}

@@ -1,0 +1,262 @@
+//! Where the samples of a job go.
+
+use super::error::center;
+use super::sub_pixels::SubPixels;
+use super::{Job, Sampling, camera_ray, raster};
+use crate::film::FilterSampler;
+use crate::world::World;
+use durer_bvh::internal::{PlainKernel, run_plain};
+use durer_scene::camera::{CameraSample, CameraSamples, Projection, Raster};
+use durer_scene::math::{Ray, Vec2};
+use durer_scene::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
+use std::array::from_fn;
+
+/// Where a sample goes.
+pub(super) struct PixelSample {
+    /// In the picture, in pixels from the upper left corner.
+    pub(super) place: Vec2,
+    /// In the lens, from 0 to 1.
+    pub(super) lens: Vec2,
+    /// How much it counts for in the pixel.
+    pub(super) weight: f32,
+    /// Its ray; `None` where the camera sees nothing.
+    pub(super) ray: Option<Ray>,
+}
+
+/// What the samples of a pixel have in common.
+#[derive(Clone, Copy)]
+pub(super) struct Pixel {
+    pub(super) x: u32,
+    pub(super) y: u32,
+    /// Its samples.
+    pub(super) id: SampleId,
+    /// Its middle, in pixels from the upper left corner, and on the square that the camera covers.
+    center: Vec2,
+    point: Vec2,
+    /// Where in the pixel Sobol's samples lie.
+    positions: Sequence,
+}
+
+/// How many samples are aimed side by side.
+pub(super) const BATCH: usize = 8;
+
+/// Samples that are aimed side by side.
+pub(super) trait Several {
+    /// How many there are, at most [`BATCH`].
+    fn len(&self) -> usize;
+
+    /// The pixel of one; also where there are less, of some pixel.
+    fn pixel(&self, i: usize) -> &Pixel;
+
+    /// Its number in the pixel.
+    fn number(&self, i: usize) -> u32;
+}
+
+/// Some samples, of one pixel or several.
+pub(super) struct Batch {
+    of: [(Pixel, u32); BATCH],
+    len: usize,
+}
+
+impl Batch {
+    /// None, of a film that has this pixel.
+    pub(super) fn new(some: Pixel) -> Self {
+        Batch { of: [(some, 0); BATCH], len: 0 }
+    }
+
+    /// Adds one; `true` where it is the last that there is room for.
+    pub(super) fn push(&mut self, pixel: &Pixel, sample: u32) -> bool {
+        self.of[self.len] = (*pixel, sample);
+        self.len += 1;
+        self.len == BATCH
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.len = 0;
+    }
+}
+
+impl Several for Batch {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        self.len
+    }
+
+    #[inline(always)]
+    fn pixel(&self, i: usize) -> &Pixel {
+        &self.of[i].0
+    }
+
+    #[inline(always)]
+    fn number(&self, i: usize) -> u32 {
+        self.of[i].1
+    }
+}
+
+/// As many samples of one pixel as are aimed side by side, from a number on.
+pub(super) struct Row<'a> {
+    pub(super) pixel: &'a Pixel,
+    pub(super) first: u32,
+}
+
+impl Several for Row<'_> {
+    #[inline(always)]
+    fn len(&self) -> usize {
+        BATCH
+    }
+
+    #[inline(always)]
+    fn pixel(&self, _: usize) -> &Pixel {
+        self.pixel
+    }
+
+    #[inline(always)]
+    fn number(&self, i: usize) -> u32 {
+        self.first + i as u32
+    }
+}
+
+/// Aims the samples of a job.
+pub(super) struct Aim<'a> {
+    world: &'a World,
+    job: &'a Job,
+    pub(super) raster: Raster,
+    warp: Option<FilterSampler>,
+    has_aperture: bool,
+}
+
+impl<'a> Aim<'a> {
+    pub(super) fn new(world: &'a World, job: &'a Job) -> Self {
+        let warp = match job.sampling {
+            Sampling::Filtered { filter, .. } => Some(filter.sampler()),
+            _ => None,
+        };
+        let raster = raster(world, job.width, job.height);
+        Aim { world, job, raster, warp, has_aperture: world.camera().has_aperture() }
+    }
+
+    /// The size of a sample's weight.
+    pub(super) fn gain(&self) -> f32 {
+        self.warp.as_ref().map_or(1.0, FilterSampler::gain)
+    }
+
+    /// What the samples of a pixel have in common.
+    pub(super) fn pixel(&self, x: u32, y: u32) -> Pixel {
+        let (id, center) = (SampleId::new(self.job.seed, (x, y), 0), center(x, y));
+        Pixel { x, y, id, center, point: self.raster.point(center), positions: id.sequence(PIXEL_DIMENSION) }
+    }
+
+    /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
+    pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
+        let middle = Vec2::splat(0.5);
+        let (place, lens, weight) = match (self.job.sampling, &self.warp) {
+            (Sampling::Filtered { .. }, Some(warp)) => {
+                let (offset, weight) = warp.sample(pixel.positions.point(sample));
+                let lens = if self.has_aperture { pixel.id.sequence(LENS_DIMENSION).point(sample) } else { middle };
+                (pixel.center + offset, lens, weight)
+            }
+            (Sampling::Course2004 { sampler, samples, .. }, _) => {
+                return self.kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
+            }
+            // One ray through the middles of pixel and lens.
+            _ => (pixel.center, middle, 1.0),
+        };
+        let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
+        PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
+    }
+
+    /// Gives ray and weight of some samples, one after the other, as [`Aim::sample`] has them one by
+    /// one.
+    pub(super) fn several(&self, of: &impl Several, mut take: impl FnMut(usize, Option<Ray>, f32)) {
+        let mut take = |i: usize, ray, weight| {
+            if i < of.len() {
+                take(i, ray, weight);
+            }
+        };
+        match (&self.warp, self.job.sampling) {
+            (Some(warp), _) => run_plain(AimKernel { aim: self, warp, of, take }),
+            (None, Sampling::Center) => {
+                let points = [0, 1].map(|axis| from_fn(|i| of.pixel(i).point[axis]));
+                self.rays(of, points, [[0.5; BATCH]; 2], |i, ray| take(i, ray, 1.0));
+            }
+            _ => {
+                for i in 0..of.len() {
+                    let PixelSample { ray, weight, .. } = self.sample(of.pixel(i), of.number(i));
+                    take(i, ray, weight);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn rays(
+        &self,
+        of: &impl Several,
+        points: [[f32; BATCH]; 2],
+        lenses: [[f32; BATCH]; 2],
+        take: impl FnMut(usize, Option<Ray>),
+    ) {
+        let samples = CameraSamples { points, pixels: from_fn(|i| of.pixel(i).point), lenses };
+        self.world.camera().rays(self.world.camera_frame(), &samples, take);
+    }
+
+    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
+    /// more pixels than one, as a filter says.
+    pub(super) fn kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (PixelSample, Vec2) {
+        let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
+        let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
+        let ray = camera_ray(self.world, &self.raster, (x, y), place, lens);
+        (PixelSample { place, lens, weight: 1.0, ray }, position)
+    }
+
+    /// Where the sample of a sub-pixel goes.
+    pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
+        let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
+        let ray = camera_ray(self.world, raster, (x, y), place, lens);
+        PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
+    }
+
+    /// Where in the lens a sample lies. A lens without extent needs no numbers.
+    fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
+        match self.has_aperture {
+            true => sampler.lens_position(self.job.seed, x, y, sample),
+            false => Vec2::splat(0.5),
+        }
+    }
+}
+
+/// Aims some samples as a filter wants them.
+struct AimKernel<'a, S, F> {
+    aim: &'a Aim<'a>,
+    warp: &'a FilterSampler,
+    of: &'a S,
+    take: F,
+}
+
+impl<S: Several, F: FnMut(usize, Option<Ray>, f32)> PlainKernel for AimKernel<'_, S, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let AimKernel { aim, warp, of, mut take } = self;
+        let (mut numbers, mut sequences) = ([0; BATCH], [of.pixel(0).positions; BATCH]);
+        for i in 0..BATCH {
+            (numbers[i], sequences[i]) = (of.number(i), of.pixel(i).positions);
+        }
+        let (offsets, weights) = warp.samples(&Sequence::points(&sequences, &numbers));
+        let mut places = [[0.0; BATCH]; 2];
+        for axis in 0..2 {
+            for i in 0..BATCH {
+                places[axis][i] = of.pixel(i).center[axis] + offsets[axis][i];
+            }
+        }
+        let mut lenses = [[0.5; BATCH]; 2];
+        if aim.has_aperture {
+            for (i, sequence) in sequences.iter_mut().enumerate() {
+                *sequence = of.pixel(i).id.sequence(LENS_DIMENSION);
+            }
+            lenses = Sequence::points(&sequences, &numbers);
+        }
+        aim.rays(of, aim.raster.points(places), lenses, |i, ray| take(i, ray, weights[i]));
+    }
+}

@@ -1,0 +1,138 @@
+//! Pictures larger than memory: made in bands of rows, which are written and forgotten.
+
+use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
+use crate::world::World;
+use durer_image::{Format, ImageError, Strip, WriteOptions};
+use durer_scene::source::Digest;
+use std::io::{self, Write};
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Bytes of a band, where more are allowed: larger ones would not be made any faster.
+const ENOUGH: u64 = 256 << 20;
+
+/// The colour picture of a job, that may be of any size.
+#[derive(Debug)]
+pub struct Bands {
+    job: Job,
+    /// Rows of a band: a multiple of [`BLOCK`].
+    rows: u32,
+}
+
+/// Why it was not made.
+#[derive(Debug, thiserror::Error)]
+pub enum BandsError {
+    /// It cannot be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The format cannot hold it.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// It cannot be written.
+    #[error(transparent)]
+    Io(#[from] io::Error),
+}
+
+impl Bands {
+    /// The picture of a job in bands that take at most so many bytes each.
+    ///
+    /// # Errors
+    /// [`RenderError::Bands`] for what needs all pixels at once, and [`RenderError::Memory`] where
+    /// not even one row of blocks fits.
+    pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
+        let refuse = |why: &str| Err(RenderError::Bands(why.into()));
+        if !job.color || !job.aovs.is_empty() {
+            return refuse("it has other pictures than the colours");
+        }
+        if !job.sampling.is_local() {
+            return refuse("its samples count for several pixels");
+        }
+        if job.adaptive {
+            return refuse("its samples are divided by the noise of all of it");
+        }
+        let window = job.window();
+        let bytes = |rows: u32| {
+            let crop = Crop { height: rows.min(window.height), ..window };
+            PartialRender::bytes_needed(&Job { crop: Some(crop), ..job.clone() }, Shard::WHOLE)
+        };
+        let fitting = memory.min(ENOUGH) / bytes(1).max(1) / u64::from(BLOCK) * u64::from(BLOCK);
+        match u32::try_from(fitting).unwrap_or(u32::MAX / BLOCK * BLOCK) {
+            0 => Err(RenderError::Memory { needed: bytes(BLOCK), allowed: memory }),
+            rows => Ok(Bands { job: job.clone(), rows }),
+        }
+    }
+
+    /// Bytes that a band takes.
+    pub fn bytes_needed(&self) -> u64 {
+        self.crops().first().map_or(0, |crop| PartialRender::bytes_needed(&self.band(*crop), Shard::WHOLE))
+    }
+
+    /// The parts, from top to bottom. They end where blocks end in the whole picture.
+    fn crops(&self) -> Vec<Crop> {
+        let window = self.job.window();
+        let (mut crops, mut top, end) = (Vec::new(), window.top, window.top + window.height);
+        while top < end {
+            let next = (top / BLOCK * BLOCK).saturating_add(self.rows).min(end);
+            crops.push(Crop { top, height: next - top, ..window });
+            top = next;
+        }
+        crops
+    }
+
+    fn band(&self, crop: Crop) -> Job {
+        Job { crop: Some(crop), ..self.job.clone() }
+    }
+
+    /// Makes the picture and writes it. What was counted comes back, and the hash that
+    /// [`PartialRender::hash`] of all of it has, for formats whose top row comes first.
+    ///
+    /// # Errors
+    /// [`BandsError`]; what was written is not whole then.
+    pub fn write(
+        &self,
+        world: &World,
+        control: &Control,
+        format: &Format,
+        options: &WriteOptions,
+        out: &mut dyn Write,
+    ) -> Result<(Statistics, Option<Digest>), BandsError> {
+        let window = self.job.window();
+        let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
+        // Whether the camera sees all is not known before the end: where it may not, there is
+        // alpha.
+        let (width, height, display) = (window.width, window.height, options.display);
+        let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
+        let samples = u64::from(self.job.sampling.samples());
+        control.all.store(window.pixels().saturating_mul(samples), Relaxed);
+        let mut crops = self.crops();
+        if bottom_up {
+            crops.reverse();
+        }
+        format.write_rows(strip, out, |rows| {
+            let (mut statistics, mut hasher) = (Statistics::default(), blake3::Hasher::new());
+            for crop in crops {
+                let part = PartialRender::new(world, &self.band(crop), Shard::WHOLE)?;
+                match part.render(world, control, &mut |_, _| {})? {
+                    RenderOutcome::Finished => {}
+                    RenderOutcome::Cancelled | RenderOutcome::OutOfTime => return Err(RenderError::Cancelled.into()),
+                    RenderOutcome::Panicked(panicked) => return Err(RenderError::from(panicked).into()),
+                }
+                part.hash_into(&mut hasher);
+                statistics.add(part.statistics());
+                part.try_strips(bottom_up, |pixels, coverage| rows.rows(pixels, coverage))?;
+            }
+            Ok((statistics, (!bottom_up).then(|| Digest(hasher.finalize().into()))))
+        })
+    }
+}
+
+/// Whether the camera has a ray for each of many pixels, the corners among them.
+fn sees_all(world: &World, job: &Job) -> bool {
+    const ACROSS: u32 = 256;
+    let (window, raster) = (job.window(), super::raster(world, job.width, job.height));
+    let place =
+        |i: u32, from: u32, length: u32| from + (u64::from(i) * u64::from(length - 1) / u64::from(ACROSS)) as u32;
+    (0..=ACROSS).flat_map(|j| (0..=ACROSS).map(move |i| (i, j))).all(|(i, j)| {
+        let pixel = (place(i, window.left, window.width), place(j, window.top, window.height));
+        super::center_ray(world, &raster, pixel).is_some()
+    })
+}

@@ -1,0 +1,82 @@
+//! Pixels that are made of their neighbours' samples too, as the course's assignments have them.
+
+use super::{Mean, SampleAccount};
+use crate::film::course::CourseFilter;
+use crate::render::aim::PixelSample;
+use crate::render::samples::{Samples, share};
+use crate::render::sub_pixels::SubPixels;
+use crate::render::{Crop, Job};
+use crate::world::World;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::sampler::Sampler;
+use glam::DVec3;
+
+/// The samples of Fall 2004: all within the filter's support, each with its weight in this pixel.
+pub(super) fn around(
+    source: &Samples,
+    job: &Job,
+    here: (u32, u32),
+    (sampler, samples, filter): (Sampler, u32, CourseFilter),
+    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
+) -> (Mean, Vec<SampleAccount>) {
+    let samples = sampler.round_up(samples);
+    let all = |crop: Crop| crop.places().flat_map(move |of| (0..samples).map(move |sample| (of, sample)));
+    let aim = |(of, sample): ((u32, u32), u32)| {
+        let (aim, position) = source.aim.kept((sampler, samples), of.0, of.1, sample);
+        (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
+    };
+    let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
+    // Where no sample counts, the pixel is the mean of its own.
+    if aims.iter().all(|(.., aim)| aim.weight == 0.0) {
+        let own = |(of, sample, aim)| account(of, sample, PixelSample { weight: 1.0, ..aim });
+        return (Mean::Around, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
+    }
+    (Mean::Around, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
+}
+
+/// The sub-pixels of Fall 2012.
+pub(super) fn sub_pixels(
+    source: &Samples,
+    world: &World,
+    grid: SubPixels,
+    account: impl Fn((u32, u32), u32, PixelSample) -> SampleAccount,
+) -> (Mean, Vec<SampleAccount>) {
+    let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
+    let one = |(i, place): (usize, (u32, u32))| {
+        // Developing is linear: what comes of a single white one is its weight.
+        let mut white = vec![Color::ZERO; count];
+        white[i] = Color::ONE;
+        let aim = source.aim.sub_pixel(&grid, &raster, place);
+        account(grid.pixel(place), grid.number(place), PixelSample { weight: grid.develop(white)[0].x, ..aim })
+    };
+    let samples = grid.around.places().enumerate().map(one).collect();
+    (Mean::SubPixels(grid), samples)
+}
+
+/// The finished pixel and its coverage.
+pub(super) fn finished(
+    mean: &Mean,
+    samples: &[SampleAccount],
+    light: impl Fn(&SampleAccount) -> Option<Color>,
+) -> (Color, f32) {
+    let lights: Vec<Option<Color>> = samples.iter().map(light).collect();
+    let colors = lights.iter().map(|light| light.unwrap_or(Vec3::ZERO)).collect();
+    let color = combined(mean, samples, colors);
+    if lights.iter().all(Option::is_some) {
+        return (color, 1.0);
+    }
+    let mask = lights.iter().map(|light| if light.is_some() { Vec3::ONE } else { Vec3::ZERO }).collect();
+    (color, share(combined(mean, samples, mask)))
+}
+
+fn combined(mean: &Mean, samples: &[SampleAccount], colors: Vec<Color>) -> Color {
+    if let Mean::SubPixels(grid) = mean {
+        return grid.develop(colors)[0];
+    }
+    let (mut sum, mut total) = (DVec3::ZERO, 0.0);
+    for (sample, color) in samples.iter().zip(colors) {
+        sum += f64::from(sample.weight) * color.as_dvec3();
+        total += f64::from(sample.weight);
+    }
+    (sum / total).as_vec3()
+}

@@ -1,0 +1,525 @@
+//! An explanation in words and numbers, line by line.
+
+use super::{ErrorBound, Explanation, Mean, SampleAccount};
+use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
+use crate::integrator::{TraceNode, Tree};
+use crate::world::emitters::LightId;
+use crate::world::{Geometry, Material, World};
+use durer_diag::{Files, Span};
+use durer_image::Transfer;
+use durer_scene::describe::DescribedList;
+use durer_scene::dialect::Compat;
+use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
+use durer_scene::scene::Scene;
+use durer_scene::spectrum::{Lanes, Spectrum};
+
+/// What things are called, and where they are written.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// The files that were read.
+    pub files: &'a Files,
+    /// The scene as written.
+    pub scene: &'a Scene,
+    /// The same, compiled.
+    pub world: &'a World,
+}
+
+/// A line of an explanation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TextLine {
+    /// How deep it is indented.
+    pub depth: usize,
+    /// What the term adds to the one above; `None` on lines that only tell more of the line before.
+    pub adds: Option<TermValue>,
+    /// The colour of what it adds.
+    pub color: Color,
+    /// The share of the whole that it is, from 0 to 1, by its brightness.
+    pub share: f32,
+    /// The line.
+    pub text: String,
+}
+
+/// How much is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Telling {
+    /// Terms that are a smaller share of the whole are left out.
+    pub least: f32,
+    /// Terms that stand deeper are left out.
+    pub deepest: usize,
+    /// What makes eight bits.
+    pub transfer: Transfer,
+}
+
+impl TextLine {
+    /// One that adds nothing.
+    fn plain(depth: usize, text: String) -> Self {
+        TextLine { depth, adds: None, color: Color::ZERO, share: 0.0, text }
+    }
+}
+
+impl Default for Telling {
+    /// Everything.
+    fn default() -> Self {
+        Telling { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
+    }
+}
+
+/// What is known where a term stands.
+#[derive(Clone, Copy)]
+struct Context<'a> {
+    /// All of which it is a part.
+    tree: &'a Tree,
+    /// What its contribution is multiplied by in the whole.
+    gain: TermValue,
+    /// The brightness of the whole.
+    whole: f32,
+    /// The ray, the normal and the way to the light that it belongs to.
+    dir: Vec3,
+    n: Vec3,
+    to_light: Vec3,
+    material: Option<u32>,
+    fresnel: Option<f32>,
+}
+
+fn brightness(color: Color) -> f32 {
+    color.dot(LUMINANCE)
+}
+
+impl Names<'_> {
+    fn place(&self, span: Span) -> String {
+        let name = self.files.name(span.file).unwrap_or("?");
+        match self.files.position(span) {
+            Some((line, column)) => format!("{name}:{line}:{column}"),
+            None => name.to_string(),
+        }
+    }
+
+    /// The line in which something is written: with the file's name, if it is not the scene's.
+    fn line(&self, span: Span) -> String {
+        let scene = self.scene.camera_span.file;
+        match self.files.position(span) {
+            Some((line, _)) if span.file == scene => format!("of line {line}"),
+            _ => self.place(span),
+        }
+    }
+
+    /// What is written at a place.
+    fn word(&self, span: Span) -> String {
+        let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
+    }
+
+    /// What an object is called of which no keyword tells, as in JSON: by its kind, and its name if
+    /// it has one.
+    pub fn unworded(&self, object: u32) -> Option<String> {
+        let object = &self.world.objects()[object as usize];
+        let kind = match &object.geometry {
+            Geometry::Primitive(shape) => shape.keywords()[0].0,
+            Geometry::Mesh(_) => "mesh",
+            Geometry::Solid(_) => "solid",
+        };
+        let word = self.word(object.span);
+        match word.strip_prefix('"').and_then(|name| name.strip_suffix('"')) {
+            Some(name) => Some(format!("{kind} `{name}`")),
+            None => ["", "{"].contains(&word.as_str()).then(|| kind.into()),
+        }
+    }
+
+    fn keyword(&self, object: u32) -> (String, Span) {
+        let span = self.world.objects()[object as usize].span;
+        (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
+    }
+
+    /// An object's keyword and line.
+    pub fn short_object(&self, number: u32) -> String {
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.line(span))
+    }
+
+    /// A material's number and line.
+    fn short_material(&self, number: u32) -> String {
+        match self.scene.materials.get(number as usize) {
+            Some(material) => format!("material {number} {}", self.line(material.span)),
+            None => "plain grey".into(),
+        }
+    }
+
+    /// A light's keyword and line.
+    fn short_light(&self, number: usize) -> String {
+        match self.scene.lights.iter().flatten().nth(number) {
+            Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
+            None => format!("light {number}"),
+        }
+    }
+
+    /// What shines, and the line in which it is written.
+    fn emitter(&self, light: LightId) -> String {
+        match light {
+            LightId::Light(number) => self.short_light(number as usize),
+            LightId::Surface(object, _) => self.short_object(object),
+            LightId::Environment => "the environment".into(),
+        }
+    }
+
+    /// An object's keyword and place.
+    pub fn object(&self, number: u32) -> String {
+        let (keyword, span) = self.keyword(number);
+        format!("{keyword} {}", self.place(span))
+    }
+
+    /// A material's number and place.
+    pub fn material(&self, number: u32) -> String {
+        match self.scene.materials.get(number as usize) {
+            Some(material) => format!("material {number} {}", self.place(material.span)),
+            None => "plain grey".into(),
+        }
+    }
+
+    /// A light's keyword and place.
+    pub fn light(&self, number: usize) -> String {
+        match self.scene.lights.iter().flatten().nth(number) {
+            Some(light) => format!("{} {}", light.value.keywords()[0].0, self.place(light.span)),
+            None => format!("light {number}"),
+        }
+    }
+}
+
+impl Explanation {
+    /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place
+    /// in the list.
+    pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<TextLine> {
+        let mut lines = Vec::new();
+        let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
+        let [r, g, b] = telling.transfer.encode_pixel(self.color);
+        let curve = telling.transfer.name();
+        say(0, format!("pixel {},{} = {}, in eight bits {r} {g} {b} ({curve})", self.x, self.y, rgb(self.color)));
+        if self.coverage < 1.0 {
+            say(1, format!("the camera sees something at {:.1} % of it", 100.0 * self.coverage));
+        }
+        let all = self.samples.len();
+        if all > 1 {
+            let sum: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
+            let of = match &self.mean {
+                Mean::Own => String::new(),
+                Mean::Around => ", also those of pixels around".into(),
+                Mean::SubPixels(_) => ": sub-pixels, blurred and averaged as in 2012".into(),
+            };
+            say(1, format!("the mean of {all} samples by weight{of}; the weights sum to {}", sum as f32));
+        }
+        if let Some(error) = &self.error {
+            let ErrorBound { luminance, bias, standard_error, bound } = *error;
+            let [luminance, bias, standard_error, bound] =
+                [luminance, bias, standard_error, bound].map(|value| number(value as f32));
+            let parts = match error.bias {
+                0.0 => format!("standard error {standard_error}"),
+                _ => format!("bias of photons {bias}, standard error {standard_error}"),
+            };
+            say(1, format!("luminance {luminance}, with 90 % confidence at most {bound} from the truth: {parts}"));
+        }
+        if let Some(stale) = self.stale_texels {
+            say(1, format!("and {} by the quirk `stale-texels`", rgb(stale)));
+        }
+        let nothing = |i: usize| i != wanted && self.samples[i].weight == 0.0 && self.mean != Mean::Own;
+        for (i, sample) in self.samples.iter().enumerate().filter(|(i, _)| !nothing(*i)) {
+            sample_lines(sample, self.number(i), names, (i == wanted).then_some(telling), &mut lines);
+        }
+        match (0..all).filter(|&i| nothing(i)).count() {
+            0 => {}
+            left => {
+                let text = format!("{left} samples more have no weight here");
+                lines.push(TextLine::plain(1, text));
+            }
+        }
+        lines
+    }
+
+    /// What a sample is called: its number, and whose it is where several pixels' samples are in
+    /// the list.
+    fn number(&self, index: usize) -> String {
+        let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
+        match self.mean {
+            Mean::Own => format!("sample {sample}"),
+            _ => format!("sample {index} (number {sample} of pixel {x},{y})"),
+        }
+    }
+}
+
+fn sample_lines(
+    sample: &SampleAccount,
+    name: String,
+    names: &Names,
+    whole: Option<&Telling>,
+    lines: &mut Vec<TextLine>,
+) {
+    let SampleAccount { place, weight, light, .. } = sample;
+    let seen = light.as_ref().map_or("the camera sees nothing here".into(), |light| rgb(light.sum()));
+    let text = format!("{name} at {}, {}, weight {}: {seen}", place.x, place.y, number(*weight));
+    lines.push(TextLine::plain(1, text));
+    if let (Some(light), Some(telling)) = (light, whole) {
+        tree_lines(light, names, 2, telling, lines);
+    }
+}
+
+/// The lines of a tree.
+pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<TextLine> {
+    let mut lines = Vec::new();
+    tree_lines(light, names, 0, telling, &mut lines);
+    lines
+}
+
+fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines: &mut Vec<TextLine>) {
+    if let Lanes::Waves(waves) = &tree.lanes {
+        let told = |numbers: Spectrum| numbers.to_array().map(number).join(", ");
+        let text = format!("light at {} nm; the eye makes of it", told(waves.nm));
+        lines.push(TextLine::plain(depth, text));
+        for (name, observer) in ["red", "green", "blue"].into_iter().zip(waves.observer()) {
+            lines.push(TextLine::plain(depth + 1, format!("{name}: ({}) · light", told(*observer))));
+        }
+    }
+    node_lines(&tree.root, names, depth, telling, Context::of(tree), lines);
+}
+
+impl<'a> Context<'a> {
+    fn of(tree: &'a Tree) -> Self {
+        let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+        let whole = brightness(tree.color(tree.root.contribution())).max(f32::MIN_POSITIVE);
+        let gain = TermValue::Color(Color::ONE);
+        Context { tree, gain, whole, dir, n, to_light, material: None, fresnel: None }
+    }
+}
+
+fn node_lines(
+    node: &TraceNode,
+    names: &Names,
+    depth: usize,
+    telling: &Telling,
+    at: Context,
+    lines: &mut Vec<TextLine>,
+) {
+    let (factor, value) = (numbers(node.factor), numbers(node.value));
+    let mut more = Vec::new();
+    let mut below = Context { gain: at.gain * node.factor * node.scale, ..at };
+    let text = match &node.what {
+        TermKind::Ray { from, ray, weight, hit, bounce } => {
+            below.dir = ray.dir;
+            let from = match from {
+                RayKind::Camera => "camera ray",
+                RayKind::Reflected => "mirrored ray",
+                RayKind::Transmitted => "transmitted ray",
+                RayKind::Scattered => "scattered ray",
+            };
+            more.extend(bounce.iter().map(bounce_line));
+            more.push(ray_line(ray));
+            match hit {
+                Some(hit) => {
+                    (below.n, below.material) = (hit.n, Some(hit.material));
+                    more.extend(struck_lines(hit, names));
+                }
+                None => more.push("it hits nothing".into()),
+            }
+            match from {
+                "camera ray" => format!("{from}: {value}"),
+                _ => {
+                    format!(
+                        "{from}, which counts for {} of the pixel: {} · {value}",
+                        number(*weight),
+                        split(node, from, &at, names)
+                    )
+                }
+            }
+        }
+        TermKind::Photons { radius, photons } => {
+            more.push(format!("{photons} photons at most {} away", number(*radius)));
+            format!("light that mirrors and glass throw here: {value}")
+        }
+        TermKind::OneWavelength { nm } => {
+            format!("colours are spread: {} nm alone goes on, and counts for all four: {factor} · {value}", number(*nm))
+        }
+        TermKind::Sky => "background".into(),
+        TermKind::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
+        TermKind::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
+            more.push(format!("L = {}, {} away", vector(*to_light), number(*distance)));
+            more.push(format!(
+                "surface: value · cos = {}; chosen with probability {}{}",
+                numbers(*bsdf),
+                number(*choice),
+                if *pdf > 0.0 { format!(" and density {} /sr", number(*pdf)) } else { String::new() }
+            ));
+            more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
+            format!("direct light of {}: {factor} · {value}{}", names.emitter(*light), weight_text(*mis))
+        }
+        TermKind::Ambient { share } => {
+            format!("ambient{}: light {factor} · colour {value}", share_text(*share))
+        }
+        TermKind::Light { light, to_light, distance, share, shadow } => {
+            below.to_light = *to_light;
+            more.push(format!(
+                "L = {}, {} away; {} arrives",
+                vector(*to_light),
+                number(*distance),
+                numbers(node.scale)
+            ));
+            more.extend(shadow.iter().map(|shadow| shadow_line(shadow, names)));
+            let through = if node.factor.is(1.0) { String::new() } else { format!("{factor} · ") };
+            let sum = if node.terms.is_empty() { value } else { format!("(sum below) · {}", numbers(node.scale)) };
+            format!("{}{}: {through}{sum}", names.short_light(*light), share_text(*share))
+        }
+        TermKind::Diffuse { cosine } => format!("diffuse: max(0, N·L = {}) · {value}", number(*cosine)),
+        TermKind::Highlight { model, base, exponent } => {
+            more.push(match *model {
+                "N·H" => format!("H = norm(L + V) = {}", vector((at.to_light - at.dir).normalize_or_zero())),
+                _ => format!("R = d - 2 (d·N) N = {}", vector(reflect(at.dir, at.n))),
+            });
+            let (base, exponent, strength) = (number(*base), number(*exponent), number(node.factor.numbers()[0]));
+            format!("highlight: max(0, {model} = {base})^{exponent} = {strength} · {value}")
+        }
+        TermKind::Secondary { here, there, fresnel, total } => {
+            below.fresnel = *fresnel;
+            let mut text = match here == there && fresnel.is_none() {
+                true => "mirrored light".to_string(),
+                false => {
+                    format!("mirrored and transmitted light, from index {} to {}", number(*here), number(*there))
+                }
+            };
+            if let Some(share) = fresnel {
+                text += &format!("; Fresnel's law mirrors {}", number(*share));
+            }
+            if *total {
+                text += "; all is mirrored: beyond the critical angle nothing gets through";
+            }
+            text
+        }
+        TermKind::Cut { weight } => {
+            format!("a ray that counts for {} only is not traced (--min-throughput)", number(*weight))
+        }
+        TermKind::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
+    };
+    let contribution = node.contribution();
+    let of_whole = |node: &TraceNode, gain| brightness(at.tree.color(gain * node.contribution())) / at.whole;
+    let color = at.tree.color(contribution);
+    lines.push(TextLine { depth, adds: Some(contribution), color, share: of_whole(node, at.gain), text });
+    let mut tell = |text: String| lines.push(TextLine::plain(depth + 1, text));
+    more.into_iter().for_each(&mut tell);
+    if depth >= telling.deepest && !node.terms.is_empty() {
+        return tell(format!("{} below (--depth)", terms(node.terms.len())));
+    }
+    let small = |term: &&TraceNode| of_whole(term, below.gain).abs() < telling.least;
+    let left = node.terms.iter().filter(small).count();
+    for term in node.terms.iter().filter(|term| !small(term)) {
+        node_lines(term, names, depth + 1, telling, below, lines);
+    }
+    if left > 0 {
+        let text = format!("{} of less than {} % each (--min)", terms(left), number(100.0 * telling.least));
+        lines.push(TextLine::plain(depth + 1, text));
+    }
+}
+
+/// How a direction was chosen.
+fn bounce_line(bounce: &Bounce) -> String {
+    let Bounce { lobe, probability, pdf, survival, directions } = bounce;
+    let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
+    let survived =
+        if *survival < 1.0 { format!("; went on with probability {}", number(*survival)) } else { String::new() };
+    let shared =
+        if *directions > 1 { format!("; one of {directions} directions that share alike") } else { String::new() };
+    format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
+}
+
+/// A weight of multiple importance sampling, where it is not 1.
+fn weight_text(mis: f32) -> String {
+    if mis == 1.0 { String::new() } else { format!(" (MIS weight {})", number(mis)) }
+}
+
+fn terms(count: usize) -> String {
+    if count == 1 { "1 term".into() } else { format!("{count} terms") }
+}
+
+/// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and
+/// the share.
+fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
+    let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
+    match (at.fresnel, phong) {
+        (Some(r), Some(Material::Phong(phong))) if from == "mirrored ray" => {
+            format!("`specularColor` {} · {}", rgb(phong.reflective), number(r))
+        }
+        (Some(r), Some(Material::Phong(phong))) => {
+            format!("colour {} · (1 - {})", rgb(phong.transparent), number(r))
+        }
+        _ => numbers(node.factor),
+    }
+}
+
+fn struck_lines(hit: &HitRecord, names: &Names) -> Vec<String> {
+    let (object, t) = (names.short_object(hit.object), number(hit.t));
+    let mut lines = vec![format!("hits {object} at t = {t}, point {}", vector(hit.position))];
+    if hit.barycentric != Vec3::ZERO {
+        lines.push(format!("triangle {}, barycentric {}", hit.part, vector(hit.barycentric)));
+    }
+    if let Some(uv) = hit.uv {
+        lines.push(format!("uv ({}, {})", number(uv.x), number(uv.y)));
+    }
+    if let Some(local) = &hit.local {
+        lines.push(format!("in the object's own space: {}", ray_line(local)));
+    }
+    let mut normal = format!("N = {}", vector(hit.n));
+    if hit.n_geo != hit.n {
+        normal += &format!("; the true surface's is {}", vector(hit.n_geo));
+    }
+    if hit.from_behind {
+        normal += if hit.black {
+            "; seen from behind, which is left black"
+        } else if hit.n != hit.n_shade {
+            "; seen from behind, so it was turned"
+        } else {
+            "; seen from behind"
+        };
+    }
+    lines.push(normal);
+    lines.push(names.short_material(hit.material));
+    lines
+}
+
+fn shadow_line(shadow: &Shadow, names: &Names) -> String {
+    let Some((object, t)) = shadow.blocker else { return "the shadow ray is free".into() };
+    let (object, t) = (names.short_object(object), number(t));
+    match shadow.share {
+        share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
+        share if share.is(1.0) && names.world.rules().has(Compat::ShadowFronts) => {
+            format!(
+                "{object} stands {t} away, but does not block it: its back is turned to the ray (quirk `shadow-fronts`)"
+            )
+        }
+        share if share.is(1.0) => format!("{object} stands {t} away, but does not block it: it lets all light through"),
+        share => format!("through {object}, {t} away, comes {}", numbers(share)),
+    }
+}
+
+fn share_text(share: f32) -> String {
+    if share == 1.0 { String::new() } else { format!(" of a part of {}", number(share)) }
+}
+
+fn ray_line(ray: &RayRecord) -> String {
+    format!("{} + t {}", vector(ray.origin), vector(ray.dir))
+}
+
+fn vector(v: Vec3) -> String {
+    format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
+}
+
+/// A number with four significant digits, and without a sign where it is 0.
+pub fn number(x: f32) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return if x == 0.0 { "0".into() } else { x.to_string() };
+    }
+    let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
+    let size = rounded.abs();
+    if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
+}
+
+fn numbers(value: TermValue) -> String {
+    format!("({})", value.numbers().iter().map(|x| number(*x)).collect::<Vec<_>>().join(", "))
+}
+
+fn rgb(color: Color) -> String {
+    vector(color)
+}

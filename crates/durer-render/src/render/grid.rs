@@ -1,0 +1,95 @@
+//! The course's picture of its uniform grid: the occupied cells as boxes.
+
+use super::{Control, Job, RenderError, center_ray, raster};
+use crate::threads;
+use crate::world::{Accel, Geometry, Object, World};
+use durer_bvh::Grid;
+use durer_image::{Image, checked_count};
+use durer_scene::light::Emitter;
+use durer_scene::math::{Aabb, Color, Ray, Vec3};
+use durer_scene::shape::Primitive;
+use rayon::prelude::*;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Colours of cells by the number of things in them: white for one, then brighter to hotter; the
+/// course leaves them free.
+const COLORS: [Vec3; 8] = [
+    Vec3::ONE,
+    Vec3::new(1.0, 0.0, 1.0),
+    Vec3::new(0.0, 0.0, 1.0),
+    Vec3::new(0.0, 1.0, 1.0),
+    Vec3::new(0.0, 1.0, 0.0),
+    Vec3::new(1.0, 1.0, 0.0),
+    Vec3::new(1.0, 0.5, 0.0),
+    Vec3::new(1.0, 0.0, 0.0),
+];
+
+/// Draws the occupied cells of a world's grid, lit like its objects. Without a grid there is only
+/// the background.
+pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image, RenderError> {
+    let count = checked_count(job.width, job.height)?;
+    let raster = raster(world, job.width, job.height);
+    let grid = occupied(world);
+    let color = |i: u32| {
+        if control.cancel.load(Relaxed) {
+            return Err(RenderError::Cancelled);
+        }
+        let Some(ray) = center_ray(world, &raster, (i % job.width, i / job.width)) else { return Ok(Vec3::ZERO) };
+        Ok(match &grid {
+            Some(grid) => cell_color(world, grid, &ray),
+            None => world.sky(ray.dir),
+        })
+    };
+    let colors =
+        threads::install(control.threads, || (0..count as u32).into_par_iter().map(color).collect::<Result<_, _>>())?;
+    Ok(Image::from_pixels(job.width, job.height, colors)?)
+}
+
+/// The grid's cells with what really overlaps them: the rays' own grid has a margin for rounding.
+fn occupied(world: &World) -> Option<Grid> {
+    let Accel::Grid { grid, parts } = world.accel() else { return None };
+    let object = |part: usize| &world.objects()[parts[part].0 as usize];
+    // A sphere takes cells by the distance of their middles alone, as the course's programs have it:
+    // also beyond its box, and with their own size.
+    let half = 0.5 * grid.cell_bounds([0; 3]).size();
+    let is_sphere = |object: &Object| {
+        object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
+    };
+    // Only things with bounds are in the grid.
+    let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
+        own if is_sphere(object(i)) => Aabb { min: own.min - half.length(), max: own.max + half.length() },
+        own => own,
+    };
+    let boxes: Vec<Aabb> = (0..parts.len()).map(bounds).collect();
+    grid.for_picture(&boxes, |i, cell| {
+        let own = Aabb { min: cell.center() - half, max: cell.center() + half };
+        object(i).overlaps(if is_sphere(object(i)) { &own } else { &cell })
+    })
+}
+
+/// The colour of the first occupied cell along a ray.
+fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
+    let mut found = None;
+    grid.walk_cells(ray, |grid, cell, t_max| {
+        let count = grid.occupancy(cell);
+        if count == 0 {
+            return t_max;
+        }
+        found = Some((cell, count));
+        f32::NEG_INFINITY
+    });
+    let Some((cell, count)) = found else { return world.sky(ray.dir) };
+    let bounds = grid.cell_bounds(cell);
+    let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.sky(ray.dir) };
+    let point = ray.at(enter);
+    // The face is the one whose plane the point is nearest to, measured in cells.
+    let from_center = (point - bounds.center()) / bounds.size();
+    let axis = (0..3).fold(0, |best, i| if from_center[i].abs() > from_center[best].abs() { i } else { best });
+    let normal = Vec3::AXES[axis] * from_center[axis].signum();
+    let color = COLORS[(count - 1).min(COLORS.len() - 1)];
+    let lit = world.lights().iter().map(|light| {
+        let seen = light.illuminate(point.as_dvec3());
+        normal.dot(seen.to_light).max(0.0) * seen.color
+    });
+    color * (world.ambient() + lit.sum::<Color>())
+}

@@ -1,0 +1,201 @@
+//! What decides a picture.
+
+use super::crop::Crop;
+use super::eye::raster;
+use super::passes;
+use crate::film::Filter;
+use crate::film::aov::{Aov, Value};
+use crate::film::course::CourseFilter;
+use crate::film::false_color::LightScale;
+use crate::integrator::{Integrator, Method, Settings, Setup};
+use crate::world::World;
+use durer_scene::camera::RayCone;
+use durer_scene::sampler::Sampler;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use std::sync::atomic::AtomicBool;
+
+/// Where in a pixel rays go, and how they become a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Sampling {
+    /// One ray through each pixel's centre.
+    Center,
+    /// Sobol points, spread by the filter: no sample counts for another pixel.
+    Filtered {
+        /// Samples a pixel.
+        samples: u32,
+        /// Reconstruction filter.
+        filter: Filter,
+    },
+    /// Fall 2004: samples are kept, and weighted by their offset from the pixel's centre.
+    Course2004 {
+        /// Where samples lie.
+        sampler: Sampler,
+        /// Samples a pixel.
+        samples: u32,
+        /// How they are weighted; without, a pixel is the mean of its own.
+        filter: Option<CourseFilter>,
+    },
+    /// Fall 2012: three by three sub-pixels, moved at random, blurred by five taps.
+    Course2012 {
+        /// Whether there are sub-pixels.
+        jitter: bool,
+        /// Whether the picture is blurred.
+        blur: bool,
+    },
+}
+
+impl Sampling {
+    /// Samples that a pixel gets in the end. Where samples count for other pixels too, it is one:
+    /// the finished value.
+    pub fn samples(self) -> u32 {
+        match self {
+            Sampling::Filtered { samples, .. } => samples.max(1),
+            Sampling::Course2004 { sampler, samples, filter: None } => sampler.round_up(samples),
+            _ => 1,
+        }
+    }
+
+    /// The same with another number of samples a pixel, where there is one.
+    pub fn with_samples(self, number: u32) -> Self {
+        match self {
+            Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
+            Sampling::Course2004 { sampler, filter, .. } => Sampling::Course2004 { sampler, samples: number, filter },
+            other => other,
+        }
+    }
+
+    /// Whether a pixel is made of samples of its own alone.
+    pub fn is_local(self) -> bool {
+        !matches!(self, Sampling::Course2004 { filter: Some(_), .. } | Sampling::Course2012 { .. })
+    }
+}
+
+/// What the picture is. Plain data: nothing in here depends on the machine.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Job {
+    /// Columns of the whole picture.
+    pub width: u32,
+    /// Rows of the whole picture.
+    pub height: u32,
+    /// The part that is made; `None`: all.
+    pub crop: Option<Crop>,
+    /// Decides the random numbers.
+    pub seed: u64,
+    /// Rays of the colour picture.
+    pub sampling: Sampling,
+    /// Where the estimated error falls below this, no more samples are taken: see
+    /// [`passes::error`]. `None`: nowhere.
+    pub noise: Option<f32>,
+    /// Whether the samples are so many a pixel on average: more where the picture is noisier, by
+    /// what a quarter of them tell.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub adaptive: bool,
+    /// What computes the light.
+    #[serde(default)]
+    pub method: Method,
+    /// What light does.
+    pub settings: Settings,
+    /// Whether colour is wanted.
+    pub color: bool,
+    /// Which other pictures are wanted.
+    #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
+    pub aovs: Vec<&'static Aov>,
+    /// Depths shown as black and white; `None`: least and greatest of the picture.
+    pub depth_range: Option<(f32, f32)>,
+    /// What the false colours of light stand for; `None`: 0 and what nearly all of the picture
+    /// stays below.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub light_scale: Option<LightScale>,
+}
+
+fn aov_names<S: Serializer>(aovs: &[&'static Aov], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(aovs.iter().map(|aov| aov.name))
+}
+
+fn named_aovs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<&'static Aov>, D::Error> {
+    let unknown = |name: &str| serde::de::Error::custom(format!("there is no picture `{name}`"));
+    let names = Vec::<String>::deserialize(deserializer)?;
+    names.iter().map(|name| Aov::from_name(name).ok_or_else(|| unknown(name))).collect()
+}
+
+impl Default for Job {
+    /// 512 x 512 pixels of colour, one ray each, with shadows and eight bounces.
+    fn default() -> Self {
+        let settings = Settings {
+            bounces: 8,
+            shadows: true,
+            shade_back: true,
+            transparent_shadows: false,
+            reflection: true,
+            refraction: true,
+            least_weight: 1.0 / 256.0,
+        };
+        Job {
+            width: 512,
+            height: 512,
+            crop: None,
+            seed: 0,
+            sampling: Sampling::Center,
+            noise: None,
+            adaptive: false,
+            method: Method::default(),
+            settings,
+            color: true,
+            aovs: Vec::new(),
+            depth_range: None,
+            light_scale: None,
+        }
+    }
+}
+
+impl Job {
+    /// The part that is made.
+    pub fn window(&self) -> Crop {
+        self.crop.unwrap_or(self.whole())
+    }
+
+    /// The whole picture.
+    pub fn whole(&self) -> Crop {
+        Crop { left: 0, top: 0, width: self.width, height: self.height }
+    }
+
+    /// The names of its pictures, in their order.
+    pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
+        self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
+    }
+
+    /// What computes the light, over a world. Once `cancel` is set, no more rays are traced, and
+    /// what comes out means nothing.
+    pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
+        let raster = raster(world, self.width, self.height);
+        let area = raster.pixel_area() / self.sampling.samples() as f32;
+        let cone = RayCone::new(world.camera(), world.camera_frame(), area);
+        self.method.over(Setup { world, settings: self.settings, cone, seed: self.seed, cancel })
+    }
+
+    /// Whether the colour's samples are wanted, as colour or as something else.
+    pub fn wants_samples(&self) -> bool {
+        self.color || self.aovs.iter().any(|aov| matches!(aov.value, Value::Sums(_)))
+    }
+
+    /// The pictures that come from rays through the pixels' centres.
+    pub fn ray_aovs(
+        &self,
+    ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> durer_scene::math::Vec3)> {
+        self.aovs.iter().filter_map(|aov| match aov.value {
+            Value::Ray(value) => Some((*aov, value)),
+            Value::Sums(_) => None,
+        })
+    }
+
+    /// The part for which rays go through the pixels' centres: all where a picture of a part
+    /// depends on the whole.
+    pub fn ray_window(&self) -> Crop {
+        if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
+    }
+
+    /// Whether it stops a block of pixels before its last sample.
+    pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
+        self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
+    }
+}

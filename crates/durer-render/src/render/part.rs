@@ -1,0 +1,377 @@
+//! What is made of a picture so far: exact sums, and which work is in them.
+
+use super::allocation::{self, count, half, pilot};
+use super::blocks::{Blocks, Shard, ShardBy};
+use super::error::RenderError;
+use super::passes::{self, Passes};
+use super::{Crop, Job, Sampling};
+use crate::film::aov::DisplayRules;
+use crate::film::{Film, Packed, Rejected};
+use crate::world::World;
+use durer_image::checked_count;
+use durer_scene::math::Vec3;
+use durer_scene::source::Digest;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// A picture in the making, or a shard of one: rendered from time to time, saved, read again,
+/// merged with others.
+///
+/// It is locked within, so it can be rendered by one thread while another looks at it.
+#[derive(Debug)]
+pub struct PartialRender {
+    pub(super) job: Job,
+    pub(super) shard: Shard,
+    pub(super) scene: Digest,
+    pub(super) look: DisplayRules,
+    /// The blocks of the colour's window, and of that of the rays through centres.
+    pub(super) blocks: Blocks,
+    pub(super) ray_blocks: Blocks,
+    state: Mutex<State>,
+    /// How often it was locked.
+    #[cfg(test)]
+    pub(super) locked: std::sync::atomic::AtomicU64,
+}
+
+/// What was made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct State {
+    /// The samples of each block of the colour's window.
+    pub(super) samples: Vec<BlockSamples>,
+    /// What the rays through the centres of each block's pixels saw, if they were traced.
+    pub(super) rays: Vec<Option<Box<BlockAovs>>>,
+}
+
+/// The samples of one block.
+#[derive(Clone, Debug, Default)]
+pub(super) struct BlockSamples {
+    /// The first sample of each pixel that is in the film, and one past the last.
+    pub(super) from: u32,
+    pub(super) to: u32,
+    /// Rays traced for them.
+    pub(super) rays: u64,
+    /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as
+    /// a count takes.
+    pub(super) film: Option<Arc<Packed>>,
+    /// The variances of its pixels' means, once they have the samples of a pilot.
+    pub(super) variances: Option<Arc<[f32]>>,
+    /// How many samples each of its pixels gets, where that was decided: of those, `to` and what
+    /// else says how many there are is the average of the whole picture.
+    pub(super) targets: Option<Arc<[u32]>>,
+}
+
+impl BlockSamples {
+    /// How many samples one of its pixels has when there are `end`, of those of a job.
+    pub(super) fn count(&self, job: &Job, pixel: usize, end: u32) -> u32 {
+        self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
+    }
+
+    /// How many all of its pixels have then together, without those before its first.
+    pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
+        match &self.targets {
+            None => pixels * u64::from(end - self.from),
+            Some(targets) => (0..targets.len()).map(|pixel| u64::from(self.count(job, pixel, end))).sum(),
+        }
+    }
+
+    /// The sums of a block of these pixels, if there are any.
+    pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
+        self.film.as_ref().map(|film| film.film([left, top, width, height]))
+    }
+}
+
+/// What the rays through the centres of a block's pixels saw.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct BlockAovs {
+    /// What each pixel's ray found.
+    pub(super) found: Vec<PrimaryHit>,
+    /// The values of each picture, one picture after the other.
+    pub(super) values: Vec<Vec3>,
+    /// Rays traced for them.
+    pub(super) rays: u64,
+}
+
+/// What a ray through a pixel's centre found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(super) enum PrimaryHit {
+    /// The camera has no ray there.
+    Blind,
+    /// Nothing was hit.
+    Nothing,
+    /// Something was hit.
+    Hit,
+}
+
+/// What was counted while a picture was made; the same however it was made.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Samples in the picture.
+    pub samples: u64,
+    /// Rays traced for the picture, secondary rays with them.
+    pub rays: u64,
+    /// Samples that were not finite, and left out.
+    pub rejected: u64,
+    /// The first of those.
+    pub first_rejected: Vec<Rejected>,
+}
+
+impl Statistics {
+    /// Counts what another part of the same picture counted.
+    pub(super) fn add(&mut self, other: Statistics) {
+        self.samples += other.samples;
+        self.rays += other.rays;
+        self.rejected = self.rejected.saturating_add(other.rejected);
+        self.first_rejected.extend(other.first_rejected);
+        self.first_rejected.sort();
+        self.first_rejected.truncate(16);
+    }
+}
+
+impl PartialRender {
+    /// A part of a picture of a world of which nothing is made yet.
+    ///
+    /// # Errors
+    /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
+    /// that cannot be split so.
+    pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
+        PartialRender::empty(job.clone(), shard, world.digest(), DisplayRules::of(world))
+    }
+
+    pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {
+        let window = job.window();
+        let inside =
+            |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);
+        if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
+            return Err(RenderError::CropOutside(job.width, job.height));
+        }
+        // Refuses what is too large before anything is computed. Of a larger picture a part may be
+        // made.
+        checked_count(window.width, window.height)?;
+        let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
+        check_shard(&job, shard, blocks.count())?;
+        if job.adaptive
+            && let Some(why) = allocation::refusal(&job, shard == Shard::WHOLE)
+        {
+            return Err(RenderError::Adaptive(why));
+        }
+        let from = shard.range(job.sampling.samples()).0;
+        let count = if job.wants_samples() { blocks.count() } else { 0 };
+        let sampled = BlockSamples { from, to: from, ..BlockSamples::default() };
+        let rays = if job.ray_aovs().next().is_some() { vec![None; ray_blocks.count()] } else { Vec::new() };
+        let state = Mutex::new(State { samples: vec![sampled; count], rays });
+        Ok(PartialRender {
+            job,
+            shard,
+            scene,
+            look,
+            blocks,
+            ray_blocks,
+            state,
+            #[cfg(test)]
+            locked: Default::default(),
+        })
+    }
+
+    /// What decides the picture.
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// Which part of the work it is.
+    pub fn shard(&self) -> Shard {
+        self.shard
+    }
+
+    /// The hash of the scene.
+    pub fn scene(&self) -> Digest {
+        self.scene
+    }
+
+    /// The hash of all that decides the picture: scene, job and the version of this program.
+    pub fn identity(&self) -> Digest {
+        identity(self.scene, &job_text(&self.job))
+    }
+
+    pub(super) fn state(&self) -> MutexGuard<'_, State> {
+        #[cfg(test)]
+        self.locked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether a block has all samples that it will get, given the size of the samples' weights.
+    pub(super) fn is_done(&self, index: usize, block: &BlockSamples, gain: f32) -> bool {
+        let end = self.shard.range(self.job.sampling.samples()).1;
+        let rect = self.blocks.rect(index);
+        let enough = |film: Film| self.job.is_done(&film, rect, block.to, gain);
+        block.to >= end || self.job.noise.is_some() && block.film(rect).is_some_and(enough)
+    }
+
+    /// The size of the samples' weights.
+    pub(super) fn gain(&self) -> f32 {
+        match self.job.sampling {
+            Sampling::Filtered { filter, .. } => filter.sampler().gain(),
+            _ => 1.0,
+        }
+    }
+
+    /// How much work there is in all, and how much of it is done: samples and rays through centres.
+    /// With a rule that stops earlier, it may end before all is done.
+    pub fn work(&self) -> (u64, u64) {
+        let range = self.shard.range(self.job.sampling.samples());
+        let (mut all, mut done) = (0, 0);
+        let state = self.state();
+        for (index, block) in state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index)) {
+            let pixels = self.blocks.rect(index).pixels();
+            all += block.total(&self.job, pixels, range.1);
+            done += block.total(&self.job, pixels, block.to);
+        }
+        for (index, block) in state.rays.iter().enumerate().filter(|(index, _)| self.shard.has_rays(*index)) {
+            let pixels = self.ray_blocks.rect(index).pixels();
+            all += pixels;
+            done += if block.is_some() { pixels } else { 0 };
+        }
+        (all, done)
+    }
+
+    /// Whether every pixel of its picture has something.
+    pub fn is_whole(&self) -> bool {
+        let state = self.state();
+        state.samples.iter().all(|block| block.film.is_some()) && state.rays.iter().all(Option::is_some)
+    }
+
+    /// Whether nothing of its work is left.
+    pub fn is_finished(&self) -> bool {
+        let (gain, state) = (self.gain(), self.state());
+        let mut samples = state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index));
+        let mut rays = state.rays.iter().enumerate().filter(|(index, _)| self.shard.has_rays(*index));
+        samples.all(|(index, block)| self.is_done(index, block, gain)) && rays.all(|(_, block)| block.is_some())
+    }
+
+    /// What was counted.
+    pub fn statistics(&self) -> Statistics {
+        let state = self.state();
+        let mut statistics = Statistics::default();
+        for (index, block) in state.samples.iter().enumerate() {
+            let taken = block.total(&self.job, self.blocks.rect(index).pixels(), block.to);
+            statistics.rays += block.rays;
+            let Some(film) = &block.film else { continue };
+            let Some(film) = film.with_rejected() else {
+                statistics.samples += taken;
+                continue;
+            };
+            statistics.samples += taken.saturating_sub(film.rejected());
+            statistics.rejected = statistics.rejected.saturating_add(film.rejected());
+            statistics.first_rejected.extend(film.first_rejected());
+        }
+        statistics.rays += state.rays.iter().flatten().map(|block| block.rays).sum::<u64>();
+        statistics.first_rejected.sort();
+        statistics.first_rejected.truncate(16);
+        statistics
+    }
+
+    /// The hash of the film: of all sums and values of its window. The same picture has the same
+    /// hash, however it was made; what it cost is not among it.
+    pub fn hash(&self) -> Digest {
+        let mut hasher = blake3::Hasher::new();
+        self.hash_into(&mut hasher);
+        Digest(hasher.finalize().into())
+    }
+
+    /// Goes on with the hash of a picture of which this is the next part, whole rows of blocks.
+    pub(super) fn hash_into(&self, hasher: &mut blake3::Hasher) {
+        let (state, mut bytes) = (self.state(), Vec::new());
+        for (index, block) in state.samples.iter().enumerate() {
+            let rect = self.blocks.rect(index);
+            block.film(rect).unwrap_or_else(|| film_of(rect)).write(&mut bytes);
+            hasher.update(&bytes);
+            bytes.clear();
+        }
+        // The work depends on the structure that finds what rays hit.
+        let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
+        for block in state.rays.iter().flatten() {
+            let values = block.values.chunks(block.found.len()).zip(&names).filter(|(_, name)| **name != "cost");
+            for value in values.flat_map(|(values, _)| values).flat_map(|value| value.to_array()) {
+                hasher.update(&value.to_bits().to_le_bytes());
+            }
+        }
+    }
+
+    /// How many samples a pixel's sums will have, as they are kept: where samples count for several
+    /// pixels, finished ones.
+    pub(super) fn packed_samples(&self) -> u32 {
+        if self.job.sampling.is_local() { self.job.sampling.samples() } else { 1 }
+    }
+
+    /// Bytes of memory that it takes when all is made, with the pictures made of it.
+    pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
+        let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
+        let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
+        let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
+        // How many samples each pixel gets, and what that follows from.
+        let sums = if job.adaptive { sums + 24 } else { sums };
+        let values = 12 * job.ray_aovs().count() as u64 + 1;
+        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both
+        // values and colours.
+        let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
+        let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
+        (kept / share).saturating_add(pixels.saturating_mul(pictures))
+    }
+}
+
+/// The job as text: what is hashed, saved, and told in pictures.
+pub(super) fn job_text(job: &Job) -> String {
+    serde_json::to_string(job).unwrap_or_default()
+}
+
+pub(super) fn identity(scene: Digest, job: &str) -> Digest {
+    Digest::of(format!("durer {} {scene} {job}", env!("CARGO_PKG_VERSION")).as_bytes())
+}
+
+fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError> {
+    let refuse = |why: String| Err(RenderError::Shard(why));
+    let samples = job.sampling.samples();
+    if !(1..=shard.count).contains(&shard.index) {
+        return refuse(format!("there is no shard {shard}"));
+    }
+    match shard.by {
+        ShardBy::Tiles if shard.count as usize > blocks => {
+            refuse(format!("the picture has only {blocks} blocks of 8 x 8 pixels, too few for {} shards", shard.count))
+        }
+        ShardBy::Tiles => Ok(()),
+        ShardBy::Samples if !job.sampling.is_local() => {
+            refuse("samples of this kind count for several pixels: such a picture is split by tiles only".into())
+        }
+        ShardBy::Samples if job.noise.is_some() => {
+            refuse("where noise decides, it is by all samples of a pixel: such a picture is split by tiles only".into())
+        }
+        ShardBy::Samples if shard.count > samples => {
+            refuse(format!("there are only {samples} samples a pixel, too few for {} shards", shard.count))
+        }
+        ShardBy::Samples => Ok(()),
+    }
+}
+
+/// A black film of a part of a picture.
+pub(super) fn film_of(part: Crop) -> Film {
+    Film::window(part.left, part.top, part.width, part.height)
+}
+
+/// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
+/// so each is a pass.
+pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32>> {
+    let samples = job.sampling.samples();
+    let (from, to) = shard.range(samples);
+    let singly = job.method.prepares() && job.sampling.is_local();
+    let decides = job.adaptive.then(|| [half(samples), pilot(samples)]);
+    let ends: Box<dyn Iterator<Item = u32>> = match decides {
+        _ if singly => Box::new(1..=samples),
+        Some([half, pilot]) => {
+            let rest = passes::ends(samples).filter(move |&end| end > pilot);
+            Box::new(passes::ends(half).chain([pilot]).chain(rest))
+        }
+        None => Box::new(passes::ends(samples)),
+    };
+    let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
+    // Where noise decides, it does so at the end of each.
+    Passes::new(ends, from, !singly && job.noise.is_none(), decides.unwrap_or_default())
+}

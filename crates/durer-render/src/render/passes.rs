@@ -1,0 +1,132 @@
+//! In which order samples are taken, and when there are enough.
+
+use super::crop::Crop;
+use crate::film::{Film, luminance_of};
+use std::iter::Peekable;
+use std::time::{Duration, Instant};
+
+/// Samples before which nothing is decided about a block.
+pub const LEAST: u32 = 16;
+
+/// The numbers of samples that every pixel has after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
+/// and so on, up to all.
+///
+/// They depend on nothing but the number of samples, so decisions at the ends of passes are the
+/// same for all ways of making the picture.
+pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
+    let powers = (0..32).flat_map(|k| {
+        let power = 1_u32 << k;
+        // Halfway to the next power of two, where steps are large.
+        [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
+    });
+    powers.flatten().take_while(move |&end| end < samples).chain([samples])
+}
+
+/// Passes one after the other. If it changes nothing what they are, those that would end before
+/// somebody could see it are joined: a pass packs and unpacks every block.
+pub struct Passes<I: Iterator<Item = u32>> {
+    ends: Peekable<I>,
+    joins: bool,
+    /// Ends that are kept, for something hangs on them.
+    kept: [u32; 2],
+    /// Where the pass that was given last ends, how many samples it has, and when it began.
+    last: (u32, u32, Instant),
+}
+
+/// Passes that end sooner are joined.
+const SOON: Duration = Duration::from_millis(100);
+
+impl<I: Iterator<Item = u32>> Passes<I> {
+    /// By their ends, the first from some sample on; none goes on beyond an end that is
+    /// kept.
+    pub fn new(ends: I, from: u32, joins: bool, kept: [u32; 2]) -> Self {
+        Passes { ends: ends.peekable(), joins, kept, last: (from, 0, Instant::now()) }
+    }
+}
+
+impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
+    type Item = u32;
+
+    fn next(&mut self) -> Option<u32> {
+        let (done, samples, began) = self.last;
+        let now = Instant::now();
+        let mut end = self.ends.next()?;
+        if self.joins && samples > 0 {
+            let each = (now - began) / samples;
+            let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
+            while !self.kept.contains(&end)
+                && let Some(next) = self.ends.next_if(is_soon)
+            {
+                end = next;
+            }
+        }
+        self.last = (end, end - done, now);
+        Some(end)
+    }
+}
+
+/// The estimated error of a block as it is seen: the root of the mean square over its pixels of the
+/// standard error of sqrt(Y).
+///
+/// Y is a pixel's luminance, at least 1/256, and 1 is white. The error of sqrt(Y), which is about
+/// what the eye sees, is that of Y divided by 2 sqrt(Y), as in Dammertz et al., *A Hierarchical
+/// Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG 2010. All is computed
+/// from exact sums in a fixed order.
+pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
+    let square = |(x, y)| {
+        let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
+        film.variance(x, y, gain) / (4.0 * luminance)
+    };
+    (rect.places().map(square).sum::<f64>() / rect.pixels() as f64).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use durer_scene::math::Vec3;
+    use durer_scene::sampler::random_2d;
+
+    #[test]
+    fn passes_end_where_they_should() {
+        let ends = |n| ends(n).collect::<Vec<_>>();
+        assert_eq!(ends(1), [1]);
+        assert_eq!(ends(5), [1, 2, 4, 5]);
+        assert_eq!(ends(100), [1, 2, 4, 8, 16, 24, 32, 48, 64, 96, 100]);
+        assert!(ends(u32::MAX).windows(2).all(|w| w[0] < w[1]));
+    }
+
+    #[test]
+    fn short_passes_are_joined_unless_they_decide_something() {
+        let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
+        assert_eq!(of(false), ends(100).collect::<Vec<_>>());
+        // Nothing is done in them.
+        assert_eq!(of(true), [1, 100]);
+        assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
+        let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
+        let mut next = || {
+            std::thread::sleep(SOON);
+            slow.next()
+        };
+        assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
+    }
+
+    /// The estimate against the truth: the mean of n uniform numbers has the variance 1 / (12 n).
+    #[test]
+    fn the_error_is_that_of_the_mean() {
+        let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
+        let mut film = Film::new(8, 8);
+        let n = 64;
+        for (x, y) in rect.places() {
+            (0..n).for_each(|s| film.add(x, y, s, Vec3::splat(random_2d(1, x, y, s, 0).x), 1.0));
+        }
+        let (estimate, truth) = (error(&film, rect, 1.0), (1.0 / (12.0 * f64::from(n)) / (4.0 * 0.5)).sqrt());
+        // 64 estimates of 63 degrees of freedom each: a standard error of about 1 %.
+        assert!((estimate / truth - 1.0).abs() < 0.05, "{estimate} {truth}");
+        let mut flat = Film::new(8, 8);
+        for (x, y) in rect.places() {
+            (0..9).for_each(|s| flat.add(x, y, s, Vec3::splat(0.3), 1.0));
+        }
+        assert!(error(&flat, rect, 1.0) < 1e-4);
+        assert_eq!(error(&Film::new(8, 8), rect, 1.0), f64::INFINITY);
+    }
+}

@@ -1,0 +1,263 @@
+//! From sums and values to pictures.
+
+use super::error::RenderError;
+use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
+use super::{BandsError, Blocks, Crop};
+use crate::film::Film;
+use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
+use crate::film::false_color::LightScale;
+use durer_image::{Display as ImageDisplay, Format, Image, Layer, Strip};
+use durer_scene::dialect::Compat;
+use durer_scene::math::{Aabb, Color, Vec3};
+use rayon::prelude::*;
+use std::io::Write;
+use std::ops::Range;
+use std::sync::Arc;
+
+/// So many rows of blocks for each thread have their colours in memory at once where they are
+/// offered in strips.
+const AT_ONCE: usize = 4;
+
+/// Pictures and what was counted on the way.
+#[derive(Debug)]
+pub struct Rendered {
+    /// Colour first, if wanted; then the others in the job's order.
+    ///
+    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight
+    /// bits.
+    pub layers: Vec<Layer>,
+    /// The same as pictures between 0 and 1.
+    pub pictures: Vec<Layer>,
+    /// What was counted.
+    pub statistics: Statistics,
+    /// What files can tell of the pictures beside them: names and texts.
+    pub attributes: Vec<(&'static str, String)>,
+}
+
+impl PartialRender {
+    /// The pictures of what is made so far. Pixels of which nothing is made are black.
+    ///
+    /// # Errors
+    /// [`RenderError::Image`].
+    pub fn pictures(&self) -> Result<Rendered, RenderError> {
+        let statistics = self.statistics();
+        let (job, window) = (&self.job, self.job.window());
+        let mut rendered =
+            Rendered { layers: Vec::new(), pictures: Vec::new(), attributes: self.attributes(&statistics), statistics };
+        let state = self.state();
+        if job.color {
+            let (colors, coverage) = self.colors(&state);
+            let image = Image::from_pixels(window.width, window.height, colors)?;
+            let layer = Layer::color("color", image).with_coverage(coverage);
+            rendered.layers.push(layer.clone());
+            rendered.pictures.push(layer);
+        }
+        let mut rays = 0..;
+        for aov in &job.aovs {
+            let values = match aov.value {
+                Value::Ray(_) => self.traced(&state, rays.next().unwrap_or_default()),
+                Value::Sums(value) => self.summed(&state, value),
+            };
+            let (pictures, scale) = self.shown(aov, &values);
+            let (values, found): (Vec<Vec3>, Vec<PrimaryHit>) = values.into_iter().unzip();
+            let coverage: Vec<f32> =
+                found.iter().map(|found| f32::from(u8::from(*found != PrimaryHit::Blind))).collect();
+            let from = if matches!(aov.value, Value::Ray(_)) { job.ray_window() } else { window };
+            let coverage = cut(coverage, from, window);
+            let layer = |pixels| -> Result<Layer, RenderError> {
+                let image = Image::from_pixels(window.width, window.height, cut(pixels, from, window))?;
+                Ok(Layer::data(aov.name, image).with_coverage(coverage.clone()))
+            };
+            rendered.layers.push(layer(values)?);
+            let mut shown = layer(pictures)?;
+            if let Some(unit) = aov.unit {
+                let width = window.width as usize;
+                scale.draw(&mut Arc::make_mut(&mut shown.image).pixels, width, unit);
+            }
+            rendered.pictures.push(shown);
+        }
+        Ok(rendered)
+    }
+
+    /// What files can tell of the picture: nothing that depends on how it was made.
+    fn attributes(&self, statistics: &Statistics) -> Vec<(&'static str, String)> {
+        let Statistics { samples, rays, rejected, .. } = statistics;
+        vec![
+            ("software", format!("durer {}", env!("CARGO_PKG_VERSION"))),
+            ("scene", self.scene.to_string()),
+            ("job", job_text(&self.job)),
+            ("statistics", format!("{{\"samples\":{samples},\"rays\":{rays},\"rejected\":{rejected}}}")),
+        ]
+    }
+
+    /// Writes the colours of what is made so far, row by row, for formats that are written so: no
+    /// picture of all of them is in memory. `look` is offered all of them, some rows at a time.
+    ///
+    /// # Errors
+    /// Those of the file, and [`BandsError::Image`] for formats that take all rows at once.
+    pub fn write_colors(
+        &self,
+        format: &Format,
+        display: ImageDisplay,
+        out: &mut dyn Write,
+        mut look: impl FnMut(&[Color]),
+    ) -> Result<(), BandsError> {
+        let (Crop { width, height, .. }, alpha) = (self.job.window(), !self.is_all_seen(&self.state()));
+        let strip = Strip { width, height, alpha, display };
+        let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
+        format.write_rows(strip, out, |rows| {
+            self.try_strips(bottom_up, |pixels, coverage| {
+                look(pixels);
+                Ok(rows.rows(pixels, coverage)?)
+            })
+        })
+    }
+
+    fn is_all_seen(&self, state: &State) -> bool {
+        state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()))
+    }
+
+    /// Offers the colours of what is made so far, some whole rows at a time, with the share of each
+    /// pixel that is seen (empty where all is); the lowest rows first if `bottom_up`. What is not
+    /// made yet is transparent.
+    ///
+    /// # Errors
+    /// The first of `strip`.
+    pub(super) fn try_strips<E>(
+        &self,
+        bottom_up: bool,
+        mut strip: impl FnMut(&[Color], &[f32]) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let (state, rows): (_, Vec<_>) = (self.state(), self.blocks.rows().collect());
+        let is_seen = self.is_all_seen(&state);
+        let mut offer = |rows: &[Range<usize>]| {
+            let (colors, coverage) = self.colors_of(&state, rows, is_seen);
+            strip(&colors, &coverage)
+        };
+        let mut parts = rows.chunks(AT_ONCE * rayon::current_num_threads());
+        if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
+    }
+
+    /// Colours and coverage; what is not made yet is transparent. Where all is seen, no coverage is
+    /// told.
+    fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
+        self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.is_all_seen(state))
+    }
+
+    /// The same of some rows of blocks.
+    fn colors_of(&self, state: &State, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
+        let window = self.job.window();
+        // A row of blocks is some whole rows of pixels.
+        let pixels = |blocks: &Range<usize>| (self.blocks.rect(blocks.start).height * window.width) as usize;
+        let count = rows.iter().map(pixels).sum();
+        let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; if is_seen { 0 } else { count }]);
+        let (mut free_colors, mut free_coverage) = (&mut colors[..], &mut coverage[..]);
+        let strips = rows.iter().filter_map(|blocks| {
+            let pixels = pixels(blocks);
+            let covered = if is_seen { 0 } else { pixels };
+            Some((blocks, free_colors.split_off_mut(..pixels)?, free_coverage.split_off_mut(..covered)?))
+        });
+        strips.collect::<Vec<_>>().into_par_iter().for_each(|(blocks, colors, coverage)| {
+            let strip = Crop { top: self.blocks.rect(blocks.start).top, ..window };
+            for index in blocks.clone() {
+                let Some(film) = &state.samples[index].film else { continue };
+                let mut places = self.blocks.rect(index).places();
+                film.means(|color, share| {
+                    let Some(at) = places.next().map(|(x, y)| place(strip, x, y)) else { return };
+                    colors[at] = color;
+                    if let Some(own) = coverage.get_mut(at) {
+                        *own = share;
+                    }
+                });
+            }
+        });
+        (colors, coverage)
+    }
+
+    /// The colours, the coverage, and the variance of the luminance of each pixel.
+    pub(super) fn colors_and_variance(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
+        let state = self.state();
+        let (colors, coverage) = self.colors(&state);
+        let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
+        // What has too few samples to know is as uncertain as it is bright.
+        let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
+            true => value.0.x,
+            false => color.max_element() * color.max_element(),
+        };
+        let variance = variance.iter().zip(&colors).map(sure).collect();
+        (colors, coverage, variance)
+    }
+
+    /// The values of a picture that comes from the samples.
+    fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
+        let (gain, lumens) = (self.gain(), self.look.lumens);
+        let none = value(&Sums { pixel: None, gain, lumens });
+        let mut pixels = vec![(none, PrimaryHit::Blind); self.job.window().pixels() as usize];
+        self.each_sampled(state, |index, film, x, y| {
+            let sums = Sums { pixel: Some((film, x, y)), gain, lumens };
+            pixels[index] = (value(&sums), PrimaryHit::Hit);
+        });
+        pixels
+    }
+
+    fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
+        let window = self.job.window();
+        for index in 0..state.samples.len() {
+            self.each_of_block(state, index, |film, x, y| visit(place(window, x, y), film, x, y));
+        }
+    }
+
+    /// The pixels of a block that has samples.
+    fn each_of_block(&self, state: &State, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
+        let rect = self.blocks.rect(index);
+        if let Some(film) = state.samples[index].film(rect) {
+            rect.places().for_each(|(x, y)| visit(&film, x, y));
+        }
+    }
+
+    /// The values of one of the pictures that come from rays.
+    fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, PrimaryHit)> {
+        let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
+        let mut pixels = vec![(Vec3::ZERO, PrimaryHit::Blind); window.pixels() as usize];
+        for (index, block) in state.rays.iter().enumerate() {
+            let Some(block) = block else { continue };
+            let values = &block.values[number * block.found.len()..];
+            for ((x, y), value) in blocks.rect(index).places().zip(values.iter().zip(&block.found)) {
+                pixels[place(window, x, y)] = (*value.0, *value.1);
+            }
+        }
+        pixels
+    }
+
+    /// Values as colours, and what false colours stand for.
+    fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
+        let light = aov.unit.map_or(&[][..], |_| values);
+        let display = Display {
+            look: self.look,
+            depth_range: self.job.depth_range,
+            light_scale: self.job.light_scale.unwrap_or_else(|| LightScale::over(light.iter().map(|value| value.0.x))),
+            hits: Aabb::around(values.iter().filter(|value| value.1 == PrimaryHit::Hit).map(|value| value.0)),
+            all: Aabb::around(values.iter().map(|value| value.0)),
+        };
+        let color = |&(value, found): &(Vec3, PrimaryHit)| match found {
+            PrimaryHit::Blind => Vec3::ZERO,
+            _ => (aov.picture)(value, found == PrimaryHit::Hit, &display),
+        };
+        let mut picture: Vec<Color> = values.iter().map(color).collect();
+        if aov.name == "normals" && self.look.has(Compat::StaleNormals) {
+            let hits: Vec<bool> = values.iter().map(|value| value.1 == PrimaryHit::Hit).collect();
+            fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
+        }
+        (picture, display.light_scale)
+    }
+}
+
+/// The index of a pixel in a window.
+pub(super) fn place(window: Crop, x: u32, y: u32) -> usize {
+    (y - window.top) as usize * window.width as usize + (x - window.left) as usize
+}
+
+/// The part of a picture that covers more.
+fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
+    if from == to { pixels } else { to.places().map(|(x, y)| pixels[place(from, x, y)]).collect() }
+}

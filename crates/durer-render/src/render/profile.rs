@@ -1,0 +1,114 @@
+//! What the time of a picture goes into: a few of its samples are taken again, and then their rays
+//! alone.
+
+use super::samples::Samples;
+use super::{Job, RenderError};
+use crate::integrator::trace::{RayKind, RayRecord, TermKind};
+use crate::integrator::{Integrate, TraceListener};
+use crate::world::World;
+use durer_bvh::{RayCount, TraversalCounter};
+use durer_scene::math::Ray;
+use durer_scene::sampler::SampleId;
+use std::hint::black_box;
+use std::sync::atomic::AtomicBool;
+use std::time::{Duration, Instant};
+
+/// What some samples of a picture took.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Profile {
+    /// How many they are.
+    pub samples: u64,
+    /// Their rays, by what sent them out; the last are shadow rays.
+    pub rays: [(&'static str, u64); 5],
+    /// The time of one thread for them.
+    pub time: Duration,
+    /// The part of it in which rays look for what they hit.
+    pub kernel: Duration,
+}
+
+/// Remembers the rays that an integrator tells of.
+#[derive(Default)]
+struct RayLog(Vec<(Option<RayKind>, RayRecord)>);
+
+impl TraversalCounter for RayLog {
+    const COUNTS_WORK: bool = false;
+}
+
+impl TraceListener for RayLog {
+    fn begin(&mut self, what: impl FnOnce() -> TermKind) {
+        match what() {
+            TermKind::Ray { from, ray, .. } => self.0.push((Some(from), ray)),
+            TermKind::Light { shadow: Some(shadow), .. } | TermKind::Direct { shadow: Some(shadow), .. } => {
+                self.0.push((None, shadow.ray));
+            }
+            _ => {}
+        }
+    }
+}
+
+/// Takes the first sample of up to `most` pixels of a job, evenly spread, twice: as a whole, and
+/// their rays alone. `None` where samples count for several pixels.
+///
+/// # Errors
+/// [`RenderError`] for a job that is not possible.
+pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, RenderError> {
+    super::PartialRender::new(world, job, super::Shard::WHOLE)?;
+    if !job.sampling.is_local() || !job.color {
+        return Ok(None);
+    }
+    let never = AtomicBool::new(false);
+    let samples = Samples::without_habits(world, job, &never);
+    samples.integrator.prepare(0);
+    // A step that has no factor in common with the width goes through all columns.
+    let step = (job.window().pixels() / most.max(1)).max(1) | 1;
+    let pixels: Vec<(u32, u32)> = job.window().places().step_by(step as usize).collect();
+    let mut log = RayLog::default();
+    for &(x, y) in &pixels {
+        if let Some(ray) = samples.aim(x, y, 0).ray {
+            samples.integrator.radiance(&ray, SampleId::new(job.seed, (x, y), 0), &mut log);
+        }
+    }
+    let rays: Vec<(bool, Ray)> = log
+        .0
+        .iter()
+        .map(|&(from, RayRecord { origin, dir, t_min, t_max })| (from.is_none(), Ray { origin, dir, t_min, t_max }))
+        .collect();
+    let whole = || {
+        let mut count = RayCount::default();
+        for &(x, y) in &pixels {
+            black_box(samples.sample(x, y, 0, &mut count));
+        }
+    };
+    let alone = || {
+        for (any, ray) in &rays {
+            if *any {
+                black_box(world.occluded(ray, &mut ()));
+            } else {
+                black_box(world.closest(ray, &mut ()));
+            }
+        }
+    };
+    let count = |kind: Option<RayKind>| log.0.iter().filter(|(from, _)| *from == kind).count() as u64;
+    Ok(Some(Profile {
+        samples: pixels.len() as u64,
+        rays: [
+            ("camera", count(Some(RayKind::Camera))),
+            ("mirrored", count(Some(RayKind::Reflected))),
+            ("transmitted", count(Some(RayKind::Transmitted))),
+            ("scattered", count(Some(RayKind::Scattered))),
+            ("shadow", count(None)),
+        ],
+        time: fastest(whole),
+        kernel: fastest(alone),
+    }))
+}
+
+/// The least time of three: what disturbs adds to it.
+fn fastest(work: impl Fn()) -> Duration {
+    let time = || {
+        let start = Instant::now();
+        work();
+        start.elapsed()
+    };
+    (0..3).map(|_| time()).min().unwrap_or_default()
+}

@@ -1,0 +1,66 @@
+//! The values that come from one ray through each pixel's centre.
+
+use super::part::{BlockAovs, PrimaryHit};
+use super::samples::{SampleCursor, Samples, Stopped};
+use super::{Crop, Job, center_ray, raster};
+use crate::film::aov::{AovInput, brightness};
+use crate::integrator::Path;
+use crate::world::World;
+use durer_bvh::{RayCount, TraversalStats};
+use durer_scene::math::Vec3;
+use durer_scene::sampler::SampleId;
+
+/// Traces the rays of a block.
+pub(super) fn trace(
+    world: &World,
+    job: &Job,
+    samples: &Samples,
+    rect: Crop,
+    at: &SampleCursor,
+) -> Result<BlockAovs, Stopped> {
+    let raster = raster(world, job.width, job.height);
+    let wanted = |name: &str| job.aovs.iter().any(|aov| aov.name == name);
+    let (cost_wanted, illuminance_wanted) = (wanted("cost"), wanted("illuminance"));
+    let path = Path::new(world, job.settings, job.method.transport().unwrap_or_default());
+    let mut rays = RayCount::default();
+    let mut seen = Vec::with_capacity(rect.pixels() as usize);
+    for (x, y) in rect.places() {
+        samples.check()?;
+        at.set((x, y, None));
+        let Some(ray) = center_ray(world, &raster, (x, y)) else {
+            seen.push(AovInput::NOTHING);
+            continue;
+        };
+        let hit = world.intersect(&ray, &mut rays);
+        let mut counts = TraversalStats::default();
+        if cost_wanted {
+            samples.whitted.radiance(&ray, &mut counts);
+        }
+        let albedo = hit.map_or(Vec3::ZERO, |at| samples.whitted.albedo(&at));
+        let illuminance = match &hit {
+            Some(at) if illuminance_wanted => {
+                // On the side that is seen.
+                let side = if at.inside() { -at.surface.n_shade } else { at.surface.n_shade };
+                let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
+                for sample in 0..count {
+                    samples.check()?;
+                    sum += path.irradiance_on(&at.surface, side, SampleId::new(job.seed, (x, y), sample), &mut rays);
+                }
+                (brightness(sum, world.lumens()) / f64::from(count)) as f32
+            }
+            _ => 0.0,
+        };
+        rays.0 += counts.rays;
+        seen.push(AovInput { covered: true, hit, albedo, counts, illuminance });
+    }
+    samples.check()?;
+    // What is no number is shown as nothing.
+    let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
+    let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value).map(finite)).collect();
+    let found = |seen: &AovInput| match (seen.covered, seen.hit.is_some()) {
+        (false, _) => PrimaryHit::Blind,
+        (true, false) => PrimaryHit::Nothing,
+        (true, true) => PrimaryHit::Hit,
+    };
+    Ok(BlockAovs { found: seen.iter().map(found).collect(), values, rays: rays.0 })
+}

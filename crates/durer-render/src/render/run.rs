@@ -1,0 +1,392 @@
+//! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
+
+use super::allocation::{half, pilot, variances};
+use super::error::{Panicked, RenderError};
+use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
+use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
+use super::{BLOCK, Control, Job, Rendered, Shard, rays};
+use crate::film::Packed;
+use crate::film::aov::DisplayRules;
+use crate::integrator::Integrate;
+use crate::threads;
+use crate::world::World;
+use durer_bvh::RayCount;
+use rayon::prelude::*;
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
+use std::time::{Duration, Instant};
+
+/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are
+/// larger, as long as what is kept for one takes at most so many bytes.
+const TILE: u32 = 16;
+const TILE_WITH_BORDER: u32 = 64;
+const MAX_BYTES: u64 = 64 << 20;
+
+fn usual_tile(job: &Job) -> u32 {
+    if job.sampling.is_local() {
+        return TILE;
+    }
+    let sides = std::iter::successors(Some(TILE_WITH_BORDER), |side| Some(side / 2)).take_while(|&side| side > BLOCK);
+    sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
+}
+
+/// How often it is looked whether to stop.
+const LOOK: Duration = Duration::from_millis(5);
+
+/// Why the work ended.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum RenderOutcome {
+    /// All is made.
+    Finished,
+    /// The caller wanted it.
+    Cancelled,
+    /// Its time was over.
+    OutOfTime,
+    /// A thread panicked.
+    Panicked(Panicked),
+}
+
+/// What the caller may want to do with the part that is being made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RenderEvent {
+    /// Every pixel has the samples of a pass.
+    PassDone,
+    /// It was not saved for as long as [`Control::save_every`] says.
+    SaveDue,
+}
+
+/// Makes the job's pictures of a world.
+///
+/// # Errors
+/// [`RenderError`]; nothing is kept then.
+pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
+    whole(world, job, control)?.pictures()
+}
+
+/// The same before it becomes pictures.
+pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
+    let part = PartialRender::new(world, job, Shard::WHOLE)?;
+    match part.render(world, control, &mut |_, _| {})? {
+        RenderOutcome::Finished | RenderOutcome::OutOfTime => Ok(part),
+        RenderOutcome::Cancelled => Err(RenderError::Cancelled),
+        RenderOutcome::Panicked(panicked) => Err(panicked.into()),
+    }
+}
+
+impl PartialRender {
+    /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
+    ///
+    /// `watch` is called in the calling thread at the end of each pass and when it is time to save,
+    /// while the work goes on. After it took some time, ends of passes are passed over until
+    /// ten times as long has gone by.
+    ///
+    /// # Errors
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`].
+    pub fn render(
+        &self,
+        world: &World,
+        control: &Control,
+        watch: &mut dyn FnMut(&PartialRender, RenderEvent),
+    ) -> Result<RenderOutcome, RenderError> {
+        self.render_to(world, control, watch, u32::MAX)
+    }
+
+    /// The same, up to so many samples a pixel.
+    pub(super) fn render_to(
+        &self,
+        world: &World,
+        control: &Control,
+        watch: &mut dyn FnMut(&PartialRender, RenderEvent),
+        last: u32,
+    ) -> Result<RenderOutcome, RenderError> {
+        if self.scene != world.digest() || self.look != DisplayRules::of(world) {
+            return Err(RenderError::OtherScene);
+        }
+        let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));
+        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        let kept = kept_bytes(&self.job, tile).saturating_mul(threads as u64);
+        let needed = PartialRender::bytes_needed(&self.job, self.shard).saturating_add(kept);
+        if let Some(allowed) = control.memory.filter(|&allowed| needed > allowed) {
+            return Err(RenderError::Memory { needed, allowed });
+        }
+        let (start, stop) = (Instant::now(), AtomicBool::new(control.cancel.load(Relaxed)));
+        let (all, done) = self.work();
+        if control.goes_on {
+            control.done.fetch_add(done, Relaxed);
+        } else {
+            control.all.store(all, Relaxed);
+            control.done.store(done, Relaxed);
+        }
+        let work = Work {
+            part: self,
+            world,
+            control,
+            samples: Samples::new(world, &self.job, &stop),
+            stop: &stop,
+            tile,
+            tiles: AtomicU64::new(0),
+            panicked: Mutex::new(None),
+        };
+        let whole = !self.job.sampling.is_local() || !self.job.wants_samples();
+        let mut clock =
+            Clock { start, last: start, pause: Duration::ZERO, control, stop: &stop, whole, out_of_time: false };
+        match pool {
+            Some(pool) => pool.in_place_scope(|scope| {
+                let (finished, passes) = mpsc::channel();
+                let work = &work;
+                scope.spawn(move |_| {
+                    work.rays(None);
+                    for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
+                        work.pass(end, None);
+                        // Nobody listens after the end.
+                        let _ = finished.send(());
+                    }
+                });
+                // The sender is dropped with the last pass.
+                loop {
+                    match passes.recv_timeout(LOOK) {
+                        Ok(()) => clock.passed(self, watch),
+                        Err(mpsc::RecvTimeoutError::Timeout) => clock.look(self, watch),
+                        Err(mpsc::RecvTimeoutError::Disconnected) => break,
+                    }
+                }
+            }),
+            // The calling thread does it all, and looks up between tiles.
+            None => {
+                work.rays(Some(&mut || clock.look(self, watch)));
+                for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
+                    work.pass(end, Some(&mut || clock.look(self, watch)));
+                    clock.passed(self, watch);
+                }
+            }
+        }
+        let panicked = work.panicked.lock().unwrap_or_else(PoisonError::into_inner).take();
+        Ok(match panicked {
+            Some(panicked) => RenderOutcome::Panicked(panicked),
+            None if !stop.load(Relaxed) => RenderOutcome::Finished,
+            None if clock.out_of_time => RenderOutcome::OutOfTime,
+            None => RenderOutcome::Cancelled,
+        })
+    }
+}
+
+/// What the calling thread does while others work: it stops them, and calls the watcher.
+struct Clock<'a> {
+    start: Instant,
+    /// When the watcher was last called, and how long it is not called for a pass.
+    last: Instant,
+    pause: Duration,
+    control: &'a Control,
+    stop: &'a AtomicBool,
+    /// Whether every pixel has a sample, or gets all of them at once: before, a picture would have
+    /// holes.
+    whole: bool,
+    out_of_time: bool,
+}
+
+impl Clock<'_> {
+    fn look(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
+        if self.control.cancel.load(Relaxed) {
+            self.stop.store(true, Relaxed);
+        }
+        let over = self.whole && self.control.time.is_some_and(|time| self.start.elapsed() >= time);
+        if over && !self.stop.swap(true, Relaxed) {
+            self.out_of_time = true;
+        }
+        if self.control.save_every.is_some_and(|every| self.last.elapsed() >= every) {
+            self.call(part, watch, RenderEvent::SaveDue);
+        }
+    }
+
+    fn passed(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent)) {
+        self.whole = true;
+        self.look(part, watch);
+        if self.last.elapsed() >= self.pause {
+            self.call(part, watch, RenderEvent::PassDone);
+        }
+    }
+
+    fn call(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent), moment: RenderEvent) {
+        // Who wants to stop does not want to wait for this; all is saved in the end.
+        if self.stop.load(Relaxed) {
+            return;
+        }
+        let before = Instant::now();
+        watch(part, moment);
+        self.last = Instant::now();
+        self.pause = 10 * (self.last - before);
+    }
+}
+
+/// What a thread that has no others does between tiles.
+type Alone<'a> = Option<&'a mut dyn FnMut()>;
+
+/// What the working threads share.
+struct Work<'a> {
+    part: &'a PartialRender,
+    world: &'a World,
+    control: &'a Control,
+    samples: Samples<'a>,
+    stop: &'a AtomicBool,
+    tile: u32,
+    /// Tiles that were begun.
+    tiles: AtomicU64,
+    panicked: Mutex<Option<Panicked>>,
+}
+
+impl Work<'_> {
+    /// Traces the rays through the centres of pixels where that was not done.
+    fn rays(&self, alone: Alone) {
+        let part = self.part;
+        let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
+            (block.is_none() && part.shard.has_rays(index)).then_some(index)
+        };
+        let blocks: Vec<usize> = part.state().rays.iter().enumerate().filter_map(open).collect();
+        let tiles = part.ray_blocks.tiles(blocks.into_iter(), self.tile);
+        self.each(&tiles, alone, |tile, at| {
+            let trace =
+                |&index: &usize| rays::trace(self.world, &part.job, &self.samples, part.ray_blocks.rect(index), at);
+            let traced = tile.iter().map(trace).collect::<Result<Vec<_>, _>>()?;
+            let pixels: usize = traced.iter().map(|block| block.found.len()).sum();
+            let rays = traced.iter().map(|block| block.rays).sum();
+            let mut state = part.state();
+            for (&index, block) in tile.iter().zip(traced) {
+                state.rays[index] = Some(Box::new(block));
+            }
+            self.count(pixels as u64, rays);
+            Ok(())
+        });
+    }
+
+    /// Takes samples until each pixel that still needs some has as many as this.
+    fn pass(&self, end: u32, alone: Alone) {
+        if !self.stop.load(Relaxed) {
+            self.samples.integrator.prepare(end - 1);
+        }
+        let (part, gain) = (self.part, self.samples.gain());
+        if part.job.adaptive && end > pilot(part.job.sampling.samples()) && !part.allocate() {
+            return;
+        }
+        let open = |(index, block): (usize, &BlockSamples)| {
+            let wanted = part.shard.has_block(index) && block.to < end && !part.is_done(index, block, gain);
+            wanted.then_some(index)
+        };
+        let blocks: Vec<usize> = part.state().samples.iter().enumerate().filter_map(open).collect();
+        let tiles = part.blocks.tiles(blocks.into_iter(), self.tile);
+        self.each(&tiles, alone, |tile, at| {
+            if part.job.sampling.is_local() { self.sample(tile, end, at) } else { self.finish(tile, at) }
+        });
+    }
+
+    /// Adds samples to the blocks of a tile.
+    fn sample(&self, tile: &[usize], end: u32, at: &SampleCursor) -> Result<(), Stopped> {
+        let part = self.part;
+        let (adaptive, samples) = (part.job.adaptive, part.job.sampling.samples());
+        let mut made = Vec::with_capacity(tile.len());
+        let (mut taken, mut traced) = (0, 0);
+        for (&index, mut block) in tile.iter().zip(self.taken(tile)) {
+            let rect = part.blocks.rect(index);
+            let mut film = block.film(rect).unwrap_or_else(|| film_of(rect));
+            let is_half = adaptive && (block.to, end) == (half(samples), pilot(samples));
+            let before = is_half.then(|| film.clone());
+            let mut rays = RayCount::default();
+            let range = |pixel| block.count(&part.job, pixel, block.to)..block.count(&part.job, pixel, end);
+            self.samples.add(&mut film, rect, range, at, &mut rays)?;
+            let total = |end| block.total(&part.job, rect.pixels(), end);
+            taken += total(end) - total(block.to);
+            traced += rays.0;
+            block.rays += rays.0;
+            block.variances = before.map(|half| variances(&half, &film, rect)).or(block.variances);
+            (block.to, block.film) = (end, Some(Arc::new(Packed::new(film, part.packed_samples()))));
+            made.push(block);
+        }
+        self.keep(tile, made, taken, traced);
+        Ok(())
+    }
+
+    /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it
+    /// is a rectangle, else block by block.
+    fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Stopped> {
+        let blocks = &self.part.blocks;
+        let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
+        let around = rects.iter().skip(1).fold(rects[0], |a, b| a.around(*b));
+        let at_once = around.pixels() == rects.iter().map(|rect| rect.pixels()).sum::<u64>();
+        let mut rays = RayCount::default();
+        let whole = if at_once { Some(self.samples.finished(around, at, &mut rays)?) } else { None };
+        let mut made = Vec::with_capacity(tile.len());
+        let mut before = 0;
+        for rect in &rects {
+            let own = match &whole {
+                Some(pixels) => {
+                    let pixel = |(x, y)| pixels[((y - around.top) * around.width + (x - around.left)) as usize];
+                    rect.places().map(pixel).collect()
+                }
+                None => self.samples.finished(*rect, at, &mut rays)?,
+            };
+            let mut film = film_of(*rect);
+            rect.places().zip(own).for_each(|((x, y), seen)| film.add_covering(x, y, 0, seen, 1.0));
+            let film = Some(Arc::new(Packed::new(film, 1)));
+            made.push(BlockSamples { from: 0, to: 1, rays: rays.0 - before, film, ..BlockSamples::default() });
+            before = rays.0;
+        }
+        self.keep(tile, made, around.pixels(), rays.0);
+        Ok(())
+    }
+
+    /// The blocks of a tile as they are.
+    fn taken(&self, tile: &[usize]) -> Vec<BlockSamples> {
+        let state = self.part.state();
+        tile.iter().map(|&index| state.samples[index].clone()).collect()
+    }
+
+    fn keep(&self, tile: &[usize], mut made: Vec<BlockSamples>, done: u64, rays: u64) {
+        let mut state = self.part.state();
+        for (&index, block) in tile.iter().zip(&mut made) {
+            std::mem::swap(&mut state.samples[index], block);
+        }
+        // What was replaced is freed without the lock.
+        drop(state);
+        self.count(done, rays);
+    }
+
+    fn count(&self, done: u64, rays: u64) {
+        self.control.done.fetch_add(done, Relaxed);
+        self.control.rays.fetch_add(rays, Relaxed);
+    }
+
+    /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that
+    /// knows its sample.
+    fn each(
+        &self,
+        tiles: &[Vec<usize>],
+        alone: Alone,
+        make: impl Fn(&[usize], &SampleCursor) -> Result<(), Stopped> + Sync,
+    ) {
+        let one = |tile: &Vec<usize>| {
+            if self.control.most_tiles.is_some_and(|most| self.tiles.fetch_add(1, Relaxed) >= most) {
+                self.stop.store(true, Relaxed);
+            }
+            self.samples.check()?;
+            let at: SampleCursor = Cell::new((0, 0, None));
+            catch_unwind(AssertUnwindSafe(|| make(tile, &at))).unwrap_or_else(|payload| {
+                let (x, y, sample) = at.get();
+                let text = payload.downcast_ref::<String>().map(String::as_str);
+                let message = text.or_else(|| payload.downcast_ref::<&str>().copied()).unwrap_or("a panic").to_string();
+                let mut panicked = self.panicked.lock().unwrap_or_else(PoisonError::into_inner);
+                panicked.get_or_insert(Panicked { x, y, sample, message });
+                self.stop.store(true, Relaxed);
+                Err(Stopped)
+            })
+        };
+        // An error ends the work early; why it ended is known elsewhere.
+        let _ = match alone {
+            None => tiles.par_iter().with_max_len(1).try_for_each(one),
+            Some(look) => tiles.iter().try_for_each(|tile| {
+                look();
+                one(tile)
+            }),
+        };
+    }
+}

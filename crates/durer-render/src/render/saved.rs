@@ -1,0 +1,272 @@
+//! Parts as files: one format for checkpoints, shards and what is merged of them.
+//!
+//! | bytes | what |
+//! | --- | --- |
+//! | 8 | `DURERPRT` |
+//! | number | version of this format |
+//! | text | version of Dürer |
+//! | 32 | hash of the scene |
+//! | text, text, text | job, shard and look, as JSON |
+//! | for each block with samples | its number + 1; first sample, end, rays; of an adaptive job, from the end of its pilot on, variances; sums |
+//! | number | 0 |
+//! | for each block with rays | its number + 1; rays; a byte a pixel: what was found; values |
+//! | number | 0 |
+//! | 32 | BLAKE3 of everything before |
+//!
+//! Numbers are those of [`crate::film::bytes`]; a text is its length and its bytes.
+
+use super::allocation::{half, most, pilot};
+use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
+use super::{Job, RenderError, Shard};
+use crate::film::Packed;
+use crate::film::bytes::{Bytes, put};
+use durer_image::Content;
+use durer_scene::math::Vec3;
+use durer_scene::source::Digest;
+use std::cmp::Ordering;
+use std::io::{self, Write};
+use std::ops::Range;
+use std::sync::Arc;
+
+const FORMAT: u32 = 1;
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Why bytes are no part that can be used.
+#[derive(Debug, thiserror::Error)]
+pub enum PartError {
+    /// They are something else.
+    #[error("it is no part of a picture")]
+    NotAPart,
+    /// They end too early, or were changed.
+    #[error("it is torn or damaged: its checksum is wrong")]
+    Damaged,
+    /// Another version made them.
+    #[error("it was made by Dürer {0}, and this is {VERSION}: pictures may differ")]
+    OtherVersion(String),
+    /// The checksum is right, but not what it covers.
+    #[error("it is malformed: {0}")]
+    Malformed(String),
+    /// The job in it is impossible.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// It is of another scene.
+    #[error("it is of another scene, or a file of the scene was changed")]
+    OtherScene,
+    /// It is of another job.
+    #[error("it is of another job: {0}")]
+    OtherJob(String),
+}
+
+fn put_text(out: &mut Vec<u8>, text: &str) {
+    put(out, text.len() as u128);
+    out.extend(text.as_bytes());
+}
+
+fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
+    let length = bytes.whole()?;
+    std::str::from_utf8(bytes.take(length)?).ok()
+}
+
+/// Blocks that are written at once: what works meanwhile waits for no more.
+const CHUNK: usize = 256;
+
+impl Content for PartialRender {
+    /// Its bytes, made a few at a time: a second copy of all of them would need as much memory
+    /// again.
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
+        let mut flush = |bytes: &mut Vec<u8>| {
+            hasher.update(bytes);
+            out.write_all(bytes)?;
+            bytes.clear();
+            io::Result::Ok(())
+        };
+        // One after the other: both at once would wait for each other.
+        let samples = self.state().samples.len();
+        let rays = self.state().rays.len();
+        let chunks = |count: usize| (0..count).step_by(CHUNK).map(move |start| start..count.min(start + CHUNK));
+        for blocks in chunks(samples) {
+            self.put_samples(blocks, &mut bytes);
+            flush(&mut bytes)?;
+        }
+        put(&mut bytes, 0);
+        for blocks in chunks(rays) {
+            self.put_rays(blocks, &mut bytes);
+            flush(&mut bytes)?;
+        }
+        put(&mut bytes, 0);
+        flush(&mut bytes)?;
+        out.write_all(hasher.finalize().as_bytes())
+    }
+}
+
+impl Content for &PartialRender {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        PartialRender::write_to(self, out)
+    }
+}
+
+impl PartialRender {
+    /// How files of parts begin.
+    pub const MAGIC: &[u8; 8] = b"DURERPRT";
+
+    /// Its bytes, as they are saved. The same work gives the same bytes.
+    pub fn write(&self) -> Vec<u8> {
+        let mut out = Vec::new();
+        self.write_to(&mut out).expect("there is always room in memory");
+        out
+    }
+
+    fn head(&self) -> Vec<u8> {
+        let mut out = PartialRender::MAGIC.to_vec();
+        put(&mut out, FORMAT.into());
+        put_text(&mut out, VERSION);
+        out.extend(self.scene.0);
+        put_text(&mut out, &job_text(&self.job));
+        put_text(&mut out, &serde_json::to_string(&self.shard).unwrap_or_default());
+        put_text(&mut out, &serde_json::to_string(&self.look).unwrap_or_default());
+        out
+    }
+
+    /// The samples of some blocks.
+    fn put_samples(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
+        let state = self.state();
+        for index in blocks {
+            let block = &state.samples[index];
+            if let Some(film) = block.film(self.blocks.rect(index)) {
+                put(out, index as u128 + 1);
+                [block.from.into(), block.to.into(), u128::from(block.rays)]
+                    .iter()
+                    .for_each(|&number| put(out, number));
+                let variances = block.variances.iter().flat_map(|variances| variances.iter());
+                out.extend(variances.flat_map(|variance| variance.to_le_bytes()));
+                film.write(out);
+            }
+        }
+    }
+
+    /// What the rays through the centres of some blocks' pixels saw.
+    fn put_rays(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
+        let state = self.state();
+        for index in blocks {
+            if let Some(block) = &state.rays[index] {
+                put(out, index as u128 + 1);
+                put(out, block.rays.into());
+                out.extend(block.found.iter().map(|&found| found as u8));
+                out.extend(block.values.iter().flat_map(|v| v.to_array()).flat_map(f32::to_le_bytes));
+            }
+        }
+    }
+
+    /// Reads a part.
+    ///
+    /// # Errors
+    /// [`PartError`] for anything but what [`PartialRender::write`] of this version gives.
+    pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
+        if !bytes.starts_with(PartialRender::MAGIC) {
+            return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
+        }
+        let (content, digest) = bytes.split_last_chunk::<32>().ok_or(PartError::Damaged)?;
+        if Digest::of(content).0 != *digest {
+            return Err(PartError::Damaged);
+        }
+        let malformed = |what: &str| PartError::Malformed(what.into());
+        let mut rest = Bytes(&content[PartialRender::MAGIC.len().min(content.len())..]);
+        let (format, version): (Option<u32>, _) = (rest.whole(), text(&mut rest));
+        match (format, version) {
+            (Some(FORMAT), Some(VERSION)) => {}
+            (Some(_), Some(version)) => return Err(PartError::OtherVersion(version.into())),
+            _ => return Err(malformed("its head")),
+        }
+        let scene = rest.take(32).and_then(|scene| scene.try_into().ok()).ok_or(malformed("its head"))?;
+        let mut json = || text(&mut rest).ok_or(malformed("its head"));
+        let (job, shard, look) = (json()?, json()?, json()?);
+        let wrong = |error: serde_json::Error| PartError::Malformed(error.to_string());
+        let job: Job = serde_json::from_str(job).map_err(wrong)?;
+        let shard: Shard = serde_json::from_str(shard).map_err(wrong)?;
+        let look = serde_json::from_str(look).map_err(wrong)?;
+        // A picture for which there are too few bytes would take memory for nothing.
+        let part = PartialRender::empty(job, shard, Digest(scene), look)?;
+        part.read_blocks(rest).ok_or(malformed("its blocks"))?;
+        if part.job.adaptive {
+            part.allocate();
+        }
+        // Numbers, texts and orders of blocks could be written in other ways, but never are.
+        if part.write() != bytes {
+            return Err(malformed("it is not as Dürer writes it"));
+        }
+        Ok(part)
+    }
+
+    fn read_blocks(&self, mut rest: Bytes) -> Option<()> {
+        let (mut state, range) = (self.state(), self.shard.range(self.job.sampling.samples()));
+        while let number @ 1.. = rest.whole::<usize>()? {
+            let block = state.samples.get_mut(number - 1).filter(|block| block.film.is_none())?;
+            let (from, to, rays): (u32, u32, u64) = (rest.whole()?, rest.whole()?, rest.whole()?);
+            if from != range.0 || to <= from || to > range.1 || !self.shard.has_block(number - 1) {
+                return None;
+            }
+            let (rect, samples) = (self.blocks.rect(number - 1), self.job.sampling.samples());
+            let mut most_samples = to - from;
+            let mut variances = None;
+            if self.job.adaptive && to > half(samples) {
+                let mut variance = || rest.float().filter(|variance| variance.is_finite() && *variance >= 0.0);
+                variances = Some(rect.places().map(|_| variance()).collect::<Option<_>>()?);
+                most_samples = match to.cmp(&pilot(samples)) {
+                    Ordering::Less => return None,
+                    Ordering::Equal => to,
+                    Ordering::Greater => most(samples),
+                };
+            }
+            let film = film_of(rect).read(&mut rest, most_samples)?;
+            let film = Some(Arc::new(Packed::new(film, self.packed_samples())));
+            *block = BlockSamples { from, to, rays, variances, film, targets: None };
+        }
+        let pictures = self.job.ray_aovs().count();
+        while let number @ 1.. = rest.whole::<usize>()? {
+            let block = state.rays.get_mut(number - 1).filter(|block| block.is_none())?;
+            let rays = rest.whole()?;
+            let pixels = self.ray_blocks.rect(number - 1).pixels() as usize;
+            let found = |&byte: &u8| {
+                [PrimaryHit::Blind, PrimaryHit::Nothing, PrimaryHit::Hit].into_iter().find(|f| *f as u8 == byte)
+            };
+            let found = rest.take(pixels)?.iter().map(found).collect::<Option<_>>()?;
+            let mut value = || Some(Vec3::new(rest.float()?, rest.float()?, rest.float()?));
+            let values = (0..pixels * pictures).map(|_| value().filter(|v| v.is_finite())).collect::<Option<_>>()?;
+            *block = Some(Box::new(BlockAovs { found, values, rays }));
+        }
+        rest.0.is_empty().then_some(())
+    }
+
+    /// Whether a part that was read goes on with this one's work: the same scene, job and shard.
+    ///
+    /// # Errors
+    /// [`PartError::OtherScene`], [`PartError::OtherJob`].
+    pub fn same_work(&self, other: &PartialRender) -> Result<(), PartError> {
+        self.same_picture(other)?;
+        if self.shard != other.shard {
+            return Err(PartError::OtherJob(format!("it is shard {}, and wanted is {}", other.shard, self.shard)));
+        }
+        Ok(())
+    }
+
+    /// Whether another part belongs to the same picture.
+    pub(super) fn same_picture(&self, other: &PartialRender) -> Result<(), PartError> {
+        if self.scene != other.scene || self.look != other.look {
+            return Err(PartError::OtherScene);
+        }
+        let (own, other) = (job_text(&self.job), job_text(&other.job));
+        if own == other { Ok(()) } else { Err(PartError::OtherJob(first_difference(&own, &other))) }
+    }
+}
+
+/// The first field in which two jobs differ.
+fn first_difference(own: &str, other: &str) -> String {
+    let fields = |text: &str| serde_json::from_str::<serde_json::Map<_, _>>(text).unwrap_or_default();
+    let (own, other) = (fields(own), fields(other));
+    let differs = own.iter().find(|(name, value)| other.get(*name) != Some(value));
+    let shown = |value: Option<&serde_json::Value>| value.map(ToString::to_string).unwrap_or_default();
+    differs.map_or("it differs".into(), |(name, value)| {
+        format!("its `{name}` is {}, and wanted is {value}", shown(other.get(name)))
+    })
+}

@@ -1,0 +1,150 @@
+//! One picture made in many ways: threads, tiles, shards, interruptions, structures.
+
+use super::{Control, Job, MergeError, PartError, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, merge};
+use crate::world::World;
+use durer_scene::sampler::hash;
+use durer_scene::source::Digest;
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+
+/// A way to make a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// Number of the world, among those of one scene that differ by how hits are found.
+    pub world: usize,
+    /// Threads.
+    pub threads: usize,
+    /// Pixels across and down a tile.
+    pub tile: u32,
+    /// How many shards.
+    pub shards: u32,
+    /// How it is split.
+    pub by: ShardBy,
+    /// How often each shard is interrupted, saved, and read again.
+    pub interruptions: u32,
+    /// Decides where it is interrupted, and in what order shards are merged.
+    pub seed: u64,
+}
+
+impl fmt::Display for Way {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let by = if self.by == ShardBy::Tiles { "tiles" } else { "samples" };
+        write!(f, "{} threads, tiles of {}, ", self.threads, self.tile)?;
+        write!(f, "{} shards by {by}, {} interruptions of each", self.shards, self.interruptions)
+    }
+}
+
+/// Why a way gave no film to compare.
+#[derive(Debug, thiserror::Error)]
+pub enum WayError {
+    /// It could not be rendered.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// What was saved could not be read.
+    #[error("what was saved cannot be read: {0}")]
+    PartialRender(#[from] PartError),
+    /// Shards could not be merged.
+    #[error("shards cannot be merged: {0}")]
+    Merge(#[from] MergeError),
+    /// It was cancelled.
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Way {
+    /// All at once, in one thread.
+    pub const PLAIN: Way =
+        Way { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
+
+    /// A way by number: the same for the same job and number of worlds.
+    pub fn numbered(number: u64, job: &Job, worlds: usize) -> Way {
+        let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
+        let samples = u64::from(job.sampling.samples());
+        let blocks = (job.window().pixels() / 256).max(1);
+        let by_samples = job.sampling.is_local() && job.noise.is_none() && !job.adaptive && pick(3, 2) == 1;
+        let blocks = if job.adaptive { 1 } else { blocks };
+        let (by, most) = if by_samples { (ShardBy::Samples, samples) } else { (ShardBy::Tiles, blocks) };
+        Way {
+            world: pick(0, worlds as u64) as usize,
+            threads: [1, 2, 3, 4, 7][pick(1, 5) as usize],
+            tile: [8, 16, 24, 32, 64, 200][pick(2, 6) as usize],
+            // Half of them are not split.
+            shards: if pick(4, 2) == 0 { 1 } else { 1 + pick(5, most.min(7)) as u32 },
+            by,
+            interruptions: [0, 0, 1, 3][pick(6, 4) as usize],
+            seed: number,
+        }
+    }
+
+    /// Makes the job's picture in this way.
+    ///
+    /// # Errors
+    /// [`WayError`].
+    pub fn make(&self, world: &World, job: &Job, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
+        let mut parts = Vec::new();
+        for index in 1..=self.shards {
+            let shard = Shard { index, count: self.shards, by: self.by };
+            parts.push((shard.to_string(), self.shard(world, job, shard, cancel)?));
+        }
+        let first = hash(self.seed, 1, 0, 0, 0) as usize % parts.len();
+        parts.rotate_left(first);
+        Ok(if self.shards == 1 { parts.swap_remove(0).1 } else { merge(&parts)? })
+    }
+
+    /// Makes a shard, stopped a few times after some tiles, and goes on each time with what was
+    /// saved.
+    fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
+        let mut part = PartialRender::new(world, job, shard)?;
+        for round in (0..=self.interruptions).rev() {
+            if cancel.load(Relaxed) {
+                return Err(WayError::Cancelled);
+            }
+            let some = hash(self.seed, 2, shard.index, round, 0) % 24;
+            let control = Control {
+                // Each time on another number of threads.
+                threads: Some(1 + (self.threads + round as usize - 1) % 7),
+                tile: Some(self.tile),
+                most_tiles: (round > 0).then_some(some),
+                ..Control::default()
+            };
+            if let RenderOutcome::Panicked(panicked) = part.render(world, &control, &mut |_, _| {})? {
+                return Err(RenderError::Panic(panicked).into());
+            }
+            part = PartialRender::read(&part.write())?;
+        }
+        Ok(part)
+    }
+}
+
+/// A way whose film is another.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// The hash that it should have.
+    pub expected: Digest,
+    /// The hash that it has.
+    pub found: Digest,
+    /// The first pixel that differs, if a picture shows it.
+    pub place: String,
+}
+
+/// Compares two films of the same job.
+pub fn compare(expected: &PartialRender, found: &PartialRender) -> Option<Difference> {
+    let (one, other) = (expected.hash(), found.hash());
+    if one == other {
+        return None;
+    }
+    let mut place = "no picture shows the difference".to_string();
+    if let (Ok(a), Ok(b)) = (expected.pictures(), found.pictures()) {
+        let window = expected.job().window();
+        for (a, b) in a.layers.iter().zip(&b.layers) {
+            let pairs = a.image.pixels.iter().zip(&b.image.pixels).enumerate();
+            let bits = |pixel: &durer_scene::math::Vec3| pixel.to_array().map(f32::to_bits);
+            if let Some((i, (a_pixel, b_pixel))) = { pairs }.find(|(_, (a, b))| bits(a) != bits(b)) {
+                let (x, y) = (window.left + i as u32 % window.width, window.top + i as u32 / window.width);
+                place = format!("pixel {x},{y} of `{}`: {b_pixel:?} instead of {a_pixel:?}", a.name);
+                break;
+            }
+        }
+    }
+    Some(Difference { expected: one, found: other, place })
+}

@@ -1,0 +1,253 @@
+//! Light that leaves lamps towards things that mirror or refract it: where photons begin.
+
+use super::{Apart, AreaLight, Source, of_light};
+use crate::world::{Geometry, Material, Object, World};
+use durer_scene::bsdf::{Frame, warp};
+use durer_scene::light::Emitter as _;
+use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use durer_scene::shape::Primitive;
+use durer_scene::texture::Environment;
+use glam::DVec3;
+use std::f32::consts::PI;
+
+/// A ball around something that throws light on other things.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Its middle.
+    pub center: Vec3,
+    /// Its radius.
+    pub radius: f32,
+    /// The object that it is around.
+    pub object: u32,
+}
+
+/// What photons are sent from, and where.
+#[derive(Clone, Debug, Default)]
+pub struct Beams {
+    targets: Vec<Target>,
+    lamps: Vec<Lamp>,
+    /// The sums of the lamps' powers up to each.
+    sums: Vec<f32>,
+    /// A distance from which all of the scene is ahead.
+    reach: f32,
+}
+
+/// Something that sends light.
+#[derive(Clone, Copy, Debug)]
+enum Lamp {
+    /// A surface.
+    Area(AreaLight),
+    /// A light with a place, by number.
+    Near(u32),
+    /// A light without one.
+    Far(u32),
+    /// All around.
+    Sky,
+}
+
+/// A photon as it leaves: its ray, and its power by colour over the density of its choice.
+#[derive(Clone, Copy, Debug)]
+pub struct Emitted {
+    /// Its way.
+    pub ray: Ray64,
+    /// Its power; of a light with a place, per square of the distance that it will go.
+    pub power: Color,
+    /// The light with a place that it comes from, by number: its strength where the photon arrives
+    /// is not known yet.
+    pub light: Option<u32>,
+    /// The material that it comes from, by number.
+    pub material: Option<u32>,
+}
+
+impl Beams {
+    /// From all that shines to all that mirrors or refracts.
+    pub fn new(world: &World) -> Self {
+        let targets = targets(world);
+        let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
+        let reach = all.map_or(0.0, |all| all.size().length());
+        let mut beams = Beams { targets, reach, ..Beams::default() };
+        if beams.targets.is_empty() {
+            return beams;
+        }
+        let area: f32 = beams.targets.iter().map(|target| PI * target.radius * target.radius).sum();
+        let emitters = world.emitters();
+        for source in emitters.as_given() {
+            match source {
+                Source::Area(area) => {
+                    let sides = if area.two_sided { 2.0 } else { 1.0 };
+                    beams.add(Lamp::Area(*area), PI * sides * area.form.area() * area.radiance.max_element());
+                }
+                Source::Light(number) => beams.add(Lamp::Near(*number), 4.0 * PI * PI * strength(world, *number)),
+            }
+        }
+        for &Apart { light, way, .. } in &emitters.apart {
+            let color = world.lights()[light as usize].color().max_element();
+            match way != Vec3::ZERO {
+                true => beams.add(Lamp::Far(light), PI * color * area),
+                // It fades otherwise than with the square: as if it shone over the scene's own
+                // size.
+                false => beams.add(Lamp::Near(light), 4.0 * PI * PI * color * reach * reach),
+            }
+        }
+        if let Some(sky) = world.environment() {
+            beams.add(Lamp::Sky, 4.0 * PI * sky.mean().max_element() * area);
+        }
+        beams
+    }
+
+    fn add(&mut self, lamp: Lamp, power: f32) {
+        if power > 0.0 && power.is_finite() {
+            self.lamps.push(lamp);
+            self.sums.push(self.sums.last().unwrap_or(&0.0) + power);
+        }
+    }
+
+    /// Whether photons are sent to an object.
+    pub fn reaches(&self, object: u32) -> bool {
+        !self.lamps.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
+    }
+
+    /// The radius of the smallest target.
+    pub fn finest(&self) -> f32 {
+        self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
+    }
+
+    /// A photon by numbers from 0 to 1: for the lamp, the target, the place on the lamp, and the
+    /// direction.
+    pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<Emitted> {
+        let all = *self.sums.last()?;
+        let wanted = choices.x * all;
+        let i = self.sums.partition_point(|&sum| sum <= wanted).min(self.sums.len() - 1);
+        let before = if i > 0 { self.sums[i - 1] } else { 0.0 };
+        let choice = (self.sums[i] - before) / all;
+        let target = ((choices.y * self.targets.len() as f32) as usize).min(self.targets.len() - 1);
+        match self.lamps[i] {
+            Lamp::Area(area) => {
+                let (point, normal, density) = area.form.point(area.normal, place)?;
+                let (dir, pdf) = self.towards(point, target, direction)?;
+                let cosine = normal.dot(dir);
+                if cosine == 0.0 || cosine < 0.0 && !area.two_sided {
+                    return None;
+                }
+                let power = area.radiance * (cosine.abs() / (density * pdf * choice));
+                // Beside its own surface.
+                let side = if cosine < 0.0 { -normal } else { normal };
+                let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
+                Some(Emitted {
+                    ray: Ray64::new(origin, dir, 0.0, f32::INFINITY),
+                    power,
+                    light: None,
+                    material: Some(world.objects()[area.object as usize].material),
+                })
+            }
+            Lamp::Near(light) => {
+                let origin = world.illuminate(light as usize, DVec3::ZERO);
+                let point = f64::from(origin.distance) * origin.to_light.as_dvec3();
+                let (dir, pdf) = self.towards(point, target, direction)?;
+                let ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
+                Some(Emitted { ray, power: Color::splat(1.0 / (pdf * choice)), light: Some(light), material: None })
+            }
+            Lamp::Far(light) => {
+                let sample = super::spread(world, light, of_light(world, light, DVec3::ZERO, 1.0), place);
+                let (ray, density) = self.across(-sample.wi, target, direction);
+                Some(Emitted { ray, power: sample.radiance / (density * choice), light: None, material: None })
+            }
+            Lamp::Sky => {
+                let (wi, radiance, pdf) = from_all_around(world.environment()?, place)?;
+                let (ray, density) = self.across(-wi, target, direction);
+                Some(Emitted { ray, power: radiance / (density * pdf * choice), light: None, material: None })
+            }
+        }
+    }
+
+    /// A direction from a point towards a target, and its density per solid angle over all targets.
+    fn towards(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
+        let cone = |target: &Target| {
+            let to = (target.center.as_dvec3() - point).as_vec3();
+            let (d2, r2) = (to.length_squared(), target.radius * target.radius);
+            // From inside, all directions lead to it.
+            let cosine = if d2 > r2 { (1.0 - r2 / d2).sqrt() } else { -1.0 };
+            (to.normalize_or(Vec3::Z), cosine)
+        };
+        let (axis, cosine) = cone(&self.targets[target]);
+        let dir = Frame::around(axis).to_world(warp::polar(1.0 - u.x * (1.0 - cosine), u.y)).normalize();
+        // A direction may lead to several.
+        let density = |target: &Target| {
+            let (axis, cosine) = cone(target);
+            if axis.dot(dir) >= cosine - 1e-6 { 1.0 / (2.0 * PI * (1.0 - cosine).max(1e-7)) } else { 0.0 }
+        };
+        let sum: f32 = self.targets.iter().map(density).sum();
+        (sum > 0.0).then(|| (dir, sum / self.targets.len() as f32))
+    }
+
+    /// A ray along a direction through a target, from before all of them, and its density per area
+    /// over all targets.
+    fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
+        let frame = Frame::around(dir);
+        let disc = warp::disc(u);
+        let Target { center, radius, .. } = self.targets[target];
+        let through = center + radius * (disc.x * frame.tangent + disc.y * frame.bitangent);
+        let density = |target: &Target| {
+            let beside = (target.center - through).reject_from_normalized(dir).length_squared();
+            let square = target.radius * target.radius;
+            if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
+        };
+        let sum: f32 = self.targets.iter().map(density).sum();
+        // Things that stand before all targets cast shadows too.
+        let far = 2.0 * self.reach;
+        let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
+        (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)
+    }
+}
+
+/// A direction of the surroundings, its light, and its density per solid angle. No other way finds
+/// what is about even, as others than photons do: half of all directions are chosen evenly.
+fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
+    let (wi, light, pdf) = match u.x < 0.5 {
+        true => sky.sample(Vec2::new(2.0 * u.x, u.y))?,
+        false => {
+            let wi = warp::sphere(Vec2::new(2.0 * u.x - 1.0, u.y));
+            let (light, pdf) = sky.at_with_pdf(wi);
+            (wi, light, pdf)
+        }
+    };
+    Some((wi, light, 0.5 * (pdf + 0.25 / PI)))
+}
+
+fn strength(world: &World, light: u32) -> f32 {
+    world.lights()[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
+}
+
+/// Balls around all things with an end that mirror or refract as single directions, by number.
+fn targets(world: &World) -> Vec<Target> {
+    let mut found = Vec::new();
+    for (number, object) in world.objects().iter().enumerate() {
+        if !throws_light(world, object) {
+            continue;
+        }
+        let Some(bounds) = object.bounds() else { continue };
+        let (center, half) = (bounds.center(), 0.5 * bounds.size());
+        let radius = match &object.geometry {
+            Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
+            _ => half.length(),
+        };
+        if radius > 0.0 && radius.is_finite() {
+            found.push(Target { center, radius: 1.001 * radius, object: number as u32 });
+        }
+    }
+    found
+}
+
+fn throws_light(world: &World, object: &Object) -> bool {
+    // The parts of a solid have materials of their own.
+    if matches!(object.geometry, Geometry::Solid(_)) {
+        return true;
+    }
+    match &world.materials()[object.material as usize] {
+        Material::Phong(phong) => match &phong.principled {
+            Some(own) => own.has_single_directions(),
+            None => phong.reflective != Color::ZERO || phong.transparent != Color::ZERO,
+        },
+        Material::Solid(..) => true,
+    }
+}

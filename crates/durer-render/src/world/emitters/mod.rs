@@ -1,0 +1,586 @@
+//! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and
+//! how one of them is chosen.
+
+pub mod emission;
+pub mod shape;
+pub mod tree;
+
+use super::material::Emission;
+use super::object::Geometry;
+use super::{Hit, Object, World};
+use durer_bvh::internal::{bring_near, room};
+use durer_scene::bsdf::{Frame, warp};
+use durer_scene::light::Emitter as _;
+use durer_scene::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
+use glam::DVec3;
+use serde::Serialize;
+pub use shape::{Form, Place};
+use std::f32::consts::PI;
+use tree::{Bounds, LightTree};
+
+/// More objects than that are not asked whether one is inside another.
+const MANY: usize = 10_000;
+
+/// A part of an object that shines and can be chosen points of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct AreaLight {
+    /// Where it is.
+    pub form: Form,
+    /// Its normal; zero for what has normals to all sides.
+    pub normal: Vec3,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of its part.
+    pub part: u32,
+    /// Whether points are chosen for both sides, and not only for that of its normal.
+    pub two_sided: bool,
+    /// How far what rays meet may be beside it, by rounding of the object's own coordinates.
+    pub error: f32,
+    /// Its radiance, for the share of it that is there.
+    pub radiance: Color,
+}
+
+/// One of the things that the tree chooses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Source {
+    /// A surface.
+    Area(AreaLight),
+    /// A light of the scene with a place, by number.
+    Light(u32),
+}
+
+/// All that shines in a world, and the tree to choose from.
+#[derive(Clone, Debug, Default)]
+pub struct Emitters {
+    sources: Vec<Source>,
+    /// Where the parts of each object begin in `parts`; `u32::MAX` where it has none.
+    first: Vec<u32>,
+    /// The source of each part.
+    parts: Vec<u32>,
+    /// Lights of the scene without a place in the tree.
+    apart: Vec<Apart>,
+    /// Those of them that are seen under some angle.
+    suns: Vec<Sun>,
+    tree: LightTree,
+}
+
+/// A light of the scene that is at infinity, or fades otherwise than with the square of the
+/// distance.
+#[derive(Clone, Copy, Debug)]
+struct Apart {
+    light: u32,
+    /// Where it is; zero for one that is not at infinity.
+    way: Vec3,
+    /// The irradiance that it makes across its way, or about that.
+    irradiance: f32,
+}
+
+impl Apart {
+    fn of(world: &World, light: u32) -> Apart {
+        let (seen, color) = (of_light(world, light, DVec3::ZERO, 1.0), world.lights()[light as usize].color());
+        let way = if seen.reach.is_infinite() { seen.wi } else { Vec3::ZERO };
+        Apart { light, way, irradiance: PI * color.max_element().max(0.0) }
+    }
+
+    /// About what it brings to a surface with a normal (zero: any).
+    fn brings(&self, n: Vec3) -> f32 {
+        if n == Vec3::ZERO || self.way == Vec3::ZERO {
+            self.irradiance
+        } else {
+            self.irradiance * self.way.dot(n).max(0.0)
+        }
+    }
+}
+
+/// What chooses among lights apart, the surroundings and the tree for a point: each by about the
+/// irradiance that it brings there.
+struct Chances {
+    choices: f32,
+    /// Of all together.
+    total: f32,
+    sky: f32,
+    tree: f32,
+}
+
+/// Estimates may be wrong: this share of all choices is even.
+const EVENLY: f32 = 0.1;
+
+impl Chances {
+    /// The probability of what brings so much.
+    fn of(&self, brings: f32) -> f32 {
+        if self.choices == 1.0 {
+            return 1.0;
+        }
+        let share = brings / self.total;
+        let even = 1.0 / self.choices;
+        if share.is_finite() { (1.0 - EVENLY) * share + EVENLY * even } else { even }
+    }
+}
+
+/// A light at infinity that is seen as a disc.
+#[derive(Clone, Debug)]
+struct Sun {
+    light: u32,
+    way: Vec3,
+    /// The square of the chord of half the angle in which it is seen: of small angles the cosine
+    /// says too little.
+    chord2: f32,
+    radiance: Color,
+}
+
+/// What shines at a point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LightId {
+    /// A light of the scene, by number.
+    Light(u32),
+    /// A part of an object.
+    Surface(u32, u32),
+    /// The surroundings.
+    Environment,
+}
+
+impl LightId {
+    /// Number of the object whose surface shines.
+    pub fn object(self) -> Option<u32> {
+        match self {
+            LightId::Surface(object, _) => Some(object),
+            LightId::Light(_) | LightId::Environment => None,
+        }
+    }
+}
+
+/// A point that light is chosen for.
+#[derive(Clone, Copy, Debug)]
+pub struct Receiver {
+    /// Where it is.
+    pub point: DVec3,
+    /// The normal of a surface on the side that is lit; zero where light comes from all sides.
+    pub n: Vec3,
+    /// A group of lamps whose radius is less than this share of its distance, as it looks from
+    /// where it shines and where it is seen from, is not looked into if all of them are alike: each
+    /// is as likely, and brings about as much.
+    pub far: f32,
+}
+
+impl Receiver {
+    /// [`Receiver::far`] of a point that is seen.
+    pub const FAR: f32 = 0.1;
+    /// The same of one that lights others: light of many of those comes together, so that it
+    /// matters less how well each lamp was chosen.
+    pub const FAR_BEYOND: f32 = 0.3;
+}
+
+/// A light that was chosen for a point, and the probability of that.
+pub struct Choice {
+    of: Of,
+    probability: f32,
+}
+
+impl Choice {
+    /// Whether it is the surroundings.
+    pub fn is_sky(&self) -> bool {
+        matches!(self.of, Of::Sky)
+    }
+
+    /// The probability with which it was chosen.
+    pub fn probability(&self) -> f32 {
+        self.probability
+    }
+}
+
+/// What can be chosen.
+enum Of {
+    /// A light of the scene that is not in the tree, by number.
+    Apart(u32),
+    /// The surroundings.
+    Sky,
+    /// One of the sources.
+    Source(u32),
+}
+
+/// A light that was chosen, as seen from a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightSample {
+    /// Which it is.
+    pub light: LightId,
+    /// Unit vector to it.
+    pub wi: Vec3,
+    /// How far away it is.
+    pub reach: f32,
+    /// How far what rays meet of it may be beside it, by rounding.
+    pub error: f32,
+    /// The cosine of the angle between its normal and the way, or what is counted as that: more
+    /// than zero.
+    pub cosine: f32,
+    /// Its radiance; of a light without extent the irradiance that it makes across its way.
+    pub radiance: Color,
+    /// The probability with which it was chosen.
+    pub choice: f32,
+    /// The density per solid angle of the direction on it; 0 for a light without extent.
+    pub pdf: f32,
+}
+
+impl LightSample {
+    /// The surroundings in a direction of some density.
+    pub fn of_sky(choice: &Choice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
+        LightSample {
+            light: LightId::Environment,
+            wi,
+            reach: f32::INFINITY,
+            error: 0.0,
+            cosine: 1.0,
+            radiance,
+            choice: choice.probability,
+            pdf,
+        }
+    }
+
+    /// How far a shadow ray goes from a point that is known to an error: to where neither reaches.
+    /// What passes a surface by some distance meets one that is inclined so much earlier.
+    pub fn shadow_reach(&self, error: f32) -> f32 {
+        (self.reach - 2.0 * (self.error + error) / self.cosine) * (1.0 - gamma(16))
+    }
+}
+
+impl Emitters {
+    /// Of a world's objects and lights.
+    pub(crate) fn new(world: &World) -> Self {
+        let mut emitters = Emitters { first: vec![u32::MAX; world.objects().len()], ..Emitters::default() };
+        let mut bounds = Vec::new();
+        for (number, object) in world.objects().iter().enumerate() {
+            let Some(Emission { radiance, two_sided, .. }) = world.emission_of(object.material) else { continue };
+            let two_sided = two_sided && !has_empty_inside(world, number);
+            let (start, error) = (emitters.sources.len(), object.rounding());
+            for part in 0..object.parts() {
+                let Some((form, normal)) = Form::of(object, part) else { break };
+                let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
+                bounds.push(area.bounds());
+                emitters.sources.push(Source::Area(area));
+            }
+            if emitters.sources.len() > start {
+                emitters.first[number] = start as u32;
+            }
+        }
+        for (number, light) in world.lights().iter().enumerate() {
+            match light.place() {
+                Some((position, intensity)) => {
+                    let profile = world.profiles().get(number).and_then(Option::as_ref);
+                    let most = profile.map_or(1.0, |profile| profile.most());
+                    let power = PI * most * intensity.max_element().max(0.0);
+                    emitters.sources.push(Source::Light(number as u32));
+                    bounds.push(Bounds {
+                        bounds: Aabb { min: position, max: position },
+                        power,
+                        axis: Vec3::Z,
+                        cos_normals: -1.0,
+                        cos_emission: 0.0,
+                        two_sided: false,
+                        each: power,
+                    });
+                }
+                None => {
+                    emitters.apart.push(Apart::of(world, number as u32));
+                    emitters.suns.extend(Sun::of(world, number as u32));
+                }
+            }
+        }
+        let (tree, order) = LightTree::new(&bounds);
+        emitters.arrange(&order);
+        emitters.tree = tree;
+        emitters
+    }
+
+    /// Puts sources into the order in which the tree counts them, and behind them those that it
+    /// does not hold.
+    fn arrange(&mut self, order: &[u32]) {
+        self.parts = vec![u32::MAX; self.sources.len()];
+        let mut sources = room(self.sources.len());
+        let rest = 0..self.sources.len() as u32;
+        for from in order.iter().copied().chain(rest) {
+            let part = &mut self.parts[from as usize];
+            if *part == u32::MAX {
+                *part = sources.len() as u32;
+                sources.push(self.sources[from as usize]);
+            }
+        }
+        self.sources = sources;
+    }
+
+    /// Its sources in the order of the scene.
+    fn as_given(&self) -> impl Iterator<Item = &Source> {
+        self.parts.iter().map(|&source| &self.sources[source as usize])
+    }
+
+    /// The chances of all that is chosen for a point; `None` where nothing shines.
+    fn chances(&self, world: &World, to: &Receiver) -> Option<Chances> {
+        let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
+        let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
+        let mut chances = Chances { choices: choices as f32, total: 0.0, sky: 0.0, tree: 0.0 };
+        if choices > 1 {
+            chances.sky = environment.map_or(0.0, |sky| PI * sky.mean_above().max_element());
+            chances.tree = self.tree.importance(to);
+            let apart: f32 = self.apart.iter().map(|apart| apart.brings(to.n)).sum();
+            let total = apart + chances.sky + chances.tree;
+            // Where it is not known what they bring, they are chosen evenly.
+            chances.total = if total.is_finite() { total } else { f32::NAN };
+        }
+        (choices > 0).then_some(chances)
+    }
+
+    /// Chooses a light for a point by a number. What is read of it next is on its way then.
+    pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<Choice> {
+        let chances = self.chances(world, to)?;
+        let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
+        let mut rest = u;
+        for (i, apart) in self.apart.iter().enumerate() {
+            let chance = chances.of(apart.brings(to.n));
+            let is_last = i + 1 == self.apart.len() && !has_sky && !has_tree;
+            if rest < chance || is_last {
+                return Some(Choice { of: Of::Apart(apart.light), probability: chance });
+            }
+            rest -= chance;
+        }
+        if has_sky {
+            let chance = chances.of(chances.sky);
+            if rest < chance || !has_tree {
+                return Some(Choice { of: Of::Sky, probability: chance });
+            }
+            rest -= chance;
+        }
+        let chance = chances.of(chances.tree);
+        let rest = (rest / chance).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+        let (source, probability) = self.tree.sample(to, rest)?;
+        if let Some(source) = self.sources.get(source as usize) {
+            bring_near(source);
+        }
+        Some(Choice { of: Of::Source(source), probability: chance * probability })
+    }
+
+    /// Chooses a direction to a light that was chosen for a point, by two numbers.
+    pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
+        let probability = choice.probability;
+        match choice.of {
+            Of::Apart(light) => Some(spread(world, light, of_light(world, light, point, probability), u)),
+            Of::Sky => {
+                let (wi, radiance, pdf) = world.environment()?.sample(u)?;
+                Some(LightSample::of_sky(choice, wi, radiance, pdf))
+            }
+            Of::Source(source) => match &self.sources[source as usize] {
+                Source::Light(light) => Some(of_light(world, *light, point, probability)),
+                Source::Area(area) => area.sample(point, probability, u),
+            },
+        }
+    }
+
+    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen;
+    /// of a triangle and a cylinder they choose some point, always the same. `None` for what is
+    /// no surface.
+    pub fn middle(&self, light: LightId) -> Option<Vec2> {
+        let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
+        match self.sources.get(source)? {
+            Source::Area(area) if matches!(area.form, Form::Sphere(..)) => Some(Vec2::ZERO),
+            _ => Some(Vec2::splat(0.5)),
+        }
+    }
+
+    /// What was hit, if it can be chosen for the side that a ray met.
+    fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
+        let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
+        match self.sources.get(source as usize)? {
+            Source::Area(area) if area.two_sided || area.normal.dot(dir) <= 0.0 => Some((source, area)),
+            _ => None,
+        }
+    }
+
+    /// Whether points of what a ray hit can be chosen, if it shines.
+    pub fn chooses(&self, hit: &Hit, dir: Vec3) -> bool {
+        self.chosen(hit, dir).is_some()
+    }
+
+    /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface
+    /// that shines; 0 where it never does.
+    pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
+        let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
+        let Some(chances) = self.chances(world, to) else { return 0.0 };
+        let choice = chances.of(chances.tree) * self.tree.probability(to, source);
+        let pdf = area.form.pdf(area.normal, to.point, wi, distance);
+        if pdf.is_finite() { choice * pdf } else { 0.0 }
+    }
+
+    /// The lights at infinity that are seen in a direction, and how bright they are.
+    pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
+        let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
+        let seen = self.suns.iter().filter(move |sun| sun.way.distance_squared(dir) <= sun.chord2);
+        seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
+    }
+
+    /// The light from a direction in which nothing is hit, and its density among directions of the
+    /// surroundings.
+    pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
+        match world.environment() {
+            Some(environment) => environment.at_with_pdf(wi),
+            None => (world.sky(wi), 0.0),
+        }
+    }
+
+    /// The probability with which the surroundings are chosen for a point.
+    pub fn chance_of_sky(&self, world: &World, to: &Receiver) -> f32 {
+        self.chances(world, to).map_or(0.0, |chances| chances.of(chances.sky))
+    }
+}
+
+/// Whether an object is a closed mesh whose normals point outwards, with no other object in it: to
+/// choose points of it for what is inside would be in vain. Rays that meet its inside find it
+/// shining all the same.
+fn has_empty_inside(world: &World, number: usize) -> bool {
+    let objects = world.objects();
+    let object = &objects[number];
+    let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
+    let center = bounds.center().as_dvec3();
+    // Six times the volume of the cone from the middle to a part.
+    let cone = |part| match Form::of(object, part) {
+        Some((Form::Triangle(p, [e, f]), normal)) => {
+            e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
+        }
+        _ => 0.0,
+    };
+    let within =
+        |other: &Object| other.bounds().is_some_and(|other| bounds.holds(other.min) && bounds.holds(other.max));
+    let others = || objects.iter().enumerate().filter(|(i, _)| *i != number).map(|(_, other)| other);
+    objects.len() <= MANY
+        && object.extent().is_some()
+        && (0..object.parts()).map(cone).sum::<f64>() > 0.0
+        && !others().any(within)
+}
+
+/// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance
+/// over pi.
+fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
+    let seen = world.illuminate(light as usize, point);
+    LightSample {
+        light: LightId::Light(light),
+        wi: seen.to_light,
+        reach: seen.distance,
+        error: 0.0,
+        cosine: 1.0,
+        radiance: PI * seen.color,
+        choice,
+        pdf: 0.0,
+    }
+}
+
+impl Sun {
+    /// A light, if it is seen under some angle.
+    fn of(world: &World, light: u32) -> Option<Sun> {
+        let degrees = world.lights()[light as usize].spread();
+        let seen = of_light(world, light, DVec3::ZERO, 1.0);
+        let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
+        // 2 pi (1 - cos) of the angle is pi times that.
+        let chord2 = (4.0 * half * half) as f32;
+        (degrees > 0.0).then(|| Sun { light, way: seen.wi, chord2, radiance: seen.radiance / (PI * chord2) })
+    }
+}
+
+/// A light that is seen under some angle, from one of its directions.
+fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
+    let degrees = world.lights()[light as usize].spread();
+    if degrees == 0.0 {
+        return sample;
+    }
+    let cosine = fp::sin_cos_degrees(f64::from(degrees.min(90.0))).1 as f32;
+    let around = warp::polar(1.0 - u.x * (1.0 - cosine), u.y);
+    LightSample { wi: Frame::around(sample.wi).to_world(around), ..sample }
+}
+
+impl AreaLight {
+    fn bounds(&self) -> Bounds {
+        let round = self.form.is_round();
+        // What is seen of what bulges is a quarter of its surface, on the mean.
+        let area = self.form.area() * if round { 0.25 } else { 1.0 };
+        let power = area * self.radiance.max_element();
+        let power = if power.is_finite() { power.max(0.0) } else { 0.0 };
+        Bounds {
+            bounds: self.form.bounds(),
+            power,
+            axis: if round { Vec3::Z } else { self.normal },
+            cos_normals: if round { -1.0 } else { 1.0 },
+            cos_emission: 0.0,
+            two_sided: self.two_sided,
+            each: power,
+        }
+    }
+
+    fn sample(&self, point: DVec3, choice: f32, u: Vec2) -> Option<LightSample> {
+        let place = self.form.sample(self.normal, point, u)?;
+        if place.cosine <= 0.0 && !self.two_sided {
+            return None;
+        }
+        let light = LightId::Surface(self.object, self.part);
+        Some(LightSample {
+            light,
+            wi: place.wi,
+            reach: place.distance,
+            error: self.error + gamma(8) * place.distance,
+            cosine: place.cosine.abs().max(1e-3),
+            radiance: self.radiance,
+            choice,
+            pdf: place.pdf,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::testing::read;
+    use durer_scene::sampler::sample_2d;
+
+    #[test]
+    fn each_kind_of_light_is_chosen_as_often_as_it_says_also_where_it_brings_nothing() {
+        let world = read(
+            "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }
+            Background { sun 0.3 0.8 0.2 turbidity 3 }
+            Lights { PointLight { position 2 3 1 color 9000 9000 9000 } }
+            Materials { PrincipledMaterial { emissionLuminance 5000 emissionColor 1 1 1 } }
+            Group { MaterialIndex 0 Sphere { center -1 1 0 radius 0.3 } }",
+        );
+        let (emitters, point) = (world.emitters(), DVec3::new(0.3, 0.1, 0.2));
+        let is_apart = |light: LightId| emitters.apart.iter().any(|apart| LightId::Light(apart.light) == light);
+        // A point light that does not fade is no thing of the tree.
+        assert_eq!((emitters.apart.len(), emitters.sources.len()), (2, 1));
+        for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
+            let to = Receiver { point, n, far: Receiver::FAR };
+            let chances = emitters.chances(&world, &to).unwrap();
+            let apart: f32 = emitters.apart.iter().map(|apart| chances.of(apart.brings(n))).sum();
+            let said = [apart, chances.of(chances.sky), chances.of(chances.tree)];
+            assert!((said.iter().sum::<f32>() - 1.0).abs() < 1e-5, "{said:?}");
+            assert!(said.iter().all(|&chance| chance > 0.02), "{said:?}");
+            assert_eq!(said[1], emitters.chance_of_sky(&world, &to));
+            let (mut found, count) = ([0_u32; 3], 1 << 14);
+            for i in 0..count {
+                let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
+                let chosen = emitters.choose(&world, &to, choice.x);
+                // The tree chooses nothing where it brings nothing.
+                let Some(chosen) = chosen else {
+                    found[2] += 1;
+                    continue;
+                };
+                let Some(light) = emitters.sample(&world, &chosen, point, u) else { continue };
+                let kind = if is_apart(light.light) {
+                    0
+                } else if light.light == LightId::Environment {
+                    1
+                } else {
+                    2
+                };
+                assert!(kind != 1 || light.choice == said[1]);
+                found[kind] += 1;
+            }
+            // Sobol points are nearly even.
+            for (found, said) in found.iter().zip(said) {
+                assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, not {said}");
+            }
+        }
+    }
+}

@@ -1,0 +1,493 @@
+//! A tree over emitters, to choose one of many by what it may bring to a point.
+//!
+//! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
+//! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
+//! 12.6.3. Nodes have eight children, which are weighed together: fewer steps, and each choice is
+//! among smaller groups. What is alike and far away is a group whose members are as likely as each
+//! other: most of many lamps are then chosen in the upper nodes alone, which are near at hand.
+
+use super::Receiver;
+use durer_bvh::internal::{PlainKernel, room, run_plain};
+use durer_scene::math::{Aabb, Vec3, fp};
+use std::f32::consts::PI;
+
+/// Where some emitters are, how strong they are, and where they shine.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Where they are.
+    pub bounds: Aabb,
+    /// Their power together, in any one unit.
+    pub power: f32,
+    /// The middle of their normals.
+    pub axis: Vec3,
+    /// Cosine of the greatest angle between that and a normal.
+    pub cos_normals: f32,
+    /// Cosine of the greatest angle between a normal and the light.
+    pub cos_emission: f32,
+    /// Whether they shine to both sides.
+    pub two_sided: bool,
+    /// The power of each, if all shine about as the others do: as strongly, and to all sides or
+    /// one way. Else 0.
+    pub each: f32,
+}
+
+impl Bounds {
+    fn union(&self, other: &Bounds) -> Bounds {
+        let (axis, cos_normals) = cone_union((self.axis, self.cos_normals), (other.axis, other.cos_normals));
+        let share = self.each.min(other.each) / self.each.max(other.each);
+        let one_way = cos_normals >= ONE_WAY && self.two_sided == other.two_sided;
+        let all_ways = self.cos_normals == -1.0 && other.cos_normals == -1.0;
+        Bounds {
+            bounds: self.bounds.union(other.bounds),
+            power: self.power + other.power,
+            axis,
+            cos_normals,
+            cos_emission: self.cos_emission.min(other.cos_emission),
+            two_sided: self.two_sided || other.two_sided,
+            each: if share >= ALIKE && (one_way || all_ways) { self.each.min(other.each) } else { 0.0 },
+        }
+    }
+}
+
+fn angle(cosine: f32) -> f32 {
+    fp::atan2(sine(cosine), cosine)
+}
+
+/// The least cone around two cones.
+fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
+    let (wide_a, wide_b, between) = (angle(cos_a), angle(cos_b), angle(a.dot(b).clamp(-1.0, 1.0)));
+    if (between + wide_b).min(PI) <= wide_a {
+        return (a, cos_a);
+    }
+    if (between + wide_a).min(PI) <= wide_b {
+        return (b, cos_b);
+    }
+    let wide = 0.5 * (wide_a + between + wide_b);
+    let Some(about) = a.cross(b).try_normalize().filter(|_| wide < PI) else { return (Vec3::Z, -1.0) };
+    let turn = wide - wide_a;
+    let axis = a * fp::cos(turn) + about.cross(a) * fp::sin(turn);
+    (axis.normalize_or(a), fp::cos(wide))
+}
+
+/// How much the cosines at the middle of a node count for all of it, beside the greatest anywhere
+/// in it: these alone are far too much for wide nodes that are seen from the side.
+const CENTER: f32 = 0.8;
+
+/// Cosine of the greatest angle to the middle of normals that are about the same.
+const ONE_WAY: f32 = 0.995;
+
+/// The least share of one power that is about the same.
+const ALIKE: f32 = 0.8;
+
+/// Children of a node.
+const WIDTH: usize = 8;
+
+/// One number for each child.
+type Eight = [f32; WIDTH];
+
+/// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
+/// It is read from far away, and so is only what cannot be worked out of the rest.
+#[derive(Clone, Debug)]
+struct Node {
+    middle: [Eight; 3],
+    /// The square of the radius around the middle.
+    radius2: Eight,
+    /// 0 where there is no child; less than 0 where a child shines to both sides.
+    power: Eight,
+    axis: [Eight; 3],
+    cos_normals: Eight,
+    cos_emission: Eight,
+    children: [Child; WIDTH],
+    /// Where the emitters of each child begin, in the order of the tree, and after it where they
+    /// end.
+    ends: [u32; WIDTH + 1],
+    /// A bit for each child of several emitters that shine alike.
+    alike: u8,
+}
+
+/// A node's number, or an emitter's and [`Child::EMITTER`].
+#[derive(Clone, Copy, Debug)]
+struct Child(u32);
+
+impl Child {
+    const EMITTER: u32 = 1 << 31;
+}
+
+impl Node {
+    fn new(held: &[Bounds]) -> Self {
+        let of = |number: &dyn Fn(&Bounds) -> f32| std::array::from_fn(|i| held.get(i).map_or(0.0, number));
+        Node {
+            middle: [0, 1, 2].map(|axis| of(&|b| b.bounds.center()[axis])),
+            radius2: of(&|b| (0.5 * b.bounds.size()).length_squared()),
+            power: of(&|b| if b.two_sided { -b.power } else { b.power }),
+            axis: [0, 1, 2].map(|axis| of(&|b| b.axis[axis])),
+            cos_normals: of(&|b| b.cos_normals),
+            cos_emission: of(&|b| b.cos_emission),
+            children: [Child(0); WIDTH],
+            ends: [0; WIDTH + 1],
+            alike: 0,
+        }
+    }
+
+    /// Estimates of what each child brings to a point; more than zero wherever it brings any light.
+    /// And whether it is far from there.
+    ///
+    /// Within [`run_plain`], in a loop without branches.
+    #[inline(always)]
+    fn importances(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
+        if to.n == Vec3::ZERO { self.importances_of::<false>(to) } else { self.importances_of::<true>(to) }
+    }
+
+    #[inline(always)]
+    fn importances_of<const FACING: bool>(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
+        let (p, n, far2) = (to.point.as_vec3(), to.n, to.far * to.far);
+        let (mut importances, mut far) = ([0.0; WIDTH], [false; WIDTH]);
+        for i in 0..WIDTH {
+            let (x, y, z) = (p.x - self.middle[0][i], p.y - self.middle[1][i], p.z - self.middle[2][i]);
+            let (distance2, radius2) = (x * x + y * y + z * z, self.radius2[i]);
+            let inverse = 1.0 / distance2.sqrt();
+            let inverse = if distance2 > 0.0 { inverse } else { 0.0 };
+            let (x, y, z) = (x * inverse, y * inverse, z * inverse);
+            let cosine = self.axis[0][i] * x + self.axis[1][i] * y + self.axis[2][i] * z;
+            let power = self.power[i];
+            let cosine = if power < 0.0 { cosine.abs() } else { cosine };
+            let sine2 = radius2 / distance2;
+            let cos_bounds = (1.0 - sine2).sqrt();
+            let inside = distance2 <= radius2;
+            let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
+            // The least angle to a normal, and from that to the point, over all that the bounds
+            // hold.
+            let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
+            let (cos_least, _) = minus(least, bounds);
+            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 /
+            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the area of such a
+            // disc.
+            let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
+            let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
+            let mut across = least.0;
+            if FACING {
+                let arriving = -(n.x * x + n.y * y + n.z * z);
+                let (cos_arriving, _) = minus((arriving, sine(arriving)), bounds);
+                importance *= usual(arriving, largest(cos_arriving, 0.0));
+                across = if across < arriving { across } else { arriving };
+            }
+            far[i] = across > 0.0 && radius2 < far2 * distance2 * across * across;
+            importances[i] = if cos_least <= self.cos_emission[i] { 0.0 } else { largest(importance, 0.0) };
+        }
+        (importances, far)
+    }
+}
+
+#[inline(always)]
+fn sum(x: &Eight) -> f32 {
+    ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
+}
+
+/// What children bring as their probabilities; no numbers where none brings any light.
+#[inline(always)]
+fn shares(mut importances: Eight) -> Eight {
+    let sum = sum(&importances);
+    let sum = if sum > 0.0 && sum < f32::INFINITY { sum } else { f32::NAN };
+    for importance in &mut importances {
+        *importance /= sum;
+    }
+    importances
+}
+
+/// Not of numbers that are none, so that it is one instruction.
+#[inline(always)]
+fn largest(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
+}
+
+#[inline(always)]
+fn sine(cosine: f32) -> f32 {
+    largest(1.0 - cosine * cosine, 0.0).sqrt()
+}
+
+/// What a cosine counts that is so great at the middle of a node, and so great at most in it.
+#[inline(always)]
+fn usual(center: f32, most: f32) -> f32 {
+    CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
+}
+
+/// Cosine and sine of the difference of two angles, not less than 0.
+#[inline(always)]
+fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
+    let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
+    let is_less = cos_a > cos_b;
+    (if is_less { 1.0 } else { cosine }, if is_less { 0.0 } else { sine })
+}
+
+/// Estimates what the children of a node bring.
+struct Estimate<'a> {
+    node: &'a Node,
+    to: &'a Receiver,
+}
+
+impl PlainKernel for Estimate<'_> {
+    /// [`Node::importances`].
+    type Output = (Eight, [bool; WIDTH]);
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        self.node.importances(self.to)
+    }
+}
+
+/// [`LightTree::sample`].
+struct Sample<'a> {
+    nodes: &'a [Node],
+    to: &'a Receiver,
+    u: f32,
+}
+
+impl PlainKernel for Sample<'_> {
+    type Output = Option<(u32, f32)>;
+
+    #[inline(always)]
+    fn run(self) -> Self::Output {
+        let Sample { nodes, to, u } = self;
+        let (mut place, mut rest, mut probability) = (0, u, 1.0);
+        loop {
+            let node = nodes.get(place)?;
+            let (importances, far) = node.importances(to);
+            let shares = shares(importances);
+            // The first with which the sum is greater than the number; without a branch, which
+            // would not be guessed.
+            let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
+            for share in shares {
+                sum += share;
+                let is_passed = rest >= sum;
+                slot += usize::from(is_passed);
+                before = if is_passed { sum } else { before };
+            }
+            if slot == WIDTH {
+                // What rounding leaves is the last one's that has a share.
+                slot = shares.iter().rposition(|&share| share > 0.0)?;
+                before = shares[..slot].iter().sum();
+            } else if shares[0].is_nan() {
+                return None;
+            }
+            rest = ((rest - before) / shares[slot]).clamp(0.0, 1.0 - f32::EPSILON * 0.5);
+            probability *= shares[slot];
+            if far[slot] && node.alike >> slot & 1 == 1 {
+                let [from, to] = [node.ends[slot], node.ends[slot + 1]];
+                let count = (to - from) as f32;
+                return Some(((from + (rest * count) as u32).min(to - 1), probability / count));
+            }
+            let Child(next) = node.children[slot];
+            match next & !Child::EMITTER {
+                emitter if emitter != next => return Some((emitter, probability)),
+                next => place = next as usize,
+            }
+        }
+    }
+}
+
+/// The tree.
+#[derive(Clone, Debug, Default)]
+pub struct LightTree {
+    nodes: Vec<Node>,
+    /// The node above each, and which of its children it is.
+    parents: Vec<(u32, u8)>,
+    /// The node that holds each emitter, and which of its children it is.
+    leaves: Vec<(u32, u8)>,
+}
+
+/// A node of the tree of two children that is built first: they follow each other from `first` on,
+/// or it is one emitter.
+struct Half {
+    bounds: Bounds,
+    first: usize,
+    /// What it holds, in the order of the tree.
+    range: (u32, u32),
+}
+
+impl Half {
+    fn is_leaf(&self) -> bool {
+        self.range.1 - self.range.0 == 1
+    }
+}
+
+const BUCKETS: usize = 12;
+
+impl LightTree {
+    /// Over emitters; those without power are never chosen. And the numbers of the others as given,
+    /// in the order of the tree, by which the tree counts them.
+    pub fn new(emitters: &[Bounds]) -> (Self, Vec<u32>) {
+        let (halves, order) = halved(emitters);
+        let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
+        let Some(root) = halves.first() else { return (tree, order) };
+        let mut open = vec![(if root.is_leaf() { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
+        while let Some((mut held, parent)) = open.pop() {
+            // The largest are opened until there is no more room.
+            while held.len() < WIDTH {
+                let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf());
+                let largest = inner.max_by(|&a, &b| {
+                    let [a, b] = [a, b].map(|i| cost(&halves[held[i]].bounds));
+                    a.total_cmp(&b)
+                });
+                let Some(i) = largest else { break };
+                let first = halves[held[i]].first;
+                held.splice(i..=i, [first, first + 1]);
+            }
+            let number = tree.nodes.len() as u32;
+            let bounds: Vec<Bounds> = held.iter().map(|&half| halves[half].bounds).collect();
+            let mut node = Node::new(&bounds);
+            for (slot, half) in (0..).zip(held.iter().map(|&half| &halves[half])) {
+                (node.ends[usize::from(slot)], node.ends[usize::from(slot) + 1]) = half.range;
+                node.alike |= u8::from(half.bounds.each > 0.0 && !half.is_leaf()) << slot;
+                if half.is_leaf() {
+                    node.children[usize::from(slot)] = Child(Child::EMITTER | half.range.0);
+                    tree.leaves[half.range.0 as usize] = (number, slot);
+                } else {
+                    open.push((vec![half.first, half.first + 1], (number, slot)));
+                }
+            }
+            if number > 0 {
+                let (above, slot) = parent;
+                tree.nodes[above as usize].children[usize::from(slot)] = Child(number);
+            }
+            tree.nodes.push(node);
+            tree.parents.push(parent);
+        }
+        // They are read faster there.
+        let mut placed = room(tree.nodes.len());
+        placed.append(&mut tree.nodes);
+        tree.nodes = placed;
+        (tree, order)
+    }
+
+    /// Whether there is nothing to choose.
+    pub fn is_empty(&self) -> bool {
+        self.nodes.is_empty()
+    }
+
+    /// About what irradiance all of it brings to a point.
+    pub fn importance(&self, to: &Receiver) -> f32 {
+        self.nodes.first().map_or(0.0, |node| sum(&run_plain(Estimate { node, to }).0))
+    }
+
+    /// Chooses an emitter for a point by a number from 0 to 1; with its probability.
+    pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
+        run_plain(Sample { nodes: &self.nodes, to, u })
+    }
+
+    /// The probability with which [`LightTree::sample`] chooses an emitter.
+    pub fn probability(&self, to: &Receiver, emitter: u32) -> f32 {
+        self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
+    }
+
+    /// The probability with which a child of a node is chosen, and whether it is all that is chosen
+    /// before an emitter is: each of a child further up is as likely.
+    fn reached(&self, place: u32, slot: u8, to: &Receiver) -> (f32, bool) {
+        let mut before = 1.0;
+        if place > 0 {
+            let (above, slot) = self.parents[place as usize];
+            let (probability, is_last) = self.reached(above, slot, to);
+            if is_last || probability == 0.0 {
+                return (probability, is_last);
+            }
+            before = probability;
+        }
+        let slot = usize::from(slot);
+        let node = &self.nodes[place as usize];
+        let (importances, far) = run_plain(Estimate { node, to });
+        let share = shares(importances)[slot];
+        if share.is_nan() {
+            return (0.0, true);
+        }
+        let probability = before * share;
+        if !far[slot] || node.alike >> slot & 1 == 0 {
+            return (probability, false);
+        }
+        let [from, to] = [node.ends[slot], node.ends[slot + 1]];
+        (probability / (to - from) as f32, true)
+    }
+}
+
+/// A tree of two children a node, and the emitters in its order.
+fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
+    let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
+    if order.is_empty() {
+        return (Vec::new(), order);
+    }
+    let mut halves = vec![Half { bounds: emitters[order[0] as usize], first: 0, range: (0, order.len() as u32) }];
+    let mut open = vec![0];
+    while let Some(node) = open.pop() {
+        let (start, end) = halves[node].range;
+        let range = &mut order[start as usize..end as usize];
+        let whole = range.iter().map(|&i| emitters[i as usize]).reduce(|a, b| a.union(&b));
+        let Some(whole) = whole else { continue };
+        halves[node].bounds = whole;
+        if halves[node].is_leaf() {
+            continue;
+        }
+        let middle = start + split(emitters, range, &whole) as u32;
+        let first = halves.len();
+        halves[node].first = first;
+        halves.extend([(start, middle), (middle, end)].map(|range| Half { bounds: whole, first: 0, range }));
+        open.extend([first + 1, first]);
+    }
+    (halves, order)
+}
+
+/// Divides emitters so that both sides are small, weak and point one way; returns how many come
+/// first.
+fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
+    let middle = |i: u32| emitters[i as usize].bounds.center();
+    let middles = Aabb::around(range.iter().map(|&i| middle(i)));
+    let size = middles.size();
+    let mut best: Option<(f32, usize, usize)> = None;
+    let bucket = |axis: usize, i: u32| {
+        let share = (middle(i)[axis] - middles.min[axis]) / size[axis];
+        ((share * BUCKETS as f32) as usize).min(BUCKETS - 1)
+    };
+    for axis in (0..3).filter(|&axis| size[axis] > 0.0) {
+        let mut buckets: [Option<Bounds>; BUCKETS] = [None; BUCKETS];
+        for &i in range.iter() {
+            let place = &mut buckets[bucket(axis, i)];
+            *place = Some(place.map_or(emitters[i as usize], |known| known.union(&emitters[i as usize])));
+        }
+        let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
+            (Some(a), Some(b)) => Some(a.union(&b)),
+            (a, b) => a.or(b),
+        };
+        let mut above = [None; BUCKETS];
+        for i in (0..BUCKETS - 1).rev() {
+            above[i] = join(above[i + 1], buckets[i + 1]);
+        }
+        let mut below = None;
+        for i in 0..BUCKETS - 1 {
+            below = join(below, buckets[i]);
+            let (Some(low), Some(high)) = (below, above[i]) else { continue };
+            // Long boxes are better divided across.
+            let stretch = whole.bounds.size().max_element() / whole.bounds.size()[axis];
+            let cost = stretch * (cost(&low) + cost(&high));
+            if best.is_none_or(|(least, ..)| cost < least) {
+                best = Some((cost, axis, i));
+            }
+        }
+    }
+    let half = range.len() / 2;
+    let Some((_, axis, last)) = best else { return half };
+    // The order within each side stays, so that trees are the same everywhere.
+    let (low, high): (Vec<u32>, Vec<u32>) = range.iter().partition(|&&i| bucket(axis, i) <= last);
+    range[..low.len()].copy_from_slice(&low);
+    range[low.len()..].copy_from_slice(&high);
+    low.len()
+}
+
+/// Power times the solid angle in which it goes times the area that it comes from.
+fn cost(b: &Bounds) -> f32 {
+    let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
+    let wide = (normals + emission).min(PI);
+    let sine = sine(b.cos_normals);
+    let measure = 2.0 * PI * (1.0 - b.cos_normals)
+        + 0.5 * PI * (2.0 * wide * sine - fp::cos(normals - 2.0 * wide) - 2.0 * normals * sine + b.cos_normals);
+    b.power * measure.max(0.0) * b.bounds.half_area().max(f32::MIN_POSITIVE)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,230 @@
+//! Pictures on surfaces: each changes its parameter, and heights and normals bend as closed forms
+//! say.
+
+use crate::compile::{AccelKind, testing};
+use crate::world::{Interaction, Material, Principled, World};
+use durer_image as image;
+use durer_scene::describe::{Describe, Value};
+use durer_scene::dialect::Dialect;
+use durer_scene::material::{Parameters, PrincipledMaterial};
+use durer_scene::math::{Ray, Vec3};
+use std::path::Path;
+
+const FOLDER: &str = "maps";
+
+/// A picture's name, its side, and its texels by column and row.
+type Drawn<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
+
+/// A folder with pictures in the PPM format: each texel of one of them is `texel(x, y)`.
+fn folder(name: &str, pictures: &[Drawn]) -> tempfile::TempDir {
+    let folder = tempfile::Builder::new().prefix(&format!("{FOLDER}-{name}")).tempdir().unwrap();
+    for (name, side, texel) in pictures {
+        let mut bytes = format!("P6 {side} {side} 255\n").into_bytes();
+        let texels = (0..*side).flat_map(|y| (0..*side).map(move |x| (x, y)));
+        bytes.extend(texels.flat_map(|(x, y)| texel(x, y)));
+        std::fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    folder
+}
+
+/// A scene of one object with a material.
+fn world(material: &str, object: &str, folder: &Path) -> World {
+    compiled(&[material.to_string()], object, folder)
+}
+
+fn compiled(materials: &[String], objects: &str, folder: &Path) -> World {
+    let materials: String = materials.iter().map(|words| format!("PrincipledMaterial {{ {words} }}\n")).collect();
+    let text = format!(
+        "PerspectiveCamera {{ center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }} Background {{ color 1 1 1 }}\n\
+         Materials {{ {materials} }}\nGroup {{ MaterialIndex 0 {objects} }}\n"
+    );
+    let (world, diagnostics) = testing::try_read(&text, Dialect::Durer.rules(), AccelKind::Bvh, folder);
+    assert_eq!(diagnostics.iter().count(), 0, "{diagnostics:?}");
+    world.unwrap()
+}
+
+fn material(world: &World, number: usize) -> &Principled {
+    let Material::Phong(phong) = &world.materials()[number] else { panic!() };
+    phong.principled.as_ref().unwrap()
+}
+
+fn hit(world: &World, origin: Vec3, dir: Vec3) -> Interaction {
+    world.intersect(Ray::new(origin, dir), &mut ()).expect("a hit")
+}
+
+/// The parameters where a ray down the z axis meets a scene.
+fn parameters(world: &World) -> Parameters {
+    *world.parameters_at(material(world, 0), &hit(world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z))
+}
+
+const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
+
+#[test]
+fn every_picture_changes_its_parameter() {
+    let grey = |_, _| [100, 150, 200];
+    let folder = folder("grey", &[("grey.ppm", 2, &grey)]);
+    // One ball for each, so that tables are worked out once.
+    let (mut seen, mut materials, mut expectations) = (0, Vec::new(), Vec::new());
+    for (number, field) in PrincipledMaterial::FIELDS.iter().enumerate() {
+        let Some(stem) = field.name.strip_suffix("_texture") else { continue };
+        if ["normal", "bump", "emission", "opacity", "metallic_roughness"].contains(&stem) {
+            continue;
+        }
+        seen += 1;
+        // Everything is there, so that a change is seen.
+        let mut written =
+            PrincipledMaterial { walls: durer_scene::material::principled::Walls::Thin, ..Default::default() };
+        for (i, other) in PrincipledMaterial::FIELDS.iter().enumerate() {
+            match written.get(i) {
+                Some(Value::Float(_)) if !other.name.contains("ior") && other.name != "emission_luminance" => {
+                    written.set(i, Value::Float(0.6));
+                }
+                Some(Value::Vec3(_)) if other.name != "emission_color" => {
+                    written.set(i, Value::Vec3(Vec3::new(0.9, 0.7, 0.5)));
+                }
+                _ => {}
+            }
+        }
+        let words: Vec<String> = PrincipledMaterial::FIELDS
+            .iter()
+            .enumerate()
+            .filter_map(|(i, field)| {
+                let word = field.spelling(Dialect::Durer)?;
+                match written.get(i)? {
+                    Value::Float(x) => Some(format!("{word} {x:?}")),
+                    Value::Vec3(v) => Some(format!("{word} {:?} {:?} {:?}", v.x, v.y, v.z)),
+                    Value::Word(text) => Some(format!("{word} {text}")),
+                    _ => None,
+                }
+            })
+            .collect();
+        let word = PrincipledMaterial::FIELDS[number].spelling(Dialect::Durer).unwrap();
+        let color = matches!(written.get(number_of(stem)), Some(Value::Vec3(_)));
+        for (suffix, channel) in [("", 0), (":g", 1), (":b", 2)] {
+            if color && !suffix.is_empty() {
+                continue;
+            }
+            materials.push(format!("{} {word} grey.ppm{suffix}", words.join(" ")));
+            let mut expected = written.clone();
+            let linear = f32::from([100u8, 150, 200][channel]) / 255.0;
+            let tint = Vec3::from([100, 150, 200].map(image::decode_srgb));
+            let changed = match written.get(number_of(stem)).unwrap() {
+                Value::Float(x) if stem == "specular_rotation" => Value::Float(x + linear),
+                Value::Float(x) => Value::Float(x * linear),
+                Value::Vec3(v) => Value::Vec3(v * tint),
+                other => panic!("{other:?}"),
+            };
+            expected.set(number_of(stem), changed);
+            let mut expected = Parameters::of(&expected);
+            match stem {
+                "specular_weight" => (expected.specular_weight, expected.reflection) = (0.6, linear),
+                "subsurface_color" => expected.entering = tint,
+                _ => {}
+            }
+            expectations.push((format!("{word}{suffix}"), expected));
+        }
+    }
+    assert_eq!(seen, durer_scene::material::parameters::TEXTURED.len());
+    let ball = |i: usize| format!("MaterialIndex {i} Sphere {{ center {} 0 0 radius 1 }}\n", 3 * i);
+    let world = compiled(&materials, &(0..materials.len()).map(ball).collect::<String>(), folder.path());
+    for (i, (word, expected)) in expectations.iter().enumerate() {
+        let at = hit(&world, Vec3::new(3.0 * i as f32 + 0.2, 0.1, 5.0), Vec3::NEG_Z);
+        let found = world.parameters_at(material(&world, i), &at);
+        // A product's order may change its last bit.
+        assert_eq!(format!("{found:.5?}"), format!("{expected:.5?}"), "{word}");
+    }
+}
+
+fn number_of(name: &str) -> usize {
+    PrincipledMaterial::FIELDS.iter().position(|field| field.name == name).unwrap_or_else(|| panic!("{name}"))
+}
+
+#[test]
+fn a_direction_in_red_and_green_is_an_angle() {
+    let up = |_, _| [128, 255, 0];
+    let folder = folder("angle", &[("up.ppm", 1, &up)]);
+    let text = "specularAnisotropy 0.5 specularRotation 0.1 specularRotationTexture up.ppm:angle";
+    let turn = parameters(&world(text, BALL, folder.path())).specular_rotation;
+    assert!((turn - 0.35).abs() < 1e-3, "{turn}");
+}
+
+#[test]
+fn opacity_comes_from_a_picture() {
+    let half = |_, _| [51, 102, 0];
+    let folder = folder("opacity", &[("half.ppm", 1, &half)]);
+    for (name, expected) in [("half.ppm", 0.5 * 0.2), ("half.ppm:g", 0.5 * 0.4)] {
+        let world = world(&format!("opacity 0.5 opacityTexture {name}"), BALL, folder.path());
+        let share = world.opacity(&hit(&world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z));
+        assert!((share - expected).abs() < 1e-6, "{name}: {share}");
+    }
+}
+
+/// The normal for shading where a ray meets a scene.
+fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
+    let at = hit(world, origin, dir);
+    [world.mapped_normal(&material(world, 0).maps, &at).expect("a bent normal"), at.surface.n_shade]
+}
+
+#[test]
+fn a_ramp_of_heights_tilts_a_wall() {
+    // From black on the left to white on the right, and from black below to white on top.
+    let (right, up) = (|x, _| [x as u8; 3], |_, y| [255 - y as u8; 3]);
+    let folder = folder("ramp", &[("right.ppm", 256, &right), ("up.ppm", 256, &up)]);
+    // The picture once over 2 x 4, turned and moved.
+    let mesh = "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
+    std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
+    let object = "Transform { Translate 1 0 0 UniformScale 2 TriangleMesh { obj_file wall.obj } }";
+    for (name, slope) in [("right.ppm", Vec3::new(0.25, 0.0, 0.0)), ("up.ppm", Vec3::new(0.0, 0.125, 0.0))] {
+        let text = format!("bumpTexture {name} bumpHeight 1");
+        let world = world(&text, object, folder.path());
+        let [bent, _] = normal(&world, Vec3::new(3.0, 4.0, 9.0), Vec3::NEG_Z);
+        // 256 texels rise by 255 steps of 1/255.
+        let expected = (Vec3::Z - slope * (256.0 / 255.0)).normalize();
+        assert!((bent - expected).length() < 1e-3, "{name}: {bent} {expected}");
+    }
+}
+
+#[test]
+fn a_ramp_of_heights_around_a_ball() {
+    // Brighter eastwards: by 1 around the whole ball, so by h / (2 pi r cos latitude) for a way
+    // along a circle.
+    let folder = folder("ball", &[("east.ppm", 256, &|x, _| [x as u8; 3])]);
+    let world = world(
+        "bumpTexture east.ppm bumpHeight 0.5",
+        "Transform { Translate 1 2 3 UniformScale 2 Sphere { center 0 0 0 radius 1 } }",
+        folder.path(),
+    );
+    for (latitude, longitude) in [(0.0, 0.3), (0.7, 1.0), (-0.5, 2.0), (0.2, -1.2), (1.2, -2.0)] {
+        let (latitude, longitude): (f32, f32) = (latitude, longitude);
+        // Longitude counts from -z over +x.
+        let out = Vec3::new(
+            libm::sinf(longitude) * libm::cosf(latitude),
+            libm::sinf(latitude),
+            -libm::cosf(longitude) * libm::cosf(latitude),
+        );
+        let east = Vec3::new(libm::cosf(longitude), 0.0, libm::sinf(longitude));
+        let [bent, plain] = normal(&world, Vec3::new(1.0, 2.0, 3.0) + 5.0 * out, -out);
+        let rise = 0.5 * (256.0 / 255.0) / (2.0 * std::f32::consts::PI * 2.0 * libm::cosf(latitude));
+        let expected = (plain - rise * east).normalize();
+        assert!((bent - expected).length() < 2e-3, "{latitude} {longitude}: {bent} {expected}");
+    }
+}
+
+#[test]
+fn flat_pictures_bend_nothing_on_any_shape() {
+    let folder = folder("flat", &[("flat.ppm", 4, &|_, _| [128, 128, 255]), ("grey.ppm", 4, &|_, _| [77; 3])]);
+    for shape in [
+        "Sphere { center 0 0 0 radius 1 }",
+        "Plane { normal 0 0.3 1 offset 0 }",
+        "Cylinder { base 0 -1 0 top 0 1 0 radius 0.7 }",
+        "Disc { center 0 0 0 normal 0 0.2 1 radius 1 }",
+        "Triangle { vertex0 -1 -1 0 vertex1 1 -1 0 vertex2 0 1 0 }",
+        "Transform { XRotate 30 Scale 1 2 0.5 Sphere { center 0 0 0 radius 1 } }",
+    ] {
+        for text in ["normalTexture flat.ppm", "bumpTexture grey.ppm bumpHeight 3"] {
+            let world = world(text, shape, folder.path());
+            let [bent, plain] = normal(&world, Vec3::new(0.21, -0.13, 9.0), Vec3::NEG_Z);
+            assert!((bent - plain).length() < 0.01, "{shape}, {text}: {bent} {plain}");
+        }
+    }
+}

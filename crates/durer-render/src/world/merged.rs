@@ -1,0 +1,58 @@
+//! All meshes of a world as one, in world space.
+
+use super::{Geometry, World};
+use durer_scene::math::Vec3;
+use durer_scene::shape::MeshData;
+use durer_scene::shape::mesh::NO_INDEX;
+
+impl World {
+    /// All meshes as one, in world space, and how many objects are no meshes and left out.
+    pub fn merged_mesh(&self) -> (MeshData, usize) {
+        let (mut all, mut left_out) = (MeshData::default(), 0);
+        for object in self.objects() {
+            let Geometry::Mesh(tree) = &object.geometry else {
+                left_out += 1;
+                continue;
+            };
+            let (data, (normals, triangle_normals)) = (tree.mesh.to_data(), tree.mesh.normals());
+            let point = |p: &Vec3| object.world_point(*p);
+            let normal = |n: &Vec3| object.to_world.as_ref().map_or(*n, |to_world| to_world.normal(*n));
+            let bases = [&all.positions.len(), &all.uvs.len(), &all.normals.len()].map(|count| *count as u32);
+            all.flat |= data.flat;
+            let before = all.triangles.len();
+            // A map that mirrors would turn triangles inside out.
+            let mirrors = object.to_world.as_ref().is_some_and(|to_world| to_world.mirrors());
+            let turned = |list: &[[u32; 3]], base: u32| -> Vec<[u32; 3]> {
+                let moved = |i: u32| if i == NO_INDEX { i } else { i + base };
+                let turn = |[a, b, c]: [u32; 3]| if mirrors { [a, c, b] } else { [a, b, c] };
+                list.iter().map(|t| turn(t.map(moved))).collect()
+            };
+            if !data.colors.is_empty() {
+                all.colors.resize(all.positions.len(), [1.0; 4]);
+                all.colors.extend(&data.colors);
+            }
+            all.positions.extend(data.positions.iter().map(point));
+            all.uvs.extend(&data.uvs);
+            all.normals.extend(normals.iter().map(normal));
+            all.triangles.extend(turned(&data.triangles, bases[0]));
+            for (list, own, base) in [
+                (&mut all.triangle_uvs, &data.triangle_uvs[..], bases[1]),
+                (&mut all.triangle_normals, &triangle_normals, bases[2]),
+            ] {
+                if !own.is_empty() {
+                    list.resize(before, [NO_INDEX; 3]);
+                    list.extend(turned(own, base));
+                }
+            }
+        }
+        if !all.colors.is_empty() {
+            all.colors.resize(all.positions.len(), [1.0; 4]);
+        }
+        for list in [&mut all.triangle_uvs, &mut all.triangle_normals] {
+            if !list.is_empty() {
+                list.resize(all.triangles.len(), [NO_INDEX; 3]);
+            }
+        }
+        (all, left_out)
+    }
+}

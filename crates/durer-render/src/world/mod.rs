@@ -1,0 +1,438 @@
+//! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
+
+mod contents;
+pub mod csg;
+pub mod emitters;
+mod interaction;
+mod maps;
+mod material;
+mod merged;
+mod object;
+pub mod shading;
+pub mod solid;
+mod surfaces;
+mod together;
+
+pub use contents::{Assets, Contents};
+use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
+use durer_scene::light::{Emitter as _, Illumination, Light};
+use durer_scene::material::Pattern;
+use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
+use durer_scene::shape::{Shape as _, ShapeHit, Sphere};
+use durer_scene::source::Digest;
+use durer_scene::texture::Texture;
+pub use emitters::Emitters;
+use glam::DVec3;
+pub use interaction::Interaction;
+pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
+pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
+pub use shading::Shading;
+use std::sync::OnceLock;
+pub(crate) use surfaces::{Kind, LANES, Met, Numbers, PLACES, Surfaces, Vectors};
+pub(crate) use together::{Few, TOGETHER};
+
+/// A scene ready to be traced.
+#[derive(Clone, Debug)]
+pub struct World {
+    contents: Contents,
+    assets: Assets,
+    /// The hash of all that it was made of, and whether something was changed since.
+    source: Digest,
+    edited: bool,
+    emitters: Emitters,
+    has_cutouts: bool,
+    hides_backs: bool,
+    has_interfaces: bool,
+    /// Whether light goes straight through some sheet.
+    has_sheets: bool,
+    /// What paths may begin in: bodies that they enter, where some is filled.
+    bodies: Vec<u32>,
+    /// The extent of each object, found when it is first asked for; nothing where light goes into
+    /// no object.
+    extents: Vec<OnceLock<Option<f32>>>,
+    /// Simple shapes that stand outside the structure, tested eight at a time.
+    pub(crate) packs: PrimitivePacks,
+    /// All things, where they are a few: for rays that are asked about together.
+    pub(crate) few: Option<Few>,
+    /// What else stands outside: objects without end, and all where they are so few that no tree
+    /// pays.
+    pub(crate) loose: Vec<u32>,
+    pub(crate) accel: Accel,
+    /// The spheres of the tree as they lie in its leaves, so that none has to be looked up. Other
+    /// things have a radius of 0 here; there is nothing where no thing is a sphere.
+    pub(crate) spheres: Vec<Sphere>,
+}
+
+/// The structure over all bounded objects.
+#[derive(Clone, Debug)]
+pub enum Accel {
+    /// A tree over objects; meshes have trees of their own.
+    Bvh(Bvh),
+    /// A grid over the parts of all objects.
+    Grid {
+        /// The cells.
+        grid: Grid,
+        /// Object and part of each thing in the grid.
+        parts: Vec<(u32, u32)>,
+    },
+    /// Every object and part is tested.
+    None,
+}
+
+/// Where a ray hits the world.
+///
+/// Hits are ordered: by `t`, then object, then part. All structures therefore name the same hit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Position along the ray.
+    pub t: f32,
+    /// Coordinates on the part.
+    pub uv: Vec2,
+    /// Number of the object.
+    pub object: u32,
+    /// Number of the triangle in a mesh; in a solid, what [`csg`] says of it; else 0.
+    pub part: u32,
+}
+
+impl Hit {
+    fn is_before(&self, other: &Option<Hit>) -> bool {
+        other.is_none_or(|o| (self.t, self.object, self.part) < (o.t, o.object, o.part))
+    }
+}
+
+impl World {
+    /// Of what it is made of, with its hash; without a structure over its objects.
+    pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
+        let mut world = World {
+            contents,
+            assets,
+            source,
+            edited: false,
+            emitters: Emitters::default(),
+            has_cutouts: false,
+            hides_backs: false,
+            has_interfaces: false,
+            has_sheets: false,
+            bodies: Vec::new(),
+            extents: Vec::new(),
+            packs: PrimitivePacks::default(),
+            few: None,
+            loose: Vec::new(),
+            accel: Accel::None,
+            spheres: Vec::new(),
+        };
+        world.has_cutouts = world.finds_cutouts();
+        world.hides_backs = world.finds_hidden_backs();
+        world.has_interfaces = world.finds_interfaces();
+        world.has_sheets = world.finds_sheets();
+        world.bodies = world.finds_bodies();
+        world.extents = world.forgotten_extents();
+        world.emitters = Emitters::new(&world);
+        world
+    }
+
+    /// What makes lumens of its light, by colour, where that is in watts.
+    pub fn lumens(&self) -> Option<Vec3> {
+        self.contents.lumens
+    }
+
+    /// What shines.
+    pub fn emitters(&self) -> &Emitters {
+        &self.emitters
+    }
+
+    /// Whether some surface is there in part only.
+    pub fn has_cutouts(&self) -> bool {
+        self.has_cutouts
+    }
+
+    /// Whether cameras look through the backs of some faces.
+    pub fn hides_backs(&self) -> bool {
+        self.hides_backs
+    }
+
+    /// Whether some body has no skin, so that light goes straight into it.
+    pub fn has_interfaces(&self) -> bool {
+        self.has_interfaces
+    }
+
+    /// Whether light may go straight through some sheet, such as a pane.
+    pub fn has_sheets(&self) -> bool {
+        self.has_sheets
+    }
+
+    /// Whether some picture has smaller versions of itself, so that it matters how wide what a
+    /// sample stands for is.
+    pub fn has_mipmaps(&self) -> bool {
+        self.textures().iter().any(Texture::has_levels)
+    }
+
+    /// The first hit in the ray's interval.
+    pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
+        self.closest_along(&mut ray.into(), counter)
+    }
+
+    /// The same of a ray that is made shorter while it is looked for, and is what it was then: a
+    /// copy of what was just written takes long.
+    #[inline]
+    pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
+        counter.ray();
+        if !durer_bvh::internal::is_sound(&ray.rounded) {
+            return None;
+        }
+        let t_max = ray.rounded.t_max;
+        let best = self.nearest(ray, counter);
+        ray.rounded.t_max = t_max;
+        best
+    }
+
+    fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        // A tie is decided by the order of hits, so a later ray may reach just to the present t.
+        let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
+            if let Some((ShapeHit { t, uv }, part)) = found {
+                let hit = Hit { t, uv, object, part };
+                if hit.is_before(best) {
+                    *best = Some(hit);
+                    ray.rounded.t_max = t.next_up();
+                }
+            }
+        };
+        if let Some(met) = self.packs.closest(&ray.rounded, counter) {
+            let crossing = self.objects()[met.number as usize].crossing_at(met.t, ray);
+            offer(&mut best, ray, met.number, Some((crossing, 0)));
+        }
+        for &object in &self.loose {
+            let found = self.objects()[object as usize].closest(object, ray, false, counter);
+            offer(&mut best, ray, object, found);
+        }
+        match &self.accel {
+            Accel::Bvh(bvh) if bvh.is_empty() => {}
+            Accel::Bvh(bvh) => {
+                let outer = ray.rounded;
+                bvh.traverse(&outer, counter, |item, _, counter| {
+                    let (object, found) = self.closest_of(bvh, item, ray, false, counter);
+                    offer(&mut best, ray, object, found);
+                    ray.rounded.t_max
+                });
+            }
+            Accel::Grid { grid, parts } => {
+                let outer = ray.rounded;
+                grid.traverse(&outer, counter, |item, _, counter| {
+                    let (object, part) = parts[item];
+                    let found = self.objects()[object as usize].part((object, part), ray, counter);
+                    offer(&mut best, ray, object, found);
+                    ray.rounded.t_max
+                });
+            }
+            Accel::None => {
+                for (i, object) in self.objects().iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
+                    for part in 0..object.parts() {
+                        let found = object.part((i as u32, part), ray, counter);
+                        offer(&mut best, ray, i as u32, found);
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// The number of a thing of the tree, and its first hit in the ray's interval.
+    #[inline(always)]
+    fn closest_of<T: TraversalCounter>(
+        &self,
+        bvh: &Bvh,
+        item: usize,
+        ray: &Ray64,
+        any: bool,
+        counter: &mut T,
+    ) -> (u32, Option<(ShapeHit, u32)>) {
+        let number = bvh.primitive_indices()[item];
+        if let Some(sphere) = self.spheres.get(item).filter(|sphere| sphere.radius > 0.0) {
+            counter.work(0, 1);
+            return (number, sphere.intersect(&ray.rounded).map(|crossing| (crossing, 0)));
+        }
+        (number, self.objects()[number as usize].closest(number, ray, any, counter))
+    }
+
+    /// Whether anything is hit in the ray's interval; the first thing found will do.
+    pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
+        self.occluded_along(&ray.into(), counter)
+    }
+
+    /// The same without a copy of the ray.
+    pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
+        counter.ray();
+        let outer = &ray.rounded;
+        if !durer_bvh::internal::is_sound(outer) {
+            return false;
+        }
+        if self.packs.occluded(outer, counter)
+            || self.loose.iter().any(|&i| self.objects()[i as usize].closest(i, ray, true, counter).is_some())
+        {
+            return true;
+        }
+        let mut found = false;
+        match &self.accel {
+            Accel::Bvh(bvh) if bvh.is_empty() => {}
+            Accel::Bvh(bvh) => bvh.traverse(outer, counter, |item, t_max, counter| {
+                found |= self.closest_of(bvh, item, ray, true, counter).1.is_some();
+                if found { f32::NEG_INFINITY } else { t_max }
+            }),
+            Accel::Grid { grid, parts } => grid.traverse(outer, counter, |item, t_max, counter| {
+                let (object, part) = parts[item];
+                found |= self.objects()[object as usize].part((object, part), ray, counter).is_some();
+                if found { f32::NEG_INFINITY } else { t_max }
+            }),
+            Accel::None => {
+                found = self
+                    .objects()
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, o)| o.bounds().is_some())
+                    .any(|(i, o)| (0..o.parts()).any(|part| o.part((i as u32, part), ray, counter).is_some()));
+            }
+        }
+        found
+    }
+
+    /// The closed things of glass that a point is inside, with their indices of refraction.
+    pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
+        self.around(point, 0..self.objects().len() as u32, |glass| glass.transparent != Color::ZERO)
+    }
+
+    /// The closed bodies that paths enter and that a point is inside, with their indices of
+    /// refraction; none where no body absorbs or scatters.
+    pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
+        self.around(point, self.bodies.iter().copied(), Phong::is_entered)
+    }
+
+    /// What [`Object::extent`] says of an object.
+    pub(crate) fn extent(&self, object: u32) -> Option<f32> {
+        let find = || self.objects()[object as usize].extent();
+        self.extents.get(object as usize).map_or_else(find, |extent| *extent.get_or_init(find))
+    }
+
+    fn forgotten_extents(&self) -> Vec<OnceLock<Option<f32>>> {
+        let enters = |material: &Material| matches!(material, Material::Phong(phong) if phong.is_entered());
+        let wanted = if self.materials().iter().any(enters) { self.objects().len() } else { 0 };
+        vec![OnceLock::new(); wanted]
+    }
+
+    fn around(
+        &self,
+        point: Vec3,
+        among: impl Iterator<Item = u32>,
+        wanted: fn(&Phong) -> bool,
+    ) -> impl Iterator<Item = (u32, f32)> {
+        among.filter_map(move |number| {
+            let object = &self.objects()[number as usize];
+            match &self.materials()[object.material as usize] {
+                Material::Phong(phong) if wanted(phong) && object.contains(point) => Some((number, phong.ior)),
+                _ => None,
+            }
+        })
+    }
+
+    /// The number of the triangle at a hit in its mesh, else 0.
+    pub fn triangle(&self, hit: &Hit) -> u32 {
+        match &self.objects()[hit.object as usize].geometry {
+            Geometry::Solid(solid) => solid.triangle(hit.part),
+            _ => hit.part,
+        }
+    }
+
+    /// All hits in the ray's interval, from near to far; of several at the same `t` the first.
+    pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
+        let mut rest = ray.into();
+        std::iter::from_fn(move || {
+            let hit = self.closest(&rest, &mut ())?;
+            rest.rounded.t_min = hit.t;
+            Some(hit)
+        })
+    }
+
+    /// The nearest hit of each object in the ray's interval, in the order in which they are
+    /// written.
+    pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
+        let ray = ray.into();
+        (0..self.objects().len() as u32).filter_map(move |object| self.hit_of(object, &ray))
+    }
+
+    /// The nearest hit of one object, whatever is before it.
+    pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
+        let sound = durer_bvh::internal::is_sound(&ray.rounded);
+        let (crossing, part) =
+            self.objects()[object as usize].closest(object, ray, false, &mut ()).filter(|_| sound)?;
+        Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
+    }
+
+    /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
+    #[inline(always)]
+    pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
+        let Illumination { to_light, distance, color } = match &self.lights()[light] {
+            // Nearly always; what is worked out stays in registers.
+            Light::Point(lamp) => lamp.illuminate(point),
+            lamp => lamp.illuminate(point),
+        };
+        let mut seen = Illumination { to_light, distance, color };
+        if let Some(Some(profile)) = self.profiles().get(light) {
+            seen.color = profile.at(self.lights()[light].in_profile(-seen.to_light)) * seen.color;
+        }
+        seen
+    }
+
+    /// The colour that a ray sees that hits nothing.
+    pub fn sky(&self, direction: Vec3) -> Color {
+        if let Some(environment) = self.environment() {
+            return environment.at(direction);
+        }
+        self.cube_map().map_or(self.background(), |map| map.at(direction))
+    }
+
+    /// The materials that make up a surface point, each with its share.
+    #[inline]
+    pub fn parts(&self, at: &Interaction) -> MaterialMix<'_> {
+        let mut parts = MaterialMix::new();
+        match &self.materials()[at.material as usize] {
+            // Nearly always.
+            Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
+            Material::Solid(..) => self.mix(at.material, at, 1.0, &mut parts),
+        }
+        parts
+    }
+
+    fn mix<'w>(&'w self, material: u32, at: &Interaction, share: f32, parts: &mut MaterialMix<'w>) {
+        match &self.materials()[material as usize] {
+            Material::Phong(phong) => parts.push(WeightedMaterial { phong, share }),
+            Material::Solid(solid, to_pattern, picture) => {
+                let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
+                let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
+                let weight = solid.share(q, self.rules().compat) * pictured;
+                let [first, second] = solid.materials();
+                for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
+                    if weight != 0.0 {
+                        self.mix(index, at, share * weight, parts);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The box around all bounded objects.
+    pub fn bounds(&self) -> Aabb {
+        self.objects().iter().filter_map(Object::bounds).fold(Aabb::EMPTY, Aabb::union)
+    }
+
+    /// The structure over its objects.
+    pub fn accel(&self) -> &Accel {
+        &self.accel
+    }
+}
+
+#[cfg(test)]
+mod leaving_tests;
+#[cfg(test)]
+mod packs_tests;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,431 @@
+//! The things in a world, and how a ray meets them.
+
+use super::csg::Csg;
+use durer_bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
+use durer_scene::dialect::MeshNormals;
+use durer_scene::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
+use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface, Uv};
+use glam::DVec3;
+use std::sync::{Arc, OnceLock};
+
+/// One thing in the world.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// What it is, in object space.
+    pub geometry: Geometry,
+    /// From object to world space; `None` where they are the same.
+    pub to_world: Option<Affine>,
+    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`]
+    /// moves it back.
+    pub center: Vec3,
+    /// Number of its material; the parts of a solid have their own.
+    pub material: u32,
+    /// Length of its normals: other than 1 where [`durer_scene::dialect::Compat::RawNormals`] holds.
+    pub normal_length: f32,
+    /// Where it is written.
+    pub span: durer_diag::Span,
+}
+
+/// Quirks of old programs, and one mistake, in how a surface is placed in the world.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct PlacementQuirks {
+    /// Whether its position is the ray's own, without bounds on its error.
+    pub as_is: bool,
+    /// Whether [`durer_scene::dialect::Compat::MovedNormals`] holds.
+    pub moved_normals: bool,
+    /// Whether [`durer_scene::dialect::Compat::MeshTextures`] holds.
+    pub mesh_textures: bool,
+}
+
+/// The form of an object.
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// A shape of one part.
+    Primitive(Primitive),
+    /// A mesh, shared by all objects that show it.
+    Mesh(Arc<MeshTree>),
+    /// Closed shapes and meshes combined, whose parts are placed in world space.
+    Solid(Arc<Csg>),
+}
+
+/// A mesh with its own tree.
+#[derive(Debug)]
+pub struct MeshTree {
+    /// The mesh.
+    pub mesh: Mesh,
+    /// Its triangles' tree.
+    pub bvh: TriangleBvh,
+    /// Whether the mesh is closed, once somebody asked.
+    closed: OnceLock<bool>,
+}
+
+impl MeshTree {
+    /// Builds the tree.
+    pub fn new(mesh: Mesh, quality: BuildQuality) -> Self {
+        let bvh = mesh.tree(quality);
+        MeshTree { mesh, bvh, closed: OnceLock::new() }
+    }
+
+    /// The same, blind to triangles seen from their sides: see `TriangleBvh::least_volume`.
+    pub fn least_volume(self, least_volume: f64) -> Self {
+        MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
+    }
+
+    /// The same tree of the same mesh with other normals.
+    pub fn with_normals(&self, rule: MeshNormals) -> Self {
+        MeshTree { mesh: self.mesh.with_normals(rule), bvh: self.bvh.clone(), closed: self.closed.clone() }
+    }
+
+    /// Bytes in memory.
+    pub fn bytes(&self) -> usize {
+        self.mesh.bytes() + self.bvh.memory_usage()
+    }
+
+    /// Whether the mesh has an inside.
+    pub fn is_closed(&self) -> bool {
+        *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
+    }
+
+    /// Offers every crossing of a line, with the number of its triangle, in any order.
+    ///
+    /// The line is taken from its place nearest to the mesh, so that only the mesh's own
+    /// coordinates round.
+    pub(super) fn crossings<T: TraversalCounter>(
+        &self,
+        line: &Line,
+        counter: &mut T,
+        offer: &mut impl FnMut(f64, Vec2, u32),
+    ) {
+        let shift = line.nearest(self.bvh.bounds().center().as_dvec3());
+        let ray = Ray::new(line.at(shift).as_vec3(), line.dir.as_vec3());
+        let ray = Ray { t_min: f32::NEG_INFINITY, ..ray };
+        for hit in self.bvh.all_hits_counting(&ray, counter) {
+            offer(f64::from(hit.t) + shift, hit.uv, hit.triangle);
+        }
+    }
+
+    /// The first hit in the ray's interval; `any` ends at the first found.
+    #[inline]
+    fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(ShapeHit, u32)> {
+        if any {
+            let found = self.bvh.occluded_counting(ray, counter);
+            return found.then_some((ShapeHit { t: ray.t_min, uv: Vec2::ZERO }, 0));
+        }
+        let hit = self.bvh.closest_counting(ray, counter)?;
+        Some((ShapeHit { t: hit.t, uv: hit.uv }, hit.triangle))
+    }
+}
+
+impl Object {
+    pub(super) fn local_ray(&self, ray: &Ray64) -> Ray {
+        self.to_world.as_ref().map_or_else(|| ray.rounded, |to_world| to_world.inverse_ray(ray))
+    }
+
+    /// A ray in the space that the object is written in, where a transform applies.
+    pub fn own_ray(&self, ray: &Ray64) -> Option<Ray> {
+        let local = self.to_world.as_ref()?.inverse_ray(ray);
+        Some(Ray { origin: local.origin + self.center, ..local })
+    }
+
+    /// The line through a ray in object space.
+    pub(super) fn local_line(&self, ray: &Ray64) -> Line {
+        self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
+    }
+
+    /// The axis of what is round about one, for [`Object::crossings`].
+    pub(super) fn axis(&self) -> Option<Axis> {
+        if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
+    }
+
+    /// Offers every crossing of the line through a ray, with the number of its part, in any order.
+    pub(super) fn crossings<T: TraversalCounter>(
+        &self,
+        axis: Option<&Axis>,
+        ray: &Ray64,
+        counter: &mut T,
+        offer: &mut impl FnMut(f64, Vec2, u32),
+    ) {
+        let line = self.local_line(ray);
+        match &self.geometry {
+            Geometry::Primitive(shape) => {
+                counter.work(0, 1);
+                shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
+            }
+            Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
+            // Solids in solids are one tree.
+            Geometry::Solid(_) => {}
+        }
+    }
+
+    /// A point of object space in world space.
+    pub fn world_point(&self, p: Vec3) -> Vec3 {
+        self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
+    }
+
+    /// The surface in world space, at a crossing that is next to this point of object space.
+    pub(super) fn surface(
+        &self,
+        ray: &Ray64,
+        point: DVec3,
+        crossing: &ShapeHit,
+        part: u32,
+        quirks: PlacementQuirks,
+    ) -> Surface {
+        let mut surface = Surface::NOWHERE;
+        self.own_surface(ray, point, crossing, part, quirks, &mut surface);
+        self.place(&mut surface, ray, crossing, quirks);
+        surface
+    }
+
+    /// The same before it is placed: in object space, but for solids.
+    pub(super) fn own_surface(
+        &self,
+        ray: &Ray64,
+        point: DVec3,
+        crossing: &ShapeHit,
+        part: u32,
+        quirks: PlacementQuirks,
+        surface: &mut Surface,
+    ) {
+        // Each writes for itself: what all wrote to one place would be copied from there.
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
+            Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
+            Geometry::Primitive(shape) => *surface = shape.surface(point, crossing),
+            Geometry::Mesh(tree) => *surface = tree.mesh.surface(part, crossing),
+            Geometry::Solid(solid) => *surface = solid.surface(ray, crossing, part, quirks),
+        }
+    }
+
+    /// Places such a surface in the world. It stays where it lies in memory, for a copy of what was
+    /// just written takes long.
+    #[inline]
+    pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, quirks: PlacementQuirks) {
+        if matches!(self.geometry, Geometry::Solid(_)) {
+            return;
+        }
+        let shading = |to_world: &Affine, n: Vec3| match quirks.moved_normals {
+            true => to_world.vector(n).normalize_or(n),
+            false => to_world.normal(n),
+        };
+        if quirks.as_is {
+            if let Some(to_world) = &self.to_world {
+                surface.n_geo = to_world.normal(surface.n_geo);
+                surface.n_shade = shading(to_world, surface.n_shade);
+            }
+            surface.position = ray.rounded.at(crossing.t);
+            surface.n_shade *= self.normal_length;
+            if quirks.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
+                surface.uv = Uv::None;
+            }
+        } else if let Some(to_world) = &self.to_world {
+            let error = to_world.point_error(surface.position, surface.error);
+            let point = to_world.point64(surface.position);
+            surface.position = point.as_vec3();
+            surface.rest = (point - surface.position.as_dvec3()).as_vec3();
+            // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
+            surface.error = error + to_world.spread(surface.bulge(to_world.inverse_spread(error)));
+            surface.n_geo = to_world.normal(surface.n_geo);
+            surface.n_shade = shading(to_world, surface.n_shade);
+            surface.shadow_offsets = surface.shadow_offsets.map(|lift| to_world.vector(lift));
+        } else {
+            surface.error += surface.bulge(surface.error);
+        }
+    }
+
+    /// The first hit of the object, by its number, in the ray's interval.
+    #[inline]
+    pub(super) fn closest<T: TraversalCounter>(
+        &self,
+        number: u32,
+        ray: &Ray64,
+        any: bool,
+        counter: &mut T,
+    ) -> Option<(ShapeHit, u32)> {
+        let moved;
+        let local = match &self.to_world {
+            Some(to_world) => {
+                moved = to_world.inverse_ray(ray);
+                &moved
+            }
+            None => &ray.rounded,
+        };
+        match &self.geometry {
+            Geometry::Primitive(shape) => {
+                counter.work(0, 1);
+                shape.intersect(local).map(|crossing| (crossing, 0))
+            }
+            Geometry::Mesh(tree) => tree.closest(local, any, counter),
+            Geometry::Solid(solid) => solid.closest(ray, ray.side.inside(number), counter),
+        }
+    }
+
+    /// The crossing with one part of the object, by both numbers, tested directly, and its part; a
+    /// solid is asked as a whole.
+    pub(super) fn part<T: TraversalCounter>(
+        &self,
+        (number, part): (u32, u32),
+        ray: &Ray64,
+        counter: &mut T,
+    ) -> Option<(ShapeHit, u32)> {
+        counter.work(0, 1);
+        let local = self.local_ray(ray);
+        let crossing = match &self.geometry {
+            Geometry::Primitive(shape) => shape.intersect(&local),
+            // Refused like by the tree: such a ray hits nothing.
+            Geometry::Mesh(_) if !durer_bvh::internal::is_sound(&local) => None,
+            Geometry::Mesh(tree) => tree
+                .bvh
+                .watertight_ray(&local)
+                .intersect(tree.mesh.corners(part), local.t_min, local.t_max)
+                .map(ShapeHit::from),
+            Geometry::Solid(solid) => return solid.closest(ray, ray.side.inside(number), counter),
+        };
+        crossing.map(|crossing| (crossing, part))
+    }
+
+    /// Whether it can be tested together with others of its kind: a simple shape, where it is
+    /// written. And how long that takes, in spheres.
+    pub(crate) fn simple(&self) -> Option<usize> {
+        use Primitive::{Cuboid, Disc, Plane, Rectangle, Sphere};
+        match &self.geometry {
+            Geometry::Primitive(Plane(_) | Sphere(_)) if self.to_world.is_none() => Some(1),
+            Geometry::Primitive(Disc(_) | Rectangle(_) | Cuboid(_)) if self.to_world.is_none() => Some(2),
+            _ => None,
+        }
+    }
+
+    /// The same where things lie side by side for one ray: of boxes, which take six divisions each, a
+    /// tree finds the right one sooner.
+    pub(crate) fn simple_for_one_ray(&self) -> Option<usize> {
+        self.simple().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
+    }
+
+    /// Its crossing with a ray that it is known to meet first at a place.
+    #[inline]
+    pub(super) fn crossing_at(&self, t: f32, ray: &Ray64) -> ShapeHit {
+        match &self.geometry {
+            // Of these a hit says more than where it is.
+            Geometry::Primitive(shape @ (Primitive::Rectangle(_) | Primitive::Cuboid(_))) => {
+                shape.intersect(&ray.rounded).unwrap_or(ShapeHit { t, uv: Vec2::ZERO })
+            }
+            _ => ShapeHit { t, uv: Vec2::ZERO },
+        }
+    }
+
+    /// The sphere that it is, where it is written; else one of radius 0.
+    pub(crate) fn sphere(&self) -> Sphere {
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Sphere(sphere)) if self.to_world.is_none() => sphere.clone(),
+            _ => Sphere { center: Vec3::ZERO, radius: 0.0 },
+        }
+    }
+
+    /// Adds it, which is [simple](Object::simple), under a number to those that are tested together.
+    pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) {
+        match &self.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
+            Geometry::Primitive(Primitive::Sphere(sphere)) => packs.push_sphere(number, sphere.center, sphere.radius),
+            Geometry::Primitive(Primitive::Disc(disc)) => {
+                packs.push_disc(number, disc.center, disc.unit_normal(), [disc.inner_radius, disc.radius]);
+            }
+            Geometry::Primitive(Primitive::Rectangle(r)) => packs.push_rectangle(number, r.corner, [r.edge0, r.edge1]),
+            Geometry::Primitive(Primitive::Cuboid(cuboid)) => packs.push_box(number, cuboid.min, cuboid.max),
+            _ => {}
+        }
+    }
+
+    /// Whether it is closed, so that a point is inside it or outside.
+    fn is_closed(&self) -> bool {
+        match &self.geometry {
+            Geometry::Primitive(shape) => shape.inside(DVec3::ZERO).is_some(),
+            Geometry::Mesh(tree) => tree.is_closed(),
+            Geometry::Solid(_) => true,
+        }
+    }
+
+    /// Half the area of the box around it, infinite for what has no end; `None` for what is not
+    /// closed.
+    pub fn extent(&self) -> Option<f32> {
+        self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
+    }
+
+    /// Whether it is closed and a point of world space is inside.
+    pub fn contains(&self, point: Vec3) -> bool {
+        if !self.is_closed() {
+            return false;
+        }
+        if let Geometry::Primitive(shape) = &self.geometry {
+            let local = self.to_world.as_ref().map_or(point, |to_world| to_world.inverse_point(point));
+            return shape.inside(local.as_dvec3()) == Some(true);
+        }
+        // Any line from inside crosses what is closed an odd number of times.
+        let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
+        let next =
+            |ray: &mut Ray64| self.closest(0, ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
+        std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
+    }
+
+    /// How many parts it has that can be tested directly.
+    pub fn parts(&self) -> u32 {
+        match &self.geometry {
+            Geometry::Primitive(_) | Geometry::Solid(_) => 1,
+            Geometry::Mesh(tree) => tree.mesh.len() as u32,
+        }
+    }
+
+    /// Bounds in world space; `None` for a shape without end.
+    pub fn bounds(&self) -> Option<Aabb> {
+        let local = self.local_bounds()?;
+        Some(if let Geometry::Solid(_) = self.geometry { local } else { self.moved(local) })
+    }
+
+    /// The same in object space; those of a solid, whose parts are placed, are of the world.
+    pub(super) fn local_bounds(&self) -> Option<Aabb> {
+        match &self.geometry {
+            Geometry::Primitive(shape) => shape.bounds(),
+            Geometry::Mesh(tree) => Some(tree.bvh.bounds()),
+            Geometry::Solid(solid) => solid.bounds(),
+        }
+    }
+
+    /// Bounds of one part in world space.
+    pub fn part_bounds(&self, part: u32) -> Option<Aabb> {
+        match &self.geometry {
+            Geometry::Primitive(_) | Geometry::Solid(_) => self.bounds(),
+            Geometry::Mesh(tree) => {
+                let corners = tree.mesh.corners(part);
+                let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
+                // Tighter than the box of the box, and padded for rounding by a box without size at
+                // each corner.
+                let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
+                Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
+            }
+        }
+    }
+
+    /// Bound on how far a ray may meet it beside where it is, by rounding of its own coordinates.
+    pub(super) fn rounding(&self) -> f32 {
+        let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
+        let error = match &self.to_world {
+            Some(to_world) => 8.0 * to_world.point_error(reach, Vec3::ZERO),
+            None => gamma(16) * reach,
+        };
+        error.max_element()
+    }
+
+    /// Whether some of it may lie in a box of world space that overlaps its bounds.
+    pub fn overlaps(&self, cell: &Aabb) -> bool {
+        match (&self.geometry, &self.to_world) {
+            (Geometry::Primitive(shape), None) => shape.overlaps(cell),
+            _ => true,
+        }
+    }
+
+    fn moved(&self, bounds: Aabb) -> Aabb {
+        match &self.to_world {
+            Some(to_world) if !bounds.is_empty() => to_world.bounds(bounds),
+            _ => bounds,
+        }
+    }
+}

@@ -1,0 +1,355 @@
+//! How a surface point scatters light, and what it shines, as a path tracer sees it.
+
+use super::{Geometry, Interaction, Material, Object, Phong, WeightedMaterial, World};
+use crate::world::HighlightModel;
+use crate::world::emitters::LightId;
+use crate::world::material::Emission;
+use durer_scene::bsdf::layers::{self, View};
+use durer_scene::bsdf::lobe::blinn::Blinn;
+use durer_scene::bsdf::lobe::diffuse::Diffuse;
+use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, Through};
+use durer_scene::bsdf::{Bsdf, Frame, fresnel};
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::medium::Medium;
+use durer_scene::shape::Surface;
+use durer_scene::spectrum::{Curve, Lanes, Spectrum};
+
+/// A surface point as it is seen from one direction.
+#[derive(Clone, Debug)]
+pub struct Shading<'w> {
+    /// Its frame; the side from which it is seen is above.
+    pub frame: Frame,
+    /// The true normal on that side.
+    pub n_geo: Vec3,
+    /// The local direction from which it is seen.
+    pub wo: Vec3,
+    /// How it scatters.
+    pub bsdf: Bsdf<'w>,
+}
+
+impl Shading<'_> {
+    /// The value times the cosine of a direction of the world, and the density with which that
+    /// would be chosen. Light that comes from behind the true surface and would be reflected, or
+    /// the other way round, is none: the normals for shading are only nearly right.
+    pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
+        let local = self.frame.to_local(wi);
+        let (value, pdf) = self.bsdf.eval(self.wo, local);
+        let same_side = (local.z > 0.0) == (wi.dot(self.n_geo) > 0.0) || self.bsdf.is_fibre();
+        (if same_side { value } else { Spectrum::ZERO }, pdf)
+    }
+}
+
+/// A normal for shading, bent towards the true one until a mirror there throws what is seen against
+/// a direction to the outside. Interpolated normals and pictures of normals may point away from the
+/// ray; the surface itself does not.
+///
+/// With angles from the true normal, in the plane of both: of a direction (x, z) the mirror at an
+/// angle a shows x sin 2a + z cos 2a above the surface, which is to be as little as `least`.
+fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
+    let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
+    let least = (0.9 * z).min(0.01);
+    if 2.0 * n.dot(wo) * cosine - z >= least && cosine > 0.0 {
+        return n;
+    }
+    let across = n - cosine * n_geo;
+    // What differs by rounding alone has no side.
+    if across.length_squared() < 1e-8 {
+        return n_geo;
+    }
+    let across = across.normalize();
+    let x = wo.dot(across);
+    let square = x * x + z * z;
+    let twice = ((z * least - x * (square - least * least).sqrt()) / square).clamp(-1.0, 1.0);
+    (0.5 * (1.0 - twice)).sqrt() * across + (0.5 * (1.0 + twice)).sqrt() * n_geo
+}
+
+impl World {
+    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
+    /// vertices' colours.
+    #[inline]
+    pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
+        let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
+        if phong.tinted {
+            let [r, g, b, _] = surface.color;
+            return phong.diffuse * Color::new(r, g, b) * texture.unwrap_or(Color::ONE);
+        }
+        let noise = phong.noise.as_ref().map(|noise| noise.color(surface.position));
+        noise.or(texture).unwrap_or(phong.diffuse)
+    }
+
+    /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from
+    /// the side that its normal does not point to; `eta` is the index behind the surface over
+    /// that before it.
+    pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
+        let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
+        let parts = self.parts(at);
+        // The first of a mixture that bends normals counts for all of it.
+        let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
+        let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
+        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
+        let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
+        let wo = -dir.normalize_or(-n_geo);
+        let n = n.normalize_or(n_geo);
+        let bent = bent(n, n_geo, wo);
+        let frame = self.frame(&parts, at, bent);
+        let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
+        let wo = frame.to_local(wo);
+        let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
+        let view = View { lanes, wo, normal, inside, eta };
+        let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
+        let bsdf = &mut shading.bsdf;
+        for part in &parts {
+            if let Some(fibre) = &part.phong.fibre {
+                bsdf.push(fibre.seen(lanes), Spectrum::splat(part.share), part.share);
+                continue;
+            }
+            match &part.phong.principled {
+                Some(own) => {
+                    let here = self.parameters_at(own, at);
+                    layers::scattering(bsdf, part.share, &here, &own.tables, view);
+                }
+                None => phong_lobes(bsdf, part, self.diffuse_color(part.phong, surface), view),
+            }
+        }
+        shading
+    }
+
+    /// The frame around a normal: along u, and turned from there, where the highlight of a part is
+    /// longer than wide.
+    fn frame(&self, parts: &[WeightedMaterial], at: &Interaction, n: Vec3) -> Frame {
+        // No picture makes anything of 0.
+        if parts.iter().any(|part| part.phong.fibre.is_some()) {
+            return Frame::along(n, self.tangent(at));
+        }
+        let own = parts.iter().filter_map(|part| part.phong.principled.as_deref());
+        let long = own.filter(|own| own.parameters.specular_anisotropy > 0.0);
+        let mut long = long.map(|own| self.parameters_at(own, at));
+        let Some(long) = long.find(|here| here.specular_anisotropy > 0.0) else { return Frame::around(n) };
+        let frame = Frame::along(n, self.tangent(at));
+        let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(long.specular_rotation));
+        Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
+    }
+
+    /// The light of a material's own, if points that shine can be chosen: the same everywhere, for
+    /// the share of it that is there.
+    pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
+        let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
+        let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
+        let Some(own) = &phong.principled else { return Some(*emission) };
+        let radiance = own.written.opacity * emission.radiance;
+        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own);
+        chosen.then_some(Emission { radiance, ..*emission })
+    }
+
+    /// The light that a surface sends towards one side: from where its normal points, or from
+    /// behind.
+    pub fn emission(&self, at: &Interaction) -> Color {
+        let inside = at.inside();
+        let own = |phong: &Phong| {
+            let emission = phong.emission.as_ref().filter(|emission| emission.two_sided || !inside)?;
+            let own = phong.principled.as_ref().filter(|_| emission.textured);
+            Some(emission.radiance * own.map_or(Color::ONE, |own| self.emission_at(own, at)))
+        };
+        if !self.has_emission(at) {
+            return Color::ZERO;
+        }
+        let parts = self.parts(at);
+        parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
+    }
+
+    /// The measured spectrum of what shines, if it has one.
+    pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
+        match light {
+            LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
+            LightId::Surface(object, _) => self.own_illuminant(self.objects()[object as usize].material),
+            LightId::Environment => None,
+        }
+    }
+
+    /// The measured spectrum of a material's own light, if it has one.
+    pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
+        match &self.materials()[material as usize] {
+            Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
+            Material::Solid(..) => None,
+        }
+    }
+
+    /// Whether a material has a light of its own.
+    pub fn may_shine(&self, material: u32) -> bool {
+        matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
+    }
+
+    /// Whether a material that shines does so to both sides.
+    pub fn shines_to_both_sides(&self, material: u32) -> Option<bool> {
+        self.emission_of(material).map(|emission| emission.two_sided)
+    }
+
+    /// Whether a hit may shine: quickly known, for most materials.
+    fn has_emission(&self, at: &Interaction) -> bool {
+        match &self.materials()[at.material as usize] {
+            Material::Phong(phong) => phong.emission.is_some(),
+            Material::Solid(..) => true,
+        }
+    }
+
+    /// The index of refraction of the body that a surface bounds, if light may go into it: that of
+    /// the part that weighs most.
+    pub fn refracts(&self, at: &Interaction, lanes: &Lanes) -> Option<f32> {
+        let of = |phong: &Phong| {
+            let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
+            phong.is_entered().then(ior)
+        };
+        if !self.may_enter(at) {
+            return None;
+        }
+        let mut most = (0.0, None);
+        for part in self.parts(at) {
+            let ior = of(part.phong);
+            most = if ior.is_some() && part.share > most.0 { (part.share, ior) } else { most };
+        }
+        most.1
+    }
+
+    /// The share of a surface that is there.
+    pub fn opacity(&self, at: &Interaction) -> f32 {
+        let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
+            // All that light does in it is worked out where it comes in.
+            (Some(_), _) => f32::from(u8::from(!at.inside())),
+            (None, Some(own)) => self.opacity_at(own, at),
+            (None, None) => 1.0,
+        };
+        self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
+    }
+
+    /// Whether a face is looked through by a camera, or a light without extent, from where it is
+    /// seen in some direction: such see its back.
+    pub fn is_hidden(&self, dir: Vec3, at: &Interaction) -> bool {
+        dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
+    }
+
+    /// Whether there are such faces.
+    pub(crate) fn finds_hidden_backs(&self) -> bool {
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
+    }
+
+    /// Whether some material is there in part only.
+    pub(crate) fn finds_cutouts(&self) -> bool {
+        let own =
+            |phong: &Phong| phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
+        let clear = |object: &Object| match &object.geometry {
+            Geometry::Mesh(tree) => tree.mesh.colors().iter().any(|color| color[3] < 1.0),
+            _ => false,
+        };
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+            || self.objects().iter().any(clear)
+    }
+
+    /// What fills the body of an object, or the air, if light loses something there.
+    pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
+        let Some(object) = object else { return self.fog() };
+        match &self.materials()[self.objects()[object as usize].material as usize] {
+            Material::Phong(phong) => phong.principled.as_ref()?.medium.as_ref(),
+            Material::Solid(..) => None,
+        }
+    }
+
+    /// Whether light goes straight through a medium with a lamp behind it: through the air, and
+    /// bodies without a skin.
+    pub fn is_open(&self, object: Option<u32>) -> bool {
+        object.is_none_or(|object| self.has_no_skin(self.objects()[object as usize].material))
+    }
+
+    /// Whether a surface does nothing where the index of refraction is the same on both sides.
+    pub fn is_interface(&self, at: &Interaction) -> bool {
+        self.has_interfaces() && self.has_no_skin(at.material)
+    }
+
+    fn has_no_skin(&self, material: u32) -> bool {
+        matches!(&self.materials()[material as usize],
+            Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
+    }
+
+    /// Whether some body has no skin.
+    pub(crate) fn finds_interfaces(&self) -> bool {
+        (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
+    }
+
+    /// The bodies that paths enter, if something that absorbs or scatters fills some material's.
+    pub(crate) fn finds_bodies(&self) -> Vec<u32> {
+        let of = |number: u32| match &self.materials()[number as usize] {
+            Material::Phong(phong) => Some(phong),
+            Material::Solid(..) => None,
+        };
+        let is_filled = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.medium.is_some());
+        if !(0..self.materials().len() as u32).filter_map(of).any(is_filled) {
+            return Vec::new();
+        }
+        let enters = |object: &Object| of(object.material).is_some_and(Phong::is_entered);
+        (0..).zip(self.objects()).filter(|(_, object)| enters(object)).map(|(number, _)| number).collect()
+    }
+
+    /// Whether some material is a sheet through which light may go straight.
+    pub(crate) fn finds_sheets(&self) -> bool {
+        let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
+        let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| is_sheet(&own.written));
+        self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
+    }
+
+    /// Whether light may go into a thing at a hit: quickly known, for most materials.
+    #[inline]
+    pub fn may_enter(&self, at: &Interaction) -> bool {
+        match &self.materials()[at.material as usize] {
+            Material::Phong(phong) => {
+                phong.transparent != Color::ZERO
+                    || phong.principled.as_ref().is_some_and(|own| own.written.has_subsurface())
+            }
+            Material::Solid(..) => true,
+        }
+    }
+
+    /// Whether colours are spread at a hit.
+    pub fn disperses(&self, at: &Interaction) -> bool {
+        let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
+        self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
+    }
+}
+
+/// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
+/// Phong's highlight, and single directions for mirror and glass. What would give back more than it
+/// gets is scaled down as a whole.
+fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
+    let View { lanes, wo, normal, eta, .. } = view;
+    let phong = part.phong;
+    let (strength, exponent, model) = phong.highlight.unwrap_or((Color::ZERO, 1.0, HighlightModel::Blinn));
+    let [color, strength, reflective, transparent] =
+        [color, strength, phong.reflective, phong.transparent].map(|color| lanes.reflectance(color));
+    let reflected = match phong.fresnel {
+        true => fresnel::dielectric(wo.z, eta),
+        false => 1.0,
+    };
+    // Without Fresnel's law both rays have their whole weight.
+    let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
+    let (mirror, through) = (reflected * reflective, passing * transparent);
+    let all = color + Blinn::bound(exponent) * strength + mirror + through;
+    let scale = part.share / all.max_element().max(1.0);
+    let diffuse = Diffuse { normal, ..Diffuse::lambert(color) };
+    bsdf.push(diffuse, Spectrum::splat(scale), scale * color.max_element());
+    let highlight = Blinn { color: strength, exponent, phong: matches!(model, HighlightModel::Phong { .. }) };
+    bsdf.push(highlight, Spectrum::splat(scale), scale * Blinn::bound(exponent) * strength.max_element());
+    bsdf.push(Mirror, scale * mirror, scale * mirror.max_element());
+    let through = scale * through;
+    match eta == 1.0 {
+        true => bsdf.push(Through, through, through.max_element()),
+        false => bsdf.push(Refraction { eta }, through, through.max_element()),
+    }
+}
+
+/// Whether cameras look through the backs of what is of a material.
+fn hides_backs(phong: &Phong) -> bool {
+    phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,46 @@
+use super::*;
+use durer_scene::math::random::Random;
+
+#[test]
+fn bent_normals_let_mirrors_show_what_is_outside_and_change_steadily() {
+    let mut random = Random(11);
+    let mut number = || random.below(2_000_001) as f32 * 1e-6 - 1.0;
+    let (mut kept, mut bent_ones) = (0, 0);
+    for _ in 0..100_000 {
+        let mut unit = || Vec3::new(number(), number(), number()).normalize_or(Vec3::Z);
+        let [n, n_geo, wo] = [unit(), unit(), unit()];
+        let n_geo = if n_geo.dot(wo) < 0.0 { -n_geo } else { n_geo };
+        let z = n_geo.dot(wo);
+        // Where it is seen along the surface, or the normal is the opposite, all is lost.
+        if z < 1e-3 || n.dot(n_geo) < -0.99 {
+            continue;
+        }
+        let made = bent(n, n_geo, wo);
+        let shown = |n: Vec3| (2.0 * n.dot(wo) * n - wo).dot(n_geo);
+        let least = (0.9 * z).min(0.01);
+        assert!((made.length() - 1.0).abs() < 1e-5 && made.dot(wo) > 0.0, "{n} {n_geo} {wo}: {made}");
+        // In single precision, near the horizon too.
+        assert!(shown(made) > least - 5e-4, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
+        // It lies in the plane of both, between them.
+        assert!(made.dot(n.cross(n_geo)).abs() < 1e-5 && made.dot(n_geo) > n.dot(n_geo) - 1e-5);
+        if made == n {
+            kept += 1;
+        } else {
+            bent_ones += 1;
+            // No further than has to be.
+            assert!(shown(made) < least + 1e-3, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
+        }
+        // Normals beside each other stay so.
+        let beside = (n + 1e-4 * Vec3::new(1.0, -1.0, 0.5)).normalize();
+        assert!((bent(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
+    }
+    assert!(kept > 10_000 && bent_ones > 10_000, "{kept} {bent_ones}");
+}
+
+#[test]
+fn the_true_normal_is_never_bent() {
+    for z in [1e-7, 1e-3, 0.5, 1.0_f32] {
+        let wo = Vec3::new((1.0 - z * z).max(0.0).sqrt(), 0.0, z);
+        assert_eq!(bent(Vec3::Z, Vec3::Z, wo), Vec3::Z);
+    }
+}

@@ -1,0 +1,123 @@
+//! Rays that go nearly the same way, asked about together: with the answers that each has alone.
+
+use super::{Geometry, Hit, Object, World};
+use durer_bvh::{PackHit, PrimitivePacks, TriangleHit};
+use durer_scene::math::{Ray, Ray64, Vec3};
+use durer_scene::shape::ShapeHit;
+use std::array::from_fn;
+
+/// As many rays are asked about together at most.
+pub(crate) const TOGETHER: usize = 64;
+
+/// A world of a few things, as rays see it that are asked about together: whatever structure others
+/// go through.
+#[derive(Clone, Debug)]
+pub(crate) struct Few {
+    /// Simple shapes, for eight rays at once.
+    pub(crate) simple: PrimitivePacks,
+    /// The numbers of all others.
+    pub(crate) others: Vec<u32>,
+}
+
+/// A ray that meets nothing.
+const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
+
+impl World {
+    /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
+    pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
+        let Some(few) = &self.few else {
+            hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray, &mut ()));
+            return;
+        };
+        let offer = |best: &mut Option<Hit>, hit: Option<Hit>| {
+            if let Some(hit) = hit.filter(|hit| hit.is_before(best)) {
+                *best = Some(hit);
+            }
+        };
+        let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
+        few.meet(rays, |i, met| hits[i] = met.map(|met| self.hit_of_pack(met, &rays[i])));
+        for &number in &few.others {
+            let object = &self.objects()[number as usize];
+            if let Geometry::Mesh(tree) = &object.geometry {
+                let mut found = [const { None::<TriangleHit> }; TOGETHER];
+                let mut local = local_rays(object, rays.iter());
+                // A tie is decided by the order of hits, so a ray may reach just to what it met.
+                for (local, hit) in local.iter_mut().zip(&*hits) {
+                    local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
+                }
+                tree.bvh.closest_batch(&local[..rays.len()], &mut found[..rays.len()]);
+                for (best, found) in hits.iter_mut().zip(found) {
+                    offer(best, found.map(|h| Hit { t: h.t, uv: h.uv, object: number, part: h.triangle }));
+                }
+                continue;
+            }
+            for i in (0..rays.len()).filter(|&i| sound(i)) {
+                let found = object.closest(number, &rays[i], false, &mut ());
+                offer(&mut hits[i], found.map(|(ShapeHit { t, uv }, part)| Hit { t, uv, object: number, part }));
+            }
+        }
+    }
+
+    /// Whether anything is hit by each of up to [`TOGETHER`] rays, as [`World::occluded`] has it one
+    /// by one.
+    pub(crate) fn occluded_together(&self, rays: &[Ray64], blocked: &mut [bool]) {
+        let Some(few) = &self.few else {
+            blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
+            return;
+        };
+        let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
+        few.meet(rays, |i, met| blocked[i] = met.is_some());
+        // Those that are in the dark already need not be asked about.
+        let others = || few.others.iter().map(|&number| (number, &self.objects()[number as usize]));
+        let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
+        for (number, object) in others().filter(|(_, object)| !is_mesh(object)) {
+            for i in (0..rays.len()).filter(|&i| sound(i)) {
+                blocked[i] = blocked[i] || object.closest(number, &rays[i], true, &mut ()).is_some();
+            }
+        }
+        for (_, object) in others() {
+            let Geometry::Mesh(tree) = &object.geometry else { continue };
+            let (mut open, mut count) = ([0; TOGETHER], 0);
+            for i in (0..rays.len()).filter(|&i| !blocked[i]) {
+                open[count] = i;
+                count += 1;
+            }
+            let mut found = [false; TOGETHER];
+            let local = local_rays(object, open[..count].iter().map(|&i| &rays[i]));
+            tree.bvh.occluded_batch(&local[..count], &mut found[..count]);
+            open[..count].iter().zip(found).for_each(|(&i, found)| blocked[i] = found);
+        }
+    }
+
+    /// What a ray met of what is tested together.
+    #[inline]
+    fn hit_of_pack(&self, PackHit { t, number }: PackHit, ray: &Ray64) -> Hit {
+        let ShapeHit { t, uv } = self.objects()[number as usize].crossing_at(t, ray);
+        Hit { t, uv, object: number, part: 0 }
+    }
+}
+
+impl Few {
+    /// Offers the first hit of each ray with simple shapes, if there is one.
+    fn meet(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
+        if self.simple.is_empty() {
+            return (0..rays.len()).for_each(|i| take(i, None));
+        }
+        for start in (0..rays.len()).step_by(8) {
+            let ray = |i: usize| rays.get(start + i).map_or(&NOWHERE, |ray| &ray.rounded);
+            let met = self.simple.closest_of_eight(from_fn(ray));
+            met.into_iter().enumerate().take(rays.len() - start).for_each(|(i, met)| take(start + i, met));
+        }
+    }
+}
+
+/// Rays in the space of an object.
+fn local_rays<'r>(object: &Object, rays: impl Iterator<Item = &'r Ray64>) -> [Ray; TOGETHER] {
+    let mut local = [NOWHERE; TOGETHER];
+    let rays = local.iter_mut().zip(rays);
+    match &object.to_world {
+        None => rays.for_each(|(local, ray)| *local = ray.rounded),
+        Some(to_world) => rays.for_each(|(local, ray)| *local = to_world.inverse_ray(ray)),
+    }
+    local
+}

@@ -1,0 +1,45 @@
+//! Decoding of the files that a scene names.
+
+use crate::dialect::CompatSet;
+use crate::light::Profile;
+use crate::math::Aabb;
+use crate::medium::DensityGrid;
+use crate::shape::MeshData;
+use durer_diag::Diagnostics;
+
+/// Decodes asset files other than images. `durer-formats` implements it for all formats it has.
+///
+/// `file` numbers the bytes in spans. On an error a method pushes a diagnostic and returns `None`.
+pub trait AssetDecoder: Sync {
+    /// Decodes a mesh. The format follows from the extension of `name`, else from the bytes.
+    fn mesh(
+        &self,
+        bytes: &[u8],
+        file: u32,
+        name: &str,
+        quirks: CompatSet,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<MeshData>;
+
+    /// Decodes a photometric file (IES, EULUMDAT).
+    fn profile(&self, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile>;
+
+    /// Decodes a measured spectrum into ascending rows of wavelength (nm) and value. `column` picks
+    /// one of several by name; `None` is the first.
+    fn spectrum(
+        &self,
+        bytes: &[u8],
+        column: Option<&str>,
+        file: u32,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Vec<[f32; 2]>>;
+
+    /// Decodes a grid of densities and the box it fills, in at most `memory` bytes.
+    fn density(
+        &self,
+        bytes: &[u8],
+        file: u32,
+        memory: u64,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<(Aabb, DensityGrid)>;
+}

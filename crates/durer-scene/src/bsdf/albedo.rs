@@ -1,0 +1,267 @@
+//! How much light rough surfaces give back in all directions together, as tables.
+//!
+//! One reflection off a rough surface loses what would have been reflected a second time. Dividing
+//! by these tables gives it back, so that a surface that absorbs nothing stays white. Source:
+//! Turquin, *Practical multiple scattering compensation for microfacet models*, 2019.
+//!
+//! Tables are worked out by all threads, for the materials that ask for them, as a world is
+//! compiled ([`super::Tables::prepare`]); for others at their first use.
+
+use super::fresnel;
+use super::lobe::fuzz;
+use super::microfacet::Ggx;
+use crate::math::{Vec2, Vec3};
+use crate::spectrum::Spectrum;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+
+/// Rows and columns of a table.
+const SIZE: usize = 32;
+
+/// Points of each integral.
+const POINTS: u32 = 1024;
+
+/// A function of a cosine and a roughness, both from 0 to 1.
+#[derive(Clone, Debug, PartialEq)]
+struct Table(Vec<f32>);
+
+impl Table {
+    fn new(value: impl Fn(f32, f32) -> f32 + Sync) -> Self {
+        let step = |i: usize| i as f32 / (SIZE - 1) as f32;
+        // Cosines are closer together towards grazing directions, where the functions change most.
+        let entry = |i: usize| value((step(i % SIZE) * step(i % SIZE)).max(1e-4), step(i / SIZE));
+        Table((0..SIZE * SIZE).into_par_iter().map(entry).collect())
+    }
+
+    /// Linear between the entries.
+    fn at(&self, cosine: f32, roughness: f32) -> f32 {
+        let ((i, a), (j, b)) = (place(cosine.max(0.0).sqrt()), place(roughness));
+        let row = |j: usize| self.0[j * SIZE + i] * (1.0 - a) + self.0[j * SIZE + i + 1] * a;
+        row(j) * (1.0 - b) + row(j + 1) * b
+    }
+}
+
+/// The entry of a table below a number from 0 to 1, and how far that is on the way to the next.
+fn place(x: f32) -> (usize, f32) {
+    let x = x.clamp(0.0, 1.0) * (SIZE - 1) as f32;
+    let i = (x as usize).min(SIZE - 2);
+    (i, x - i as f32)
+}
+
+/// The mean of a function over all directions above by their cosine.
+fn mean_by_cosine(value: impl Fn(f32) -> f32) -> f32 {
+    const STEPS: usize = 512;
+    let at = |i: usize| (i as f32 + 0.5) / STEPS as f32;
+    let sum: f64 = (0..STEPS).map(|i| f64::from(2.0 * at(i) * value(at(i)))).sum();
+    (sum / STEPS as f64) as f32
+}
+
+/// What is worked out by several threads when it is first asked for.
+///
+/// Nothing is locked meanwhile: a thread that waits for others may take up other work, which asks
+/// for the same and would wait for itself. All that work it out find the same.
+fn once<T>(cell: &OnceLock<T>, make: impl FnOnce() -> T) -> &T {
+    cell.get().unwrap_or_else(|| {
+        let made = make();
+        cell.get_or_init(|| made)
+    })
+}
+
+/// Points that fill the unit square evenly: the sequence R2.
+///
+/// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
+fn points() -> impl Iterator<Item = Vec2> {
+    // Steps of 1/p and 1/p^2 in units of 2^-32, p being the root of p^3 = p + 1.
+    let unit = |i: u32, step: u32| ((i.wrapping_mul(step) >> 8) as f32 + 0.5) / 16_777_216.0;
+    (0..POINTS).map(move |i| Vec2::new(unit(i, 3_242_174_889), unit(i, 2_447_445_414)))
+}
+
+fn mean(value: impl Fn(Vec2) -> f32) -> f32 {
+    points().map(|u| f64::from(value(u))).sum::<f64>() as f32 / POINTS as f32
+}
+
+fn direction(cosine: f32) -> Vec3 {
+    Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine)
+}
+
+fn isotropic(roughness: f32) -> Ggx {
+    Ggx::new(roughness, 0.0).clamped()
+}
+
+/// What a single reflection off GGX gives back where every facet reflects all.
+pub fn ggx(cosine: f32, roughness: f32) -> f32 {
+    static TABLE: OnceLock<Table> = OnceLock::new();
+    let table = once(&TABLE, || {
+        Table::new(|cosine, roughness| {
+            let (ggx, wo) = (isotropic(roughness), direction(cosine));
+            mean(|u| {
+                let h = ggx.sample_visible(wo, u);
+                let wi = 2.0 * wo.dot(h) * h - wo;
+                if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
+            })
+        })
+    });
+    table.at(cosine, roughness)
+}
+
+/// What fuzz of white fibres gives back.
+pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
+    static TABLE: OnceLock<Table> = OnceLock::new();
+    let table = once(&TABLE, || {
+        Table::new(|cosine, roughness| {
+            let wo = direction(cosine);
+            mean(|u| {
+                let wi = super::warp::polar(u.x, u.y);
+                // Evenly spread directions: density 1 / (2 pi).
+                2.0 * std::f32::consts::PI * fuzz::value(roughness, wo, wi) * wi.z
+            })
+        })
+    });
+    table.at(cosine, roughness)
+}
+
+/// A boundary of two dielectrics of one relative index.
+#[derive(Clone, Debug)]
+pub struct Dielectric {
+    /// The index inside over that outside.
+    pub ior: f32,
+    /// The mean of what it reflects where it is smooth, from outside, over all directions by their
+    /// cosine.
+    smooth_mean: f32,
+    /// Reflected from outside and from inside; and all that is not lost.
+    tables: OnceLock<[[Table; 2]; 2]>,
+    /// The mean of what it reflects from outside, for each roughness of the tables.
+    means: OnceLock<Vec<f32>>,
+}
+
+impl PartialEq for Dielectric {
+    fn eq(&self, other: &Self) -> bool {
+        self.ior == other.ior
+    }
+}
+
+impl Dielectric {
+    /// Of an index.
+    pub fn new(ior: f32) -> Self {
+        let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
+        Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new() }
+    }
+
+    /// What it reflects, and all that is not lost; from inside or from outside.
+    fn tables(&self, inside: bool) -> &[Table; 2] {
+        let both = once(&self.tables, || {
+            [self.ior, 1.0 / self.ior].map(|eta| {
+                [false, true].map(|all| {
+                    Table::new(|cosine, roughness| {
+                        let (ggx, wo) = (isotropic(roughness), direction(cosine));
+                        mean(|u| single(ggx, wo, eta, u, all))
+                    })
+                })
+            })
+        });
+        &both[usize::from(inside)]
+    }
+
+    /// Whether its tables are worked out.
+    #[cfg(any(test, feature = "testing"))]
+    pub(crate) fn is_prepared(&self) -> bool {
+        self.tables.get().is_some()
+    }
+
+    /// The share that one reflection gives back, of what is not lost; from inside or from outside.
+    pub fn reflected(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
+        let [reflected, all] = self.tables(inside);
+        (reflected.at(cosine, roughness) / all.at(cosine, roughness)).min(1.0)
+    }
+
+    /// The share that is reflected from outside: smooth where there is no roughness.
+    pub fn given(&self, cosine: f32, roughness: f32) -> f32 {
+        match Ggx::new(roughness, 0.0).is_smooth() {
+            true => fresnel::dielectric(cosine, self.ior),
+            false => self.reflected(false, cosine, roughness),
+        }
+    }
+
+    /// The mean of [`Dielectric::given`] over all directions by their cosine.
+    pub fn mean(&self, roughness: f32) -> f32 {
+        if Ggx::new(roughness, 0.0).is_smooth() {
+            return self.smooth_mean;
+        }
+        let of = |row: usize| {
+            let roughness = row as f32 / (SIZE - 1) as f32;
+            mean_by_cosine(|cosine| self.reflected(false, cosine, roughness))
+        };
+        let means = once(&self.means, || (0..SIZE).map(of).collect());
+        let (i, a) = place(roughness);
+        means[i] * (1.0 - a) + means[i + 1] * a
+    }
+
+    /// What multiplies one reflection or refraction, so that nothing is lost.
+    pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
+        1.0 / self.tables(inside)[1].at(cosine, roughness)
+    }
+}
+
+/// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few
+/// points, where there are too many kinds of surfaces for tables.
+pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum) -> Spectrum {
+    const FEW: usize = 16;
+    let (ggx, wo) = (isotropic(roughness), direction(cosine));
+    let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
+    for u in points().take(FEW) {
+        let h = ggx.sample_visible(wo, u);
+        let wi = 2.0 * wo.dot(h) * h - wo;
+        let visible = if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) } else { 0.0 };
+        (sum, all) = (sum + visible * value(wo.dot(h).max(0.0)), all + visible);
+    }
+    if all > 0.0 { sum / all } else { value(cosine) }
+}
+
+/// What one reflection off a boundary gives back on the mean over all directions by their cosine, and
+/// what reflection and refraction do together: by few points, where tables are not worth it.
+pub fn single_means(eta: f32, roughness: f32) -> [f32; 2] {
+    const COSINES: usize = 16;
+    const FEW: usize = 64;
+    let ggx = isotropic(roughness);
+    [false, true].map(|all| {
+        let at = |i: usize| ((i as f32 + 0.5) / COSINES as f32).sqrt();
+        let one = |i: usize| points().take(FEW).map(|u| single(ggx, direction(at(i)), eta, u, all)).sum::<f32>();
+        (0..COSINES).map(one).sum::<f32>() / (COSINES * FEW) as f32
+    })
+}
+
+/// One facet's part in what is reflected, or in all that goes on.
+fn single(ggx: Ggx, wo: Vec3, eta: f32, u: Vec2, all: bool) -> f32 {
+    let h = ggx.sample_visible(wo, u);
+    let cosine = wo.dot(h).max(0.0);
+    let reflected = fresnel::dielectric(cosine, eta);
+    let visible = |wi: Vec3| ggx.masking_shadowing(wo, wi) / ggx.masking(wo);
+    let up = 2.0 * cosine * h - wo;
+    let mut sum = if up.z > 0.0 { reflected * visible(up) } else { 0.0 };
+    if all && reflected < 1.0 {
+        let behind = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).max(0.0).sqrt();
+        let down = (cosine / eta - behind) * h - wo / eta;
+        sum += if down.z < 0.0 { (1.0 - reflected) * visible(down) } else { 0.0 };
+    }
+    sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::mpsc;
+    use std::time::Duration;
+
+    #[test]
+    fn threads_that_take_up_other_work_while_they_wait_do_not_wait_for_themselves() {
+        let (sender, done) = mpsc::channel();
+        std::thread::spawn(move || {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+            let cell = OnceLock::new();
+            // As a thread does that waits for a part of the table: the next tile is taken up.
+            let tile = || *once(&cell, || (rayon::yield_now(), 5).1);
+            let _ = sender.send(pool.install(|| rayon::join(tile, tile)));
+        });
+        assert_eq!(done.recv_timeout(Duration::from_secs(20)), Ok((5, 5)));
+    }
+}

@@ -1,0 +1,375 @@
+//! The layers of a principled material as lobes: fuzz on a coat on metal, glass or matte.
+//!
+//! Light that a layer gives back does not reach the one below: layers are weighed by what is left
+//! of it in the direction from which they are seen. OpenPBR calls that albedo scaling. It keeps
+//! energy, but the whole is not reciprocal. A matte base is weighed by the direction of the light
+//! too ([`Boundary`]): plastic is reciprocal.
+
+use super::Bsdf;
+use super::albedo::{self, Dielectric};
+use super::film::Film;
+use super::fresnel::{self, Sheet};
+use super::lobe::diffuse::{Boundary, Diffuse, DiffuseTransmission};
+use super::lobe::fuzz::Fuzz;
+use super::lobe::glass::{Mirror, Refraction, Through};
+use super::lobe::rough::{Facet, Rough};
+use super::lobe::rough_glass::RoughGlass;
+use super::microfacet::Ggx;
+use crate::describe::FileName;
+use crate::material::principled::Walls;
+use crate::material::{Parameters, PrincipledMaterial};
+use crate::math::{Vec3, fp};
+use crate::spectrum::{Curve, Lanes, Spectrum};
+use std::sync::Arc;
+
+/// What is worked out once for each material.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tables {
+    /// The boundary of an opaque base.
+    opaque: Arc<Dielectric>,
+    /// The boundary of glass.
+    glass: Arc<Dielectric>,
+    /// The coat's boundary.
+    coat: Arc<Dielectric>,
+    /// The base colour as it was measured.
+    measured: Option<Arc<Curve>>,
+}
+
+impl Tables {
+    /// For a material whose base may have been measured. `known` has what was worked out before.
+    pub fn new(material: &PrincipledMaterial, measured: Option<Arc<Curve>>, known: &mut Vec<Arc<Dielectric>>) -> Self {
+        let mut of = |ior: f32| {
+            let found = known.iter().find(|tables| tables.ior == ior).cloned();
+            found.unwrap_or_else(|| {
+                known.push(Arc::new(Dielectric::new(ior)));
+                known[known.len() - 1].clone()
+            })
+        };
+        Tables {
+            opaque: of(opaque_ior(material)),
+            glass: of(material.specular_ior),
+            measured,
+            coat: of(material.coat_ior),
+        }
+    }
+
+    /// Works out by all threads what points of the material can ask for, so that no thread that
+    /// renders has to.
+    pub fn prepare(&self, m: &PrincipledMaterial) {
+        // A picture multiplies: it changes no 0, and may change all else.
+        let all = |share: f32, picture: &Option<FileName>| share == 1.0 && picture.is_none();
+        let metal = all(m.base_metalness, &m.base_metalness_texture) && m.metallic_roughness_texture.is_none();
+        let glass = all(m.transmission_weight, &m.transmission_weight_texture);
+        let rough_coat = m.coat_weight > 0.0 && m.coat_roughness > 0.0;
+        let rough = m.specular_roughness > 0.0 || rough_coat;
+        let through = rough && !metal && m.transmission_weight > 0.0;
+        if m.fuzz_weight > 0.0 {
+            albedo::fuzz(1.0, 0.0);
+        }
+        if rough && m.base_metalness > 0.0 || through && m.walls == Walls::Thin {
+            albedo::ggx(1.0, 0.0);
+        }
+        let boundaries = [
+            (rough_coat && self.coat.ior != 1.0, &self.coat),
+            (rough && !metal && !glass && (self.opaque.ior != 1.0 || m.thin_film_weight > 0.0), &self.opaque),
+            (through && m.walls == Walls::Solid, &self.glass),
+        ];
+        boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
+            boundary.gain(false, 1.0, 0.0);
+            boundary.mean(1.0);
+        });
+    }
+
+    /// Whether the albedo tables of the opaque base, of glass and of the coat have been built.
+    #[cfg(any(test, feature = "testing"))]
+    pub fn prepared(&self) -> [bool; 3] {
+        [&self.opaque, &self.glass, &self.coat].map(|boundary| boundary.is_prepared())
+    }
+}
+
+/// The index of an opaque base: `specularWeight` scales what reflects at right angles.
+pub fn opaque_ior(material: &PrincipledMaterial) -> f32 {
+    if material.specular_weight == 1.0 {
+        return material.specular_ior;
+    }
+    let ratio = (material.specular_ior - 1.0) / (material.specular_ior + 1.0);
+    fresnel::ior_of_reflectance(material.specular_weight * ratio * ratio)
+}
+
+fn power(base: Spectrum, exponent: f32) -> Spectrum {
+    base.max(Spectrum::ZERO).map(|x| fp::pow(x, exponent))
+}
+
+fn mix(a: f32, b: f32, share: f32) -> f32 {
+    a + share * (b - a)
+}
+
+/// Shares over others; all where there are none.
+fn parts(shares: Spectrum, of: Spectrum) -> Spectrum {
+    Spectrum::select(of.cmpgt(Spectrum::splat(1e-6)), shares / of, Spectrum::ONE)
+}
+
+/// How a point of a principled material is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct View<'a> {
+    /// What light is made of.
+    pub lanes: &'a Lanes,
+    /// The local direction from which it is seen.
+    pub wo: Vec3,
+    /// The local normal of what is matte: see [`Diffuse::normal`].
+    pub normal: Vec3,
+    /// Whether that is from inside.
+    pub inside: bool,
+    /// The index behind the boundary over that before it.
+    pub eta: f32,
+}
+
+/// Adds the lobes of what is there of a material, each by a factor.
+pub fn scattering<'a>(bsdf: &mut Bsdf<'a>, factor: f32, here: &Parameters, tables: &'a Tables, view: View) {
+    let stack = Stack {
+        here,
+        tables,
+        view,
+        base: match &tables.measured {
+            Some(curve) => view.lanes.measured(here.base_color, curve),
+            None => view.lanes.reflectance(here.base_color),
+        },
+        specular: view.lanes.reflectance(here.specular_color),
+    };
+    stack.scattering(bsdf, factor);
+}
+
+/// The layers of a point.
+struct Stack<'a, 't> {
+    here: &'a Parameters,
+    tables: &'t Tables,
+    view: View<'a>,
+    base: Spectrum,
+    specular: Spectrum,
+}
+
+impl<'t> Stack<'_, 't> {
+    fn scattering(&self, bsdf: &mut Bsdf<'t>, factor: f32) {
+        let (m, view) = (self.here, self.view);
+        let mu = view.wo.z;
+        let mut below = Spectrum::splat(factor);
+        if m.fuzz_weight > 0.0 && !view.inside {
+            let roughness = m.fuzz_roughness;
+            let given = albedo::fuzz(mu, roughness);
+            // Fibres at grazing angles would give back more than they get.
+            let scale = m.fuzz_weight * (1.0 / given).min(1.0);
+            bsdf.push(Fuzz { roughness }, below * scale * view.lanes.reflectance(m.fuzz_color), factor * scale * given);
+            below *= 1.0 - scale * given;
+        }
+        let mut roughness = self.here.specular_roughness;
+        if m.coat_weight > 0.0 && !view.inside {
+            let weight = m.coat_weight;
+            let given = self.boundary(bsdf, &self.tables.coat, m.coat_roughness, weight * below, None);
+            below *= Spectrum::ONE - weight * given;
+            below *= Spectrum::ONE.lerp(self.coat(mu), weight);
+            let fourth = |r: f32| r * r * r * r;
+            let both = (fourth(roughness) + 2.0 * fourth(m.coat_roughness)).min(1.0);
+            roughness = mix(roughness, both.sqrt().sqrt(), weight);
+        }
+        self.metal(bsdf, roughness, below * self.here.base_metalness);
+        let dielectric = below * (1.0 - self.here.base_metalness);
+        let through = dielectric * m.transmission_weight;
+        if through.max_element() > 0.0 {
+            match m.walls {
+                Walls::Solid => self.glass(bsdf, roughness, through),
+                Walls::Thin => self.sheet(bsdf, roughness, through),
+            }
+        }
+        let opaque = dielectric * (1.0 - m.transmission_weight);
+        if opaque.max_element() > 0.0 {
+            if view.inside && m.has_body && m.transmission_weight == 0.0 {
+                // Light that was scattered inside leaves in all directions.
+                return bsdf.push(DiffuseTransmission { color: Spectrum::ONE }, opaque, opaque.max_element());
+            }
+            let film = self.film(self.tables.opaque.ior);
+            let specular = m.reflection * self.specular;
+            let given = self.boundary(bsdf, &self.tables.opaque, roughness, opaque * specular, film);
+            let dielectric = &*self.tables.opaque;
+            let boundary = Boundary { dielectric, roughness, reflection: m.reflection };
+            let boundary = (dielectric.ior != 1.0).then_some(boundary);
+            let (color, roughness, normal) = (self.base, m.base_diffuse_roughness, view.normal);
+            let diffuse = Diffuse { color, roughness, boundary, normal };
+            let weight = opaque * (Spectrum::ONE - m.reflection * given);
+            let matte = weight * (1.0 - m.subsurface_weight);
+            bsdf.push(diffuse, matte, (matte * self.base).max_element());
+            self.subsurface(bsdf, weight * m.subsurface_weight, boundary);
+        }
+    }
+
+    /// Light that goes into the body, or of a sheet comes out on both sides.
+    fn subsurface(&self, bsdf: &mut Bsdf<'t>, weight: Spectrum, boundary: Option<Boundary<'t>>) {
+        if weight.max_element() <= 0.0 {
+            return;
+        }
+        let m = self.here;
+        if m.has_body {
+            let entering =
+                if m.entering == Vec3::ONE { Spectrum::ONE } else { self.view.lanes.reflectance(m.entering) };
+            let share = (weight * entering).max_element();
+            return bsdf.push(DiffuseTransmission { color: entering }, weight, share);
+        }
+        let color = self.view.lanes.reflectance(m.subsurface_color);
+        let onwards = 0.5 * (1.0 + m.subsurface_scatter_anisotropy);
+        let share = (weight * color).max_element();
+        let diffuse = Diffuse { boundary, normal: self.view.normal, ..Diffuse::lambert(color) };
+        bsdf.push(diffuse, weight * (1.0 - onwards), share * (1.0 - onwards));
+        bsdf.push(DiffuseTransmission { color }, weight * onwards, share * onwards);
+    }
+
+    /// The film on a dielectric of an index, if there is one.
+    fn film(&self, eta: f32) -> Option<Film> {
+        let m = self.here;
+        // Outside is air; from inside the body is before the film.
+        let ior = m.thin_film_ior * eta.min(1.0);
+        (m.thin_film_weight > 0.0)
+            .then(|| Film::on_dielectric(self.view.lanes, m.thin_film_thickness, ior, eta, m.thin_film_weight))
+    }
+
+    /// The reflection of a boundary of dielectrics seen from outside; returns its albedo.
+    fn boundary(
+        &self,
+        bsdf: &mut Bsdf<'t>,
+        tables: &Dielectric,
+        roughness: f32,
+        weight: Spectrum,
+        film: Option<Film>,
+    ) -> Spectrum {
+        // Without a change of index nothing is reflected, however rough.
+        if tables.ior == 1.0 && film.is_none() {
+            return Spectrum::ZERO;
+        }
+        let (ggx, mu) = (Ggx::new(roughness, 0.0), self.view.wo.z);
+        if ggx.is_smooth() {
+            let plain = || Spectrum::splat(fresnel::dielectric(mu, tables.ior));
+            let given = film.map_or_else(plain, |film| film.reflected(mu));
+            bsdf.push(Mirror, weight * given, (weight * given).max_element());
+            return given;
+        }
+        let (facet, given) = match film {
+            Some(film) => (Facet::Film(film), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine))),
+            None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
+        };
+        let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
+        bsdf.push(rough, weight * tables.gain(false, mu, roughness), (weight * given).max_element());
+        given
+    }
+
+    /// What a coat takes of the light on its way down and up, and what it throws back down.
+    fn coat(&self, mu: f32) -> Spectrum {
+        let m = self.here;
+        let eta = m.coat_ior;
+        let inside = (1.0 - (1.0 - mu * mu) / (eta * eta)).max(0.01).sqrt();
+        // Down at right angles, on the mean; up as it is seen.
+        let tint = power(self.view.lanes.reflectance(m.coat_color), 0.5 + 0.5 / inside);
+        let roughness = mix(1.0, self.here.specular_roughness, self.here.base_metalness);
+        let thrown_back = mix(fresnel::dielectric(mu, eta), fresnel::diffuse(1.0 / eta), roughness);
+        let base = self.base.lerp(Spectrum::ONE, (1.0 - self.here.base_metalness) * m.transmission_weight);
+        let base = base.clamp(Spectrum::ZERO, Spectrum::ONE);
+        let darker = (1.0 - thrown_back) / (Spectrum::ONE - base * thrown_back);
+        tint * Spectrum::ONE.lerp(darker, m.coat_darkening)
+    }
+
+    fn metal(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
+        if weight.max_element() <= 0.0 {
+            return;
+        }
+        let (m, mu) = (self.here, self.view.wo.z);
+        let f82 = fresnel::F82::new(self.base, self.specular);
+        let ggx = Ggx::new(roughness, m.specular_anisotropy);
+        let mut weight = weight * m.specular_weight.min(1.0) * m.reflection;
+        if m.thin_film_weight > 0.0 {
+            let film = Film::on_metal(self.view.lanes, m.thin_film_thickness, m.thin_film_ior, self.base);
+            let covered = m.thin_film_weight * weight;
+            weight *= 1.0 - m.thin_film_weight;
+            if ggx.is_smooth() {
+                let reflected = covered * film.reflected(mu);
+                bsdf.push(Mirror, reflected, reflected.max_element());
+            } else {
+                let (given, color) =
+                    (albedo::ggx(mu, roughness), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine)));
+                let again = Spectrum::ONE + color * ((1.0 - given) / given);
+                let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
+                bsdf.push(rough, covered * again, (covered * color).max_element());
+            }
+        }
+        if ggx.is_smooth() {
+            let reflected = weight * f82.at(mu);
+            return bsdf.push(Mirror, reflected, reflected.max_element());
+        }
+        let given = albedo::ggx(mu, roughness);
+        // What is reflected again is coloured again.
+        let again = Spectrum::ONE + self.base * ((1.0 - given) / given);
+        let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
+        bsdf.push(rough, weight * again, (weight * f82.at(mu)).max_element());
+    }
+
+    fn glass(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
+        let (m, View { wo, inside, eta, .. }) = (self.here, self.view);
+        // With a depth the body has the colour, and not its skin.
+        let tint = match m.transmission_depth > 0.0 {
+            true => Spectrum::ONE,
+            false => self.view.lanes.reflectance(m.transmission_color),
+        };
+        let film = self.film(eta);
+        if eta == 1.0 && film.is_none() {
+            return bsdf.push(Through, weight * tint, weight.max_element());
+        }
+        let ggx = Ggx::new(roughness, m.specular_anisotropy);
+        let plain = fresnel::dielectric(wo.z, eta);
+        let reflected = film.map_or(Spectrum::splat(plain), |film| film.reflected(wo.z));
+        // Rough glass without a change of index scatters nothing either.
+        if ggx.is_smooth() || eta == 1.0 {
+            let (up, down) = (weight * reflected, weight * (Spectrum::ONE - reflected));
+            bsdf.push(Mirror, self.specular * up, up.max_element());
+            return match eta == 1.0 {
+                true => bsdf.push(Through, tint * down, down.max_element()),
+                false => bsdf.push(Refraction { eta }, tint * down, down.max_element()),
+            };
+        }
+        let (mut up, mut down) = (self.specular, tint);
+        if let Some(film) = film {
+            // The film's colour is the same for all facets, such that nothing is lost.
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let with = mean(&|cosine| film.reflected(cosine));
+            let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
+            (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
+        }
+        let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: up, transmitted: down };
+        bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
+    }
+
+    /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
+    /// it came.
+    fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
+        let (m, mu) = (self.here, self.view.wo.z);
+        let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
+        let color = self.view.lanes.reflectance(m.transmission_color);
+        // With a depth the inside has the colour, else all that passes.
+        let (inside, tint) = if m.transmission_depth > 0.0 { (Some(color), Spectrum::ONE) } else { (None, color) };
+        let sheet = Sheet { eta, inside };
+        // A film is on one of its faces.
+        let film = self.film(eta);
+        let faced = |film: Film, cosine: f32| sheet.faced(film.reflected(cosine), cosine);
+        let (reflected, through) = film.map_or_else(|| sheet.at(mu), |film| faced(film, mu));
+        let (mut up, mut down) = (weight * self.specular, weight * tint);
+        let shares = ((weight * reflected).max_element(), (weight * through).max_element());
+        if ggx.is_smooth() || film.is_some() && eta == 1.0 {
+            bsdf.push(Mirror, up * reflected, shares.0);
+            return bsdf.push(Through, down * through, shares.1);
+        }
+        if let Some(film) = film {
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(mu, roughness, value);
+            up *= parts(mean(&|cosine| faced(film, cosine).0), mean(&|cosine| sheet.at(cosine).0));
+            down *= parts(mean(&|cosine| faced(film, cosine).1), mean(&|cosine| sheet.at(cosine).1));
+        }
+        let gain = 1.0 / albedo::ggx(mu, roughness);
+        let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };
+        bsdf.push(rough(Facet::Sheet(sheet), false), up * gain, shares.0);
+        bsdf.push(rough(Facet::BehindSheet(sheet), true), down * gain, shares.1);
+    }
+}

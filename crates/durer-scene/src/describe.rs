@@ -1,0 +1,392 @@
+//! What a thing in a scene file is made of, said once.
+//!
+//! Every shape, camera, material and light states its keyword and its fields in one `described!`
+//! block. The reader, the writer, the manual and the generator of random test scenes walk that
+//! statement.
+
+use crate::dialect::{Dialect, DialectSet};
+use crate::math::Vec3;
+use durer_diag::Span;
+use serde::{Deserialize, Serialize};
+
+/// The type of a field, as the reader sees it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// One number.
+    Float,
+    /// One whole number, zero or more.
+    Int,
+    /// Three numbers: a point, a direction or a colour.
+    Vec3,
+    /// A file's path.
+    Path,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// Rows of so many numbers, in braces.
+    Rows(usize),
+}
+
+/// The path of a file that a scene names, and where it names it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct FileName {
+    /// As written.
+    pub path: String,
+    /// Where.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A value of a field.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Value {
+    /// One number.
+    Float(f32),
+    /// One whole number.
+    Int(u32),
+    /// Three numbers.
+    Vec3(Vec3),
+    /// A file's path, as written.
+    Path(FileName),
+    /// A word.
+    Word(String),
+    /// Rows of numbers.
+    Rows(Vec<Vec<f32>>),
+}
+
+/// What a value must be beyond finite.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Rule {
+    /// Anything.
+    Any,
+    /// More than zero.
+    Positive,
+    /// Zero or more.
+    NonNegative,
+    /// A vector that is not zero.
+    NonZero,
+    /// Between these, both excluded.
+    Between(f32, f32),
+    /// Between these, both included.
+    From(f32, f32),
+    /// More than zero and at most this.
+    UpTo(f32),
+    /// From 0 to 1.
+    Share,
+    /// At most this whole number.
+    AtMost(u32),
+    /// A whole number from 1 to this.
+    Numbered(u32),
+    /// At least so many rows, and at most so many.
+    Rows(usize, usize),
+    /// A vector of whole numbers from 1 to this.
+    Counts(u32),
+}
+
+impl Rule {
+    /// What is wrong with a value, if anything.
+    pub fn violation(self, value: &Value) -> Option<String> {
+        match (self, value) {
+            (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Some("must be more than 0".into()),
+            (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Some("must not be less than 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Some("must not be 0 0 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if !v.length_squared().is_normal() => {
+                Some("is too long or too short for a direction".into())
+            }
+            (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
+                Some(format!("must be more than {low} and less than {high}"))
+            }
+            (Rule::From(low, high), Value::Float(x)) if *x < low || *x > high => {
+                Some(format!("must be from {low} to {high}"))
+            }
+            (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
+                Some(format!("must be more than 0 and at most {high}"))
+            }
+            (Rule::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Some("must be from 0 to 1".into()),
+            (Rule::Counts(most), Value::Vec3(v))
+                if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
+            {
+                Some(format!("must be whole numbers from 1 to {most}"))
+            }
+            (Rule::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => Some(format!("must be from 1 to {last}")),
+            (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
+            (Rule::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
+                let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
+                Some(format!("must have {wanted} rows, but has {}", rows.len()))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// One field of a thing.
+#[derive(Clone, Copy, Debug)]
+pub struct Field {
+    /// Name in code and JSON.
+    pub name: &'static str,
+    /// Type.
+    pub kind: Kind,
+    /// Whether a scene must give it.
+    pub required: bool,
+    /// What its value must be.
+    pub rule: Rule,
+    /// How each dialect spells it.
+    pub spellings: &'static [(&'static str, DialectSet)],
+    /// Meaning and unit.
+    pub doc: &'static str,
+}
+
+impl Field {
+    /// The keyword of this field in a dialect, if it has one there.
+    pub fn spelling(&self, dialect: Dialect) -> Option<&'static str> {
+        self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
+    }
+}
+
+/// A thing whose parameters are stated once.
+pub trait Describe: Default {
+    /// The keywords that begin it; the first is written.
+    const KEYWORDS: &'static [(&'static str, DialectSet)];
+    /// What it is.
+    const DOC: &'static str;
+    /// Its fields, in the order in which they are written.
+    const FIELDS: &'static [Field];
+
+    /// The value of the i-th field; `None` where it is not given.
+    fn get(&self, field: usize) -> Option<Value>;
+
+    /// Sets the i-th field. A value of another kind changes nothing.
+    fn set(&mut self, field: usize, value: Value);
+}
+
+/// A Rust type that a field can have.
+pub trait FieldType: Sized {
+    /// Its kind in scene files.
+    const KIND: Kind;
+    /// Its value, unless absent.
+    fn value(&self) -> Option<Value>;
+    /// From a value of its kind.
+    fn from_value(value: Value) -> Option<Self>;
+}
+
+macro_rules! field_type {
+    ($type:ty, $kind:ident) => {
+        impl FieldType for $type {
+            const KIND: Kind = Kind::$kind;
+            fn value(&self) -> Option<Value> {
+                Some(Value::$kind(self.clone()))
+            }
+            fn from_value(value: Value) -> Option<Self> {
+                match value {
+                    Value::$kind(x) => Some(x),
+                    _ => None,
+                }
+            }
+        }
+    };
+}
+
+field_type!(f32, Float);
+field_type!(u32, Int);
+field_type!(Vec3, Vec3);
+field_type!(FileName, Path);
+
+impl<const N: usize> FieldType for Vec<[f32; N]> {
+    const KIND: Kind = Kind::Rows(N);
+    fn value(&self) -> Option<Value> {
+        Some(Value::Rows(self.iter().map(|row| row.to_vec()).collect()))
+    }
+    fn from_value(value: Value) -> Option<Self> {
+        match value {
+            Value::Rows(rows) => rows.into_iter().map(|row| row.try_into().ok()).collect(),
+            _ => None,
+        }
+    }
+}
+
+/// Declares an `enum` of words that a field can have as its value; the first is the default.
+#[macro_export]
+macro_rules! described_words {
+    ($(#[doc = $doc:literal])+ $name:ident { $first:ident = $first_word:literal $(, $variant:ident = $word:literal)* }) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+        pub enum $name {
+            #[doc = concat!("`", $first_word, "`")] #[default] $first,
+            $(#[doc = concat!("`", $word, "`")] $variant,)*
+        }
+
+        impl $crate::describe::FieldType for $name {
+            const KIND: $crate::describe::Kind = $crate::describe::Kind::Word(&[$first_word $(, $word)*]);
+            fn value(&self) -> Option<$crate::describe::Value> {
+                let word = match self { $name::$first => $first_word, $($name::$variant => $word,)* };
+                Some($crate::describe::Value::Word(word.into()))
+            }
+            fn from_value(value: $crate::describe::Value) -> Option<Self> {
+                let $crate::describe::Value::Word(word) = value else { return None };
+                match word.as_str() { $first_word => Some($name::$first), $($word => Some($name::$variant),)* _ => None }
+            }
+        }
+    };
+}
+
+impl<T: FieldType> FieldType for Option<T> {
+    const KIND: Kind = T::KIND;
+    fn value(&self) -> Option<Value> {
+        self.as_ref().and_then(T::value)
+    }
+    fn from_value(value: Value) -> Option<Self> {
+        T::from_value(value).map(Some)
+    }
+}
+
+/// Declares a struct together with its description.
+///
+/// Each field: its doc comment, name, type, default, `required` or `optional`, its rule, and its
+/// spellings by dialect.
+#[macro_export]
+macro_rules! described {
+    (
+        $(#[doc = $doc:literal])+
+        $name:ident [$($keyword:literal in $kset:expr),+] {
+            $( $(#[doc = $fdoc:literal])+
+               $field:ident : $type:ty = $default:expr, $presence:ident, $rule:expr, [$($word:literal in $fset:expr),+]; )*
+        }
+    ) => {
+        $(#[doc = $doc])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub struct $name { $( $(#[doc = $fdoc])+ pub $field: $type, )* }
+
+        impl Default for $name {
+            fn default() -> Self { $name { $($field: $default,)* } }
+        }
+
+        impl $crate::describe::Describe for $name {
+            const KEYWORDS: &'static [(&'static str, $crate::dialect::DialectSet)] = &[$(($keyword, $kset)),+];
+            const DOC: &'static str = concat!($($doc, "\n"),+);
+            const FIELDS: &'static [$crate::describe::Field] = &[$(
+                $crate::describe::Field {
+                    name: stringify!($field),
+                    kind: <$type as $crate::describe::FieldType>::KIND,
+                    required: $crate::described!(@$presence),
+                    rule: $rule,
+                    spellings: &[$(($word, $fset)),+],
+                    doc: concat!($($fdoc, "\n"),+),
+                },
+            )*];
+
+            #[allow(unused_assignments, unused_mut, unused_variables)]
+            fn get(&self, field: usize) -> Option<$crate::describe::Value> {
+                let mut i = 0;
+                $( if field == i { return $crate::describe::FieldType::value(&self.$field); } i += 1; )*
+                None
+            }
+
+            #[allow(unused_assignments, unused_mut, unused_variables)]
+            fn set(&mut self, field: usize, value: $crate::describe::Value) {
+                let mut i = 0;
+                $( if field == i {
+                    if let Some(x) = $crate::describe::FieldType::from_value(value) { self.$field = x; }
+                    return;
+                } i += 1; )*
+            }
+        }
+    };
+    (@required) => { true };
+    (@optional) => { false };
+}
+
+/// A closed list of described things: an `enum` with one variant each, which delegates to it.
+///
+/// After `=>` stands a macro that takes the variants' names, and makes what else the enum
+/// delegates.
+#[macro_export]
+macro_rules! described_list {
+    ($(#[doc = $doc:literal])+ $name:ident => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
+        $delegate!($($variant),+);
+
+        $(#[doc = $doc])+
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        pub enum $name { $(#[doc = concat!("A `", stringify!($variant), "`.")] $variant($type),)+ }
+
+        $(impl From<$type> for $name {
+            fn from(x: $type) -> Self { $name::$variant(x) }
+        })+
+
+        impl $crate::describe::DescribedList for $name {
+            fn kinds() -> Vec<Self> {
+                vec![$($name::$variant(<$type>::default()),)+]
+            }
+            fn keywords(&self) -> &'static [(&'static str, $crate::dialect::DialectSet)] {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::KEYWORDS,)+ }
+            }
+            fn doc(&self) -> &'static str {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::DOC,)+ }
+            }
+            fn fields(&self) -> &'static [$crate::describe::Field] {
+                match self { $($name::$variant(_) => <$type as $crate::describe::Describe>::FIELDS,)+ }
+            }
+            fn get(&self, field: usize) -> Option<$crate::describe::Value> {
+                match self { $($name::$variant(x) => $crate::describe::Describe::get(x, field),)+ }
+            }
+            fn set(&mut self, field: usize, value: $crate::describe::Value) {
+                match self { $($name::$variant(x) => $crate::describe::Describe::set(x, field, value),)+ }
+            }
+        }
+    };
+}
+
+pub use {described, described_list, described_words};
+
+/// A list of described things, seen from the reader: what [`described_list!`] makes.
+pub trait DescribedList: Sized {
+    /// One of each, with default values.
+    fn kinds() -> Vec<Self>;
+    /// Keywords that begin it.
+    fn keywords(&self) -> &'static [(&'static str, DialectSet)];
+    /// What it is.
+    fn doc(&self) -> &'static str;
+    /// Its fields.
+    fn fields(&self) -> &'static [Field];
+    /// The value of the i-th field.
+    fn get(&self, field: usize) -> Option<Value>;
+    /// Sets the i-th field.
+    fn set(&mut self, field: usize, value: Value);
+
+    /// Whether only our own dialect has it.
+    fn is_ours(&self) -> bool {
+        self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
+    }
+
+    /// A thing with default values, by a keyword of any dialect.
+    fn from_keyword(word: &str) -> Option<Self> {
+        Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))
+    }
+
+    /// The keyword with which a dialect writes it, or its first where the dialect has none.
+    fn keyword(&self, dialect: Dialect) -> &'static str {
+        let words = self.keywords();
+        words.iter().find(|(_, set)| dialect.is_in(*set)).unwrap_or(&words[0]).0
+    }
+}
+
+/// Every single described thing is a list of one: the reader needs only one way.
+impl<T: Describe> DescribedList for T {
+    fn kinds() -> Vec<Self> {
+        vec![T::default()]
+    }
+    fn keywords(&self) -> &'static [(&'static str, DialectSet)] {
+        T::KEYWORDS
+    }
+    fn doc(&self) -> &'static str {
+        T::DOC
+    }
+    fn fields(&self) -> &'static [Field] {
+        T::FIELDS
+    }
+    fn get(&self, field: usize) -> Option<Value> {
+        Describe::get(self, field)
+    }
+    fn set(&mut self, field: usize, value: Value) {
+        Describe::set(self, field, value)
+    }
+}

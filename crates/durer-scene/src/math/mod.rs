@@ -1,0 +1,14 @@
+//! The kernel's vectors, rays, boxes and transforms, and what else every room is built from.
+
+pub mod noise;
+pub mod roots;
+
+#[doc(hidden)]
+pub use durer_bvh::internal::random;
+pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, Side, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
+pub use durer_image::{Color, LUMINANCE};
+
+/// The mirror image of `direction` on a surface with unit normal `normal`.
+pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
+    direction - 2.0 * direction.dot(normal) * normal
+}

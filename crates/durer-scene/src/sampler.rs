@@ -1,0 +1,333 @@
+//! Numbers for sampling: each a pure function of (seed, pixel, sample number, dimension).
+//!
+//! There is no generator with a state, so no order of work can change a number.
+//!
+//! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast
+//! Splittable Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The
+//! sequence is Sobol's in two dimensions with hash-based nested uniform scrambling (Laine, Karras,
+//! *Stratified Sampling for Stochastic Transparency*, EGSR 2011), padded and shuffled as in Burley,
+//! *Practical Hash-based Owen Scrambling*, JCGT 9(4), 2020. The scrambling hash is the one of
+//! Vegdahl, *Building a Better LK Hash*, 2021, which is less biased than the published constants.
+
+use crate::math::Vec2;
+use durer_bvh::internal::{PlainKernel, run_plain};
+use serde::{Deserialize, Serialize};
+use std::array::from_fn;
+
+#[cfg(any(test, feature = "testing"))]
+#[doc(hidden)]
+pub mod testing;
+#[cfg(test)]
+mod tests;
+
+/// Where in a pixel its samples lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sampler {
+    /// Owen-scrambled Sobol (0,2)-sequence, scrambled anew in each pixel: the least noise.
+    #[default]
+    Sobol,
+    /// Independent and uniform.
+    Random,
+    /// The centres of a regular grid of cells.
+    Uniform,
+    /// One uniform position in each cell of a regular grid.
+    Jittered,
+}
+
+/// The greatest `f32` below 1.
+const BELOW_ONE: f32 = 1.0 - f32::EPSILON * 0.5;
+
+impl Sampler {
+    /// Every sampler, with its name on the command line.
+    pub const NAMES: [(&'static str, Sampler); 4] = [
+        ("sobol", Sampler::Sobol),
+        ("random", Sampler::Random),
+        ("uniform", Sampler::Uniform),
+        ("jittered", Sampler::Jittered),
+    ];
+
+    /// The sampler of a name, if there is one.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
+    }
+
+    /// How many samples a pixel really gets where `samples` are asked for: at least one, and for
+    /// the samplers on a grid the next square (65535^2 at most).
+    pub fn round_up(self, samples: u32) -> u32 {
+        match self {
+            Sampler::Sobol | Sampler::Random => samples.max(1),
+            Sampler::Uniform | Sampler::Jittered => grid_side(samples).pow(2),
+        }
+    }
+
+    /// Where in the camera's lens a sample lies, in [0,1)^2. Positions in the pixel tell nothing of
+    /// it.
+    pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
+        match self {
+            Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
+            _ => random_2d(seed, x, y, sample, LENS_DIMENSION),
+        }
+    }
+
+    /// Position of a sample in its pixel, in [0,1)^2 from the pixel's top left corner.
+    ///
+    /// `sample` counts from 0 to `round_up(samples) - 1`. On a grid it runs along rows, the top row
+    /// first.
+    pub fn pixel_position(self, seed: u64, x: u32, y: u32, sample: u32, samples: u32) -> Vec2 {
+        let in_cell = match self {
+            Sampler::Sobol => return sample_2d(seed, x, y, sample, PIXEL_DIMENSION),
+            Sampler::Random => return random_2d(seed, x, y, sample, PIXEL_DIMENSION),
+            Sampler::Uniform => Vec2::splat(0.5),
+            Sampler::Jittered => random_2d(seed, x, y, sample, PIXEL_DIMENSION),
+        };
+        let side = grid_side(samples);
+        let cell = Vec2::new((sample % side) as f32, (sample / side % side) as f32);
+        // A position close to the far edge of the last cell may round to 1.
+        ((cell + in_cell) / side as f32).min(Vec2::splat(BELOW_ONE))
+    }
+}
+
+/// The dimension that positions in the pixel use.
+pub const PIXEL_DIMENSION: u32 = 0;
+
+/// The dimension that positions in the camera's lens use; integrators take those from 2 upwards.
+pub const LENS_DIMENSION: u32 = 1;
+
+/// The sample that random numbers are for, and the first dimension that is free. A number depends
+/// on nothing else.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SampleId {
+    /// Of seed and pixel, worked out once.
+    key: u64,
+    /// The number of the sample in its pixel.
+    pub sample: u32,
+    first: u32,
+}
+
+/// Dimensions from here on are for layers that a ray passes, however many there are.
+const LAYER_DIMENSIONS: u32 = 1 << 16;
+
+/// The dimension that wavelengths use.
+const WAVELENGTH_DIMENSION: u32 = 1 << 15;
+
+impl SampleId {
+    /// Of a sample of a pixel.
+    pub fn new(seed: u64, pixel: (u32, u32), sample: u32) -> Self {
+        SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
+    }
+
+    /// Another sample of the same pixel.
+    pub fn of_sample(self, sample: u32) -> Self {
+        SampleId { sample, ..self }
+    }
+
+    /// The points of one dimension of its pixel, whose numbers [`sample_2d`] gives one by one.
+    pub fn sequence(&self, dimension: u32) -> Sequence {
+        Sequence::of(self.key, dimension)
+    }
+
+    /// The same sample with other dimensions: `first` of those that integrators may take.
+    pub fn at(self, first: u32) -> Self {
+        SampleId { first: LENS_DIMENSION + 1 + first, ..self }
+    }
+
+    /// Two numbers in [0,1), which with those of the pixel's other samples fill the square evenly.
+    pub fn pair(&self, dimension: u32) -> Vec2 {
+        Sequence::of(self.key, self.first + dimension).point(self.sample)
+    }
+
+    /// The pairs of its first dimensions, as [`SampleId::pair`] gives them one by one.
+    pub fn pairs<const N: usize>(&self) -> [Vec2; N] {
+        run_plain(Pairs::<N>(*self))
+    }
+
+    /// The number in [0,1) that wavelengths are chosen by.
+    pub fn wavelength(&self) -> f32 {
+        Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
+    }
+
+    /// A number in [0,1) for a layer on the way after some bounces.
+    pub fn layer(&self, depth: u32, layer: u32) -> f32 {
+        independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
+    }
+}
+
+/// Works out pairs side by side.
+struct Pairs<const N: usize>(SampleId);
+
+impl<const N: usize> PlainKernel for Pairs<N> {
+    type Output = [Vec2; N];
+
+    #[inline(always)]
+    fn run(self) -> [Vec2; N] {
+        let SampleId { key, sample, first } = self.0;
+        let sequences = from_fn(|i| Sequence::of(key, first + i as u32));
+        let [x, y] = Sequence::points(&sequences, &[sample; N]);
+        from_fn(|i| Vec2::new(x[i], y[i]))
+    }
+}
+
+/// Dimensions from here on are for media, however often light is scattered in them.
+const MEDIUM_DIMENSIONS: u32 = 1 << 17;
+
+/// Numbers in [0,1) one after the other, as many as are wanted, for a way through a medium.
+#[derive(Clone, Copy, Debug)]
+pub struct Stream {
+    id: SampleId,
+    dimension: u32,
+    taken: u32,
+}
+
+impl SampleId {
+    /// Numbers for a way after some bounces; `side` tells ways from the same point apart.
+    pub fn stream(&self, depth: u32, side: u32) -> Stream {
+        Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, taken: 0 }
+    }
+}
+
+impl Stream {
+    /// The next number. The first two fill their square evenly over the samples of a pixel; the
+    /// others are independent.
+    pub fn number(&mut self) -> f32 {
+        let SampleId { key, sample, .. } = self.id;
+        self.taken += 1;
+        match self.taken {
+            1 => Sequence::of(key, self.dimension).point(sample).x,
+            2 => Sequence::of(key, self.dimension).point(sample).y,
+            n => unit(mix(numbered(key, sample, self.dimension) ^ u64::from(n)) as u32),
+        }
+    }
+
+    /// The next two.
+    pub fn pair(&mut self) -> Vec2 {
+        Vec2::new(self.number(), self.number())
+    }
+}
+
+/// The least number whose square is `samples` or more, from 1 to 65535.
+fn grid_side(samples: u32) -> u32 {
+    let root = samples.isqrt();
+    let up = if root * root < samples { root + 1 } else { root };
+    up.clamp(1, 65535)
+}
+
+/// A point in [0,1)^2 that fills the square evenly as `sample` counts up from 0.
+///
+/// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in
+/// every elementary interval of area 2^-k. Points of different pixels or different dimensions are
+/// independent.
+pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
+    Sequence::of(key(seed, x, y), dimension).point(sample)
+}
+
+/// The points of one dimension of a pixel, with what they have in common worked out once.
+#[derive(Clone, Copy, Debug)]
+pub struct Sequence {
+    shuffle: u32,
+    scramble: u64,
+}
+
+impl Sequence {
+    #[inline(always)]
+    fn of(key: u64, dimension: u32) -> Self {
+        // One hash gives the shuffle its key and another the two scrambles.
+        Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
+    }
+
+    /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
+    /// one by one: first coordinates, then second ones. Side by side, for compilers to make SIMD
+    /// of.
+    #[inline(always)]
+    pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
+        let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
+        for i in 0..N {
+            let Sequence { shuffle: own, scramble: both } = sequences[i];
+            (shuffle[i], scramble[0][i], scramble[1][i]) = (own, both as u32, (both >> 32) as u32);
+        }
+        let mut points = [[0.0; N]; 2];
+        for i in 0..N {
+            let index = nested_uniform_scramble(samples[i], shuffle[i]);
+            points[0][i] = unit(nested_uniform_scramble(index.reverse_bits(), scramble[0][i]));
+            points[1][i] = unit(nested_uniform_scramble(sobol_second(index), scramble[1][i]));
+        }
+        points
+    }
+
+    /// The point of a sample.
+    pub fn point(&self, sample: u32) -> Vec2 {
+        let index = nested_uniform_scramble(sample, self.shuffle);
+        Vec2::new(
+            unit(nested_uniform_scramble(index.reverse_bits(), self.scramble as u32)),
+            unit(nested_uniform_scramble(sobol_second(index), (self.scramble >> 32) as u32)),
+        )
+    }
+}
+
+/// A uniform point in [0,1)^2, independent of every other.
+pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
+    independent(hash(seed, x, y, sample, dimension))
+}
+
+fn independent(hash: u64) -> Vec2 {
+    // One step more than the keys of `sample_2d`, so that no number is used twice.
+    let bits = mix(hash);
+    Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
+}
+
+/// 64 evenly mixed bits of a seed, a pixel, a sample number and a dimension.
+pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
+    numbered(key(seed, x, y), sample, dimension)
+}
+
+/// What all hashes of a pixel have in common.
+fn key(seed: u64, x: u32, y: u32) -> u64 {
+    mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32))
+}
+
+#[inline(always)]
+fn numbered(key: u64, sample: u32, dimension: u32) -> u64 {
+    mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
+}
+
+/// One step of SplitMix64: a permutation of the 64-bit numbers.
+#[inline(always)]
+fn mix(state: u64) -> u64 {
+    let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ z >> 31
+}
+
+/// The upper 24 bits as a number in [0,1): exact, and never 1.
+#[inline(always)]
+fn unit(bits: u32) -> f32 {
+    (bits >> 8) as f32 * (f32::EPSILON * 0.5)
+}
+
+/// Owen's scrambling: each bit is flipped or not according to the bits above it and the key.
+#[inline(always)]
+fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
+    let mut v = bits.reverse_bits();
+    v ^= v.wrapping_mul(0x3d20_adea);
+    v = v.wrapping_add(key);
+    v = v.wrapping_mul(key >> 16 | 1);
+    v ^= v.wrapping_mul(0x0552_6c56);
+    v ^= v.wrapping_mul(0x53a2_2864);
+    v.reverse_bits()
+}
+
+/// The second coordinate of Sobol's sequence, in units of 2^-32; the first is the index with its
+/// bits reversed.
+///
+/// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead
+/// of 32.
+#[inline(always)]
+fn sobol_second(index: u32) -> u32 {
+    let mut v = index;
+    v ^= v >> 16;
+    v ^= (v & 0xff00_ff00) >> 8;
+    v ^= (v & 0xf0f0_f0f0) >> 4;
+    v ^= (v & 0xcccc_cccc) >> 2;
+    v ^= (v & 0xaaaa_aaaa) >> 1;
+    v.reverse_bits()
+}

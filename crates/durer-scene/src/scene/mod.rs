@@ -1,0 +1,362 @@
+//! The scene as its author wrote it: plain data with names, degrees, nested groups and file paths.
+//!
+//! Nothing here is computed, cached or looked up; `compile` turns it into a world.
+
+pub mod assets;
+pub mod extent;
+pub mod matrix;
+pub mod staging;
+
+use crate::camera::Camera;
+use crate::describe::{FileName, Rule, described};
+use crate::dialect::set;
+use crate::light::Light;
+use crate::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
+use crate::math::Vec3;
+use crate::medium::Fog;
+use crate::shape::{HeightField, MeshData, Primitive, Sphere, TriangleMesh, VoxelGrid};
+use crate::texture::CieSky;
+use crate::texture::almanac::{self, Moment};
+use crate::texture::cie_sky::OVERCAST;
+pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
+use durer_diag::Span;
+pub use matrix::MatrixOp;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+pub use staging::{Axis, Staging, Studio, View};
+
+described! {
+    /// What a ray sees that hits nothing, and the light that is everywhere.
+    Background ["Background" in set::ALL] {
+        /// Colour of rays that hit nothing.
+        color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
+        /// Light that reaches every surface.
+        ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,
+            ["ambientLight" in set::CLASSIC, "ambient_light" in set::F23];
+        /// Folder with six pictures (left, right, up, down, front, back) that replace the colour.
+        cube_map: Option<FileName> = None, optional, Rule::Any,
+            ["cubeMap" in set::F12A5 | set::F16 | set::DURER, "cube_map" in set::F23];
+        /// A picture of all directions that replaces the colour and lights the scene, best of high
+        /// dynamic range (`.exr`, `.hdr`); its middle is seen towards -z. Whitted's light does not
+        /// come from it.
+        environment: Option<FileName> = None, optional, Rule::Any, ["environment" in set::DURER];
+        /// The way to the sun, of any length, with y upwards: a clear sky and the sun light the
+        /// scene, in cd/m^2. Such pictures need `--exposure`, -13 say.
+        sun: Option<Vec3> = None, optional, Rule::NonZero, ["sun" in set::DURER];
+        /// The same by angles: how high the sun stands, in degrees above the horizon.
+        sun_altitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["sunAltitude" in set::DURER];
+        /// And where, in degrees from north (-z) over east (x): 180 is south.
+        sun_azimuth: Option<f32> = None, optional, Rule::Any, ["sunAzimuth" in set::DURER];
+        /// The same by place, date and time: degrees north of the equator.
+        latitude: Option<f32> = None, optional, Rule::From(-90.0, 90.0), ["latitude" in set::DURER];
+        /// Degrees east of Greenwich.
+        longitude: Option<f32> = None, optional, Rule::From(-360.0, 360.0), ["longitude" in set::DURER];
+        /// Year, month and day.
+        date: Option<Vec3> = None, optional, Rule::Counts(9999), ["date" in set::DURER];
+        /// Hours, minutes and seconds of a clock there.
+        time: Option<Vec3> = None, optional, Rule::Any, ["time" in set::DURER];
+        /// Hours that this clock is before that of Greenwich, summer time included; 0 where nothing
+        /// is written.
+        time_zone: Option<f32> = None, optional, Rule::From(-14.0, 14.0), ["timeZone" in set::DURER];
+        /// How hazy the air is: from 2 (clear) over 3 (a usual day, where nothing is written) to
+        /// 10.
+        turbidity: Option<f32> = None, optional, Rule::Positive, ["turbidity" in set::DURER];
+        /// Number of a standard sky of the CIE, 1 to 16 (1 overcast, 5 even, 12 clear, 16 the
+        /// traditional overcast sky): it lights the scene, in cd/m^2, without the sun itself, whose
+        /// place `sun` says for all but 1, 3, 5 and 16.
+        cie_sky: Option<u32> = None, optional, Rule::Numbered(OVERCAST), ["cieSky" in set::DURER];
+        /// How bright that sky is at the zenith, in cd/m^2; 10000 where nothing is written.
+        zenith_luminance: Option<f32> = None, optional, Rule::Positive, ["zenithLuminance" in set::DURER];
+        /// What share of the light of sun and sky the ground below the horizon gives back. Where
+        /// nothing is written it is 0.2 below a standard sky, and below a clear one with `sun` a
+        /// fifth of the zenith's light.
+        ground_reflectance: Option<f32> = None, optional, Rule::Share, ["groundReflectance" in set::DURER];
+        /// How far the environment is turned about y, in degrees.
+        environment_rotation: Option<f32> = None, optional, Rule::Any, ["environmentRotation" in set::DURER];
+        /// What multiplies the environment.
+        environment_scale: Option<Vec3> = None, optional, Rule::Any, ["environmentScale" in set::DURER];
+    }
+}
+
+impl Background {
+    /// How hazy the air is.
+    pub fn turbidity(&self) -> f32 {
+        self.turbidity.unwrap_or(3.0)
+    }
+
+    /// The way to the sun, of any length, if one is asked for.
+    ///
+    /// # Errors
+    ///
+    /// In words, where its place is said in more than one way, in part, or by a time that is none.
+    pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
+        let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
+        let clock = [
+            ("latitude", self.latitude.is_some()),
+            ("longitude", self.longitude.is_some()),
+            ("date", self.date.is_some()),
+            ("time", self.time.is_some()),
+            ("timeZone", self.time_zone.is_some()),
+        ];
+        let direct = [("sun", self.sun.is_some())];
+        let given = |words: &[(&'static str, bool)]| words.iter().find(|(_, given)| *given).map(|(word, _)| *word);
+        if let [first, second, ..] =
+            [given(&direct), given(&angles), given(&clock)].into_iter().flatten().collect::<Vec<_>>()[..]
+        {
+            return Err(format!("the sun's place is said twice, by `{first}` and by `{second}`"));
+        }
+        // A clock without a zone is that of Greenwich.
+        let missing = |words: &[(&'static str, bool)]| match given(words) {
+            Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
+                Some((lacking, _)) => {
+                    Err(format!("the sun's place is said in part: beside `{word}` there is no `{lacking}`"))
+                }
+                None => Ok(()),
+            },
+            None => Ok(()),
+        };
+        missing(&angles)?;
+        missing(&clock)?;
+        if let (Some(altitude), Some(azimuth)) = (self.sun_altitude, self.sun_azimuth) {
+            return Ok(Some(almanac::way([altitude, azimuth].map(f64::from))));
+        }
+        let (Some(latitude), Some(longitude), Some(date), Some(time)) =
+            (self.latitude, self.longitude, self.date, self.time)
+        else {
+            return Ok(self.sun);
+        };
+        let [hour, minute, second] = time.to_array().map(f64::from);
+        let sixty = 0.0..60.0;
+        if !(0.0..=24.0).contains(&hour) || !sixty.contains(&minute) || !sixty.contains(&second) {
+            return Err("there is no such `time`: it is hours, minutes and seconds, as 14 30 0".into());
+        }
+        let date = date.to_array().map(|part| part as i32);
+        let hours = hour + minute / 60.0 + second / 3600.0;
+        let moment = Moment { date, hours, zone: f64::from(self.time_zone.unwrap_or(0.0)) };
+        if !moment.exists() {
+            return Err("there is no such `date`: it is year, month and day, as 2026 6 21".into());
+        }
+        Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
+    }
+
+    /// The same, if that is sound.
+    pub fn sun(&self) -> Option<Vec3> {
+        self.way_to_sun().ok().flatten()
+    }
+
+    /// Whether the sun is below the horizon: neither it nor its sky shines.
+    pub fn is_night(&self) -> bool {
+        self.sun().is_some_and(|way| way.y < 0.0)
+    }
+
+    /// The standard sky, if one is asked for.
+    pub fn cie_sky(&self) -> Option<CieSky> {
+        let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
+        self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
+    }
+
+    /// How far the environment is turned about y, in degrees, and what multiplies it.
+    pub fn environment_placing(&self) -> (f32, Vec3) {
+        (self.environment_rotation.unwrap_or(0.0), self.environment_scale.unwrap_or(Vec3::ONE))
+    }
+}
+
+/// What a file asks of its picture; options say otherwise.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Wishes {
+    /// Its columns and rows.
+    pub size: Option<(u32, u32)>,
+    /// The part of that which is made: its first column and row, its columns and rows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub crop: Option<(u32, u32, u32, u32)>,
+    /// Samples a pixel.
+    pub samples: Option<u32>,
+    /// How often paths are scattered after the first time.
+    pub bounces: Option<u32>,
+}
+
+impl Wishes {
+    fn are_none(&self) -> bool {
+        *self == Wishes::default()
+    }
+}
+
+/// A whole scene.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Scene {
+    /// Whence it is seen.
+    pub camera: Option<Camera>,
+    /// What is behind everything.
+    pub background: Background,
+    /// What is in the air.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fog: Option<Spanned<Fog>>,
+    /// Lights; `None` where the file has no section for them.
+    pub lights: Option<Vec<Spanned<Light>>>,
+    /// Materials, by number.
+    pub materials: Vec<Spanned<Material>>,
+    /// All objects.
+    pub root: Option<Group>,
+    /// Meshes and pictures that are in no files of their own.
+    #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
+    pub assets: Assets,
+    /// What the file asks of its picture.
+    #[serde(default, skip_serializing_if = "Wishes::are_none")]
+    pub wishes: Wishes,
+    /// Which way is up, where its format says so.
+    #[serde(skip)]
+    pub up: Option<Axis>,
+    /// What makes lumens of its light, by colour, where that is in watts.
+    #[serde(skip)]
+    pub lumens: Option<Vec3>,
+    /// Where the camera is written.
+    #[serde(skip)]
+    pub camera_span: Span,
+    /// Where the background is written.
+    #[serde(skip)]
+    pub background_span: Span,
+}
+
+impl Scene {
+    /// Adds a mesh in memory under a `name` that no other mesh has, and returns a node that shows it.
+    pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
+        self.assets.meshes.insert(name.to_string(), data);
+        Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
+    }
+
+    /// Whether it has light or materials that only a path tracer shows: layers, surfaces that
+    /// shine, an environment.
+    pub fn is_physical(&self) -> bool {
+        let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
+        let background = &self.background;
+        background.environment.is_some()
+            || background.sun().is_some()
+            || background.cie_sky.is_some()
+            || self.fog.is_some()
+            || self.materials.iter().any(layered)
+    }
+}
+
+impl Scene {
+    /// Whether a surface or what is around it shines.
+    pub fn shines(&self) -> bool {
+        let shines = |material: &Spanned<Material>| match &material.value {
+            Material::Principled(layers) => layers.emission_luminance > 0.0,
+            _ => false,
+        };
+        self.background.environment.is_some() || self.background.sun().is_some() || self.materials.iter().any(shines)
+    }
+}
+
+/// A thing and where it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Spanned<T> {
+    /// The thing.
+    pub value: T,
+    /// Where.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// A material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Material {
+    /// Diffuse colour, highlight, mirror, glass; noise may replace the diffuse colour.
+    Phong(Box<PhongMaterial>, Option<ColorNoise>),
+    /// Layers, as in OpenPBR.
+    Principled(Box<PrincipledMaterial>),
+    /// Fibres.
+    Hair(HairMaterial),
+    /// Two earlier materials mixed by a pattern, and the transform from world to pattern space.
+    Solid(Solid, Vec<MatrixOp>),
+}
+
+/// Some objects.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Group {
+    /// In reading order.
+    pub objects: Vec<Object>,
+}
+
+/// An object and the material that was current where it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Object {
+    /// What it is.
+    pub node: Node,
+    /// Number of the current material; `None` before any.
+    pub material: Option<u32>,
+    /// Its keyword in the file.
+    #[serde(skip)]
+    pub span: Span,
+}
+
+/// What an object is.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum Node {
+    /// Several objects.
+    Group(Group),
+    /// An object moved by M = M1 M2 ...
+    Transform(Vec<MatrixOp>, Box<Object>),
+    /// A shape.
+    Primitive(Primitive),
+    /// A mesh in a file.
+    Mesh(TriangleMesh),
+    /// Cells of a box, filled by balls.
+    Voxels(VoxelGrid, Vec<Sphere>),
+    /// A landscape from a picture.
+    HeightField(HeightField),
+    /// Closed objects combined to one solid.
+    Solid(Operation, Vec<Object>),
+}
+
+/// How closed objects are combined; each of them counts with all that it holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Operation {
+    /// All that is in some part. Where no other operation is around it, the parts stay as they are,
+    /// with the surfaces that they have inside each other.
+    Union,
+    /// All that is in some part, as one solid: surfaces inside other parts are gone.
+    Merge,
+    /// What is in every part.
+    Intersection,
+    /// What is in the first part and in no other.
+    Difference,
+    /// What is in an odd number of parts: of two, in one alone.
+    Xor,
+}
+
+impl Operation {
+    /// All of them, by keyword.
+    pub const ALL: [(&str, Operation); 5] = [
+        ("Union", Operation::Union),
+        ("Merge", Operation::Merge),
+        ("Intersection", Operation::Intersection),
+        ("Difference", Operation::Difference),
+        ("Xor", Operation::Xor),
+    ];
+
+    /// What is inside the result.
+    pub fn doc(self) -> &'static str {
+        match self {
+            Operation::Union => {
+                "All that is in some part. Where no other operation is around it, the parts stay as they are, \
+                 with the surfaces that they have inside each other."
+            }
+            Operation::Merge => "All that is in some part, as one solid: surfaces inside other parts are gone.",
+            Operation::Intersection => "What is in every part.",
+            Operation::Difference => "What is in the first part and in no other.",
+            Operation::Xor => "What is in an odd number of parts: of two, in one alone.",
+        }
+    }
+
+    /// The one of a keyword.
+    pub fn from_keyword(word: &str) -> Option<Operation> {
+        Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
+    }
+
+    /// Its keyword.
+    pub fn keyword(self) -> &'static str {
+        Operation::ALL[self as usize].0
+    }
+}

@@ -1,0 +1,147 @@
+//! The cylinder between two points, with its caps.
+
+use super::chord::Chord;
+use super::{INSET, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded};
+use crate::describe::{Rule, described};
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A cylinder with caps, round about the line between two points.
+    Cylinder ["Cylinder" in set::DURER] {
+        /// Middle of the cap at one end.
+        base: Vec3 = Vec3::ZERO, required, Rule::Any, ["base" in set::DURER];
+        /// Middle of the cap at the other end.
+        top: Vec3 = Vec3::Y, required, Rule::Any, ["top" in set::DURER];
+        /// Its radius.
+        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+    }
+}
+
+/// A piece of a line from which heights are counted.
+#[derive(Clone, Copy, Debug)]
+pub struct Axis {
+    /// Start of the axis, where the height is 0.
+    pub base: DVec3,
+    /// Unit direction.
+    pub dir: DVec3,
+    /// Length of the axis.
+    pub height: f64,
+}
+
+/// The faces of what is round about an axis.
+pub(super) const BASE: u32 = 0;
+pub(super) const TOP: u32 = 1;
+pub(super) const SIDE: u32 = 2;
+
+impl Axis {
+    pub(super) fn new(base: Vec3, top: Vec3) -> Self {
+        let (base, along) = (base.as_dvec3(), top.as_dvec3() - base.as_dvec3());
+        Axis { base, dir: along.normalize_or(DVec3::Y), height: along.length() }
+    }
+
+    /// A vector's part along the axis, and the rest.
+    pub(super) fn split(&self, v: DVec3) -> (f64, DVec3) {
+        let along = v.dot(self.dir);
+        (along, v - along * self.dir)
+    }
+
+    /// A line as seen from the base, with its origin moved to where it is nearest to the middle of
+    /// the axis, and the `t` of that place: so, no digits are lost to distance.
+    pub(super) fn near(&self, line: &Line) -> (f64, Line) {
+        let shift = line.nearest(self.base + 0.5 * self.height * self.dir);
+        (shift, Line { origin: line.at(shift) - self.base, dir: line.dir })
+    }
+
+    /// Bound on the error of a point no farther than a radius from the axis.
+    pub(super) fn error(&self, radius: f64) -> f32 {
+        gamma(4) * (self.base.abs().max_element() + self.height + radius) as f32
+    }
+
+    /// The box around discs at both ends.
+    pub(super) fn bounds(&self, [base_radius, top_radius]: [f64; 2]) -> Aabb {
+        let reach = disc_reach(self.dir);
+        let top = self.base + self.height * self.dir;
+        let (a, b) = (base_radius * reach, top_radius * reach);
+        padded((self.base - a).min(top - b), (self.base + a).max(top + b))
+    }
+
+    /// Texture coordinates: the angle about the axis, and `v`.
+    pub(super) fn uv(&self, around: DVec3, v: f64) -> Uv {
+        let (x, z) = self.dir.any_orthonormal_pair();
+        Uv::Turned(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
+    }
+
+    /// The surface of a cap of a radius: a plane across the axis.
+    pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> Surface {
+        let (height, normal) = if face == TOP { (self.height, self.dir) } else { (0.0, -self.dir) };
+        let (_, around) = self.split(point - self.base);
+        let within = radius - f64::from(INSET * self.error(radius)).min(0.25 * radius);
+        let position = self.base + height * self.dir + around.clamp_length_max(within);
+        // Planes across tilted axes are known to double precision.
+        let floor = 1e-14 * (self.base.abs().max_element() + self.height + radius);
+        Surface::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
+    }
+}
+
+impl Cylinder {
+    pub(super) fn axis(&self) -> Axis {
+        Axis::new(self.base, self.top)
+    }
+
+    /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across
+    /// it.
+    pub(super) fn crossings_about(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let (shift, near) = axis.near(line);
+        let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
+        let r = f64::from(self.radius);
+        // A line along the axis has no direction around it, but for rounding.
+        let across = d.length_squared();
+        let across = if across > 1e-30 * near.dir.length_squared() { across } else { 0.0 };
+        let chord = Chord::LINE.quadratic(across, o.dot(d), o.length_squared() - r * r, SIDE);
+        if chord.ends().is_none() {
+            return;
+        }
+        let chord = chord.slab(y, slope, [0.0, axis.height], [BASE, TOP]);
+        chord.offer(&mut |t, uv| offer(t + shift, uv));
+    }
+}
+
+impl Shape for Cylinder {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(self.axis().bounds([f64::from(self.radius); 2]))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        self.crossings_about(&self.axis(), line, offer);
+    }
+
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let [base, top] = exactly([self.base, self.top], self.base)?;
+        Some((Cylinder { base, top, ..self.clone() }, self.base))
+    }
+
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+        let (axis, r) = (self.axis(), f64::from(self.radius));
+        if crossing.uv.x != SIDE as f32 {
+            return axis.cap(point, crossing.uv.x as u32, r);
+        }
+        let (y, around) = axis.split(point - axis.base);
+        let (y, normal) =
+            (inset(y, axis.height, axis.error(r)), around.normalize_or(axis.dir.any_orthonormal_vector()));
+        let position = axis.base + y * axis.dir + r * normal;
+        let uv = axis.uv(normal, y / axis.height);
+        Surface::new(position, normal, gamma(2) * self.radius, uv).curved(1.0 / r)
+    }
+
+    fn inside(&self, point: DVec3) -> Option<bool> {
+        let axis = self.axis();
+        let (y, around) = axis.split(point - axis.base);
+        Some(y > 0.0 && y < axis.height && around.length() < f64::from(self.radius))
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        (self.axis().height == 0.0).then_some("`base` and `top` of a `Cylinder` must not be the same point")
+    }
+}

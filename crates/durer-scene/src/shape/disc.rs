@@ -1,0 +1,64 @@
+//! The disc, whole or with a hole.
+
+use super::{Shape, ShapeHit, Surface, Uv, disc_reach, padded};
+use crate::describe::{Rule, described};
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Vec2, Vec3};
+use glam::{DVec2, DVec3};
+
+described! {
+    /// A flat disc.
+    Disc ["Disc" in set::DURER] {
+        /// Its middle.
+        center: Vec3 = Vec3::ZERO, required, Rule::Any, ["center" in set::DURER];
+        /// Points to its front; of any length.
+        normal: Vec3 = Vec3::Y, required, Rule::NonZero, ["normal" in set::DURER];
+        /// Its radius.
+        radius: f32 = 1.0, required, Rule::Positive, ["radius" in set::DURER];
+        /// Radius of the hole in its middle.
+        inner_radius: f32 = 0.0, optional, Rule::NonNegative, ["innerRadius" in set::DURER];
+    }
+}
+
+impl Disc {
+    /// Unit normal in object space.
+    pub fn unit_normal(&self) -> DVec3 {
+        self.normal.as_dvec3().normalize_or(DVec3::Y)
+    }
+}
+
+impl Shape for Disc {
+    fn bounds(&self) -> Option<Aabb> {
+        let (center, reach) = (self.center.as_dvec3(), f64::from(self.radius) * disc_reach(self.unit_normal()));
+        Some(padded(center - reach, center + reach))
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let (n, center) = (self.unit_normal(), self.center.as_dvec3());
+        let t = n.dot(center - line.origin) / n.dot(line.dir);
+        let distance = (line.at(t) - center).length();
+        // A parallel line divides by zero, and is nowhere within the radius.
+        if distance <= f64::from(self.radius) && distance >= f64::from(self.inner_radius) {
+            offer(t, Vec2::ZERO);
+        }
+    }
+
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        Some((Disc { center: Vec3::ZERO, ..self.clone() }, self.center))
+    }
+
+    fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
+        let (n, center, radius) = (self.unit_normal(), self.center.as_dvec3(), f64::from(self.radius));
+        let q = point - center;
+        let q = (q - n.dot(q) * n).clamp_length_max(radius);
+        let (x, z) = n.any_orthonormal_pair();
+        let floor = 1e-14 * (center.abs().max_element() + radius);
+        let uv = Uv::Turned(DVec2::new(q.dot(x), q.dot(z)).as_vec2(), (q.length() / radius) as f32);
+        Surface::new(center + q, n, floor as f32, uv)
+    }
+
+    fn flaw(&self) -> Option<&'static str> {
+        let there = self.inner_radius < self.radius;
+        (!there).then_some("`innerRadius` of a `Disc` must be less than its `radius`")
+    }
+}

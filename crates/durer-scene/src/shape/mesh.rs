@@ -1,0 +1,335 @@
+//! Triangle meshes: indexed triangles with optional normals and texture coordinates.
+
+use super::height_field::Terrain;
+pub use super::mesh_data::{MeshData, NO_INDEX, Triangles, loosened, place_key};
+use super::normals::{Normals, made, of_terrain};
+use super::triangle::triangle_surface;
+use super::{ShapeHit, Surface};
+use crate::describe::{FileName, Rule, described};
+use crate::dialect::{MeshNormals, set};
+use crate::math::{Aabb, Vec2, Vec3};
+use crate::source::Digest;
+use durer_bvh::{BuildQuality, TriangleBvh};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+described! {
+    /// A triangle mesh in a file of its own.
+    TriangleMesh ["TriangleMesh" in set::CLASSIC, "mesh" in set::F23] {
+        /// Path of the mesh file: `.obj`, `.ply` or `.stl`.
+        obj_file: FileName = FileName::default(), required, Rule::Any, ["obj_file" in set::ALL];
+    }
+}
+
+/// A mesh ready to be hit: every triangle has its corners, and normals if it is smooth.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    form: Form,
+    /// In place of those of the form.
+    made: Option<Normals>,
+    center: Vec3,
+}
+
+/// What triangles are taken from.
+#[derive(Clone, Debug)]
+enum Form {
+    /// Shared with the description that it is of, unless that had to be changed.
+    Lists(Arc<MeshData>),
+    Terrain(Terrain),
+}
+
+impl Default for Form {
+    fn default() -> Self {
+        Form::Lists(Arc::default())
+    }
+}
+
+impl Mesh {
+    /// Takes a mesh file's data; normals are made by `rule` for triangles that bring none, or for
+    /// all unless `file_normals`.
+    pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
+        let data = data.into();
+        let made = made(&data, rule, file_normals);
+        Mesh { form: Form::Lists(data), made, center: Vec3::ZERO }
+    }
+
+    /// Takes a landscape, with normals made by `rule`.
+    pub fn of_terrain(terrain: Terrain, rule: MeshNormals) -> Self {
+        let made = of_terrain(&terrain, rule);
+        Mesh { form: Form::Terrain(terrain), made, center: Vec3::ZERO }
+    }
+
+    /// The same about the origin, along the axes where single precision holds that exactly, if it
+    /// lies [far](Aabb::is_far).
+    pub fn centered(mut self) -> Self {
+        let bounds = match &self.form {
+            Form::Lists(data) => Aabb::around(data.positions.iter().copied()),
+            Form::Terrain(terrain) => terrain.bounds(),
+        };
+        if bounds.is_far() {
+            let middle = bounds.center();
+            let stays = |axis: usize, x: f32| f64::from(x - middle[axis]) == f64::from(x) - f64::from(middle[axis]);
+            let by = match &self.form {
+                Form::Lists(data) => [0, 1, 2].map(|axis| data.positions.iter().all(|p| stays(axis, p[axis]))),
+                Form::Terrain(terrain) => terrain.all_along(stays),
+            };
+            self.center = Vec3::from_array([0, 1, 2].map(|axis| if by[axis] { middle[axis] } else { 0.0 }));
+            if self.center != Vec3::ZERO {
+                match &mut self.form {
+                    Form::Lists(data) => Arc::make_mut(data).positions.iter_mut().for_each(|p| *p -= self.center),
+                    Form::Terrain(terrain) => *terrain = terrain.moved(self.center),
+                }
+            }
+        }
+        self
+    }
+
+    /// Whether it has one normal a triangle.
+    pub fn is_flat(&self) -> bool {
+        (0..self.len() as u32).all(|part| self.corner_normals(part).is_none())
+    }
+
+    /// Normals of its corners, and three of them for each triangle; both may be empty.
+    pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
+        match (&self.made, &self.form) {
+            (Some(made), Form::Lists(data)) => (&made.values, made.listed(&**data)),
+            (Some(made), Form::Terrain(terrain)) => (&made.values, made.listed(terrain)),
+            (None, Form::Lists(data)) => (&data.normals, Cow::Borrowed(&data.triangle_normals)),
+            (None, Form::Terrain(_)) => (&[], Cow::Borrowed(&[])),
+        }
+    }
+
+    /// The same with normals that a rule makes, whatever normals it had.
+    pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
+        let mesh = match &self.form {
+            Form::Lists(data) => Mesh::new(data.clone(), rule, false),
+            Form::Terrain(terrain) => Mesh::of_terrain(terrain.clone(), rule),
+        };
+        Mesh { center: self.center, ..mesh }
+    }
+
+    /// The same with the other half of every triangle's parallelogram, whose normals go on as those
+    /// of the triangle do.
+    pub fn parallelograms(&self) -> Mesh {
+        let mut data = self.to_data().into_owned();
+        let (normals, triangle_normals) = self.normals();
+        (data.normals, data.triangle_normals) = (normals.to_vec(), triangle_normals.into_owned());
+        fn halves(triangles: &mut Vec<[u32; 3]>, values: &mut Vec<Vec3>) {
+            for i in 0..triangles.len() {
+                let [a, b, c] = triangles[i];
+                let at = |i: u32| values.get(i as usize).copied().unwrap_or_default();
+                let fourth = at(b) + at(c) - at(a);
+                triangles.push([b, values.len() as u32, c]);
+                values.push(fourth);
+            }
+        }
+        halves(&mut data.triangles, &mut data.positions);
+        halves(&mut data.triangle_normals, &mut data.normals);
+        (data.triangle_uvs, data.vertices) = Default::default();
+        (data.colors, data.second_uvs, data.tangents) = Default::default();
+        Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
+    }
+
+    /// The hash of all that it holds.
+    pub fn digest(&self) -> Digest {
+        let (normals, triangles) = self.normals();
+        let (normals, triangles) = (normals.to_vec(), triangles.into_owned());
+        let own = MeshData { normals, triangles, ..MeshData::default() };
+        let of_form = match &self.form {
+            Form::Lists(data) => data.digest(),
+            Form::Terrain(terrain) => terrain.digest(),
+        };
+        Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
+    }
+
+    /// What it is made of, in lists; its normals may be [others](Mesh::normals).
+    pub fn to_data(&self) -> Cow<'_, MeshData> {
+        match &self.form {
+            Form::Lists(data) => Cow::Borrowed(data),
+            Form::Terrain(terrain) => Cow::Owned(terrain.to_data()),
+        }
+    }
+
+    /// A tree over its triangles.
+    pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
+        match &self.form {
+            Form::Lists(data) => TriangleBvh::build(&data.positions, &data.triangles, quality),
+            Form::Terrain(terrain) => terrain.tree(quality),
+        }
+    }
+
+    /// The vertices' colours and opacity, by the number of the position; may be empty.
+    pub fn colors(&self) -> &[[f32; 4]] {
+        self.lists().map_or(&[], |data| &data.colors)
+    }
+
+    /// The texture coordinates of all corners, if they are one.
+    pub fn only_uv(&self) -> Option<Vec2> {
+        let uvs = &self.lists()?.uvs;
+        let first = *uvs.first()?;
+        uvs.iter().all(|uv| (*uv - first).abs().max_element() < 1e-6).then_some(first)
+    }
+
+    /// Whether it is a landscape.
+    pub fn is_terrain(&self) -> bool {
+        matches!(self.form, Form::Terrain(_))
+    }
+
+    fn lists(&self) -> Option<&MeshData> {
+        match &self.form {
+            Form::Lists(data) => Some(data),
+            Form::Terrain(_) => None,
+        }
+    }
+
+    /// How far it was moved by [`Mesh::centered`].
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// How many triangles it has.
+    pub fn len(&self) -> usize {
+        match &self.form {
+            Form::Lists(data) => data.triangles.len(),
+            Form::Terrain(terrain) => terrain.len(),
+        }
+    }
+
+    /// Whether it has no triangle.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Bytes that it takes in memory, its acceleration structure not counted.
+    pub fn bytes(&self) -> usize {
+        let made = self.made.as_ref();
+        let own = match &self.form {
+            Form::Lists(data) => data.bytes(),
+            Form::Terrain(terrain) => terrain.grid().memory_usage(),
+        };
+        own + made.map_or(0, Normals::bytes)
+    }
+
+    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh
+    /// an even number of times; else the ends of one that does not. Corners at the same place
+    /// are one.
+    pub fn open_edge(&self) -> Option<[Vec3; 2]> {
+        // A landscape with walls and floor is closed.
+        self.lists()?;
+        let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
+        for part in 0..self.len() as u32 {
+            let [a, b, c] = self.corners(part);
+            for [p, q] in [[a, b], [b, c], [c, a]] {
+                let (k, l) = (place_key(p), place_key(q));
+                if k != l {
+                    edges.push(([k.min(l), k.max(l)], [p, q]));
+                }
+            }
+        }
+        edges.sort_unstable_by_key(|edge| edge.0);
+        edges.chunk_by(|a, b| a.0 == b.0).find(|same| same.len() % 2 == 1).map(|same| same[0].1)
+    }
+
+    /// The corners of a triangle.
+    #[inline]
+    pub fn corners(&self, part: u32) -> [Vec3; 3] {
+        match &self.form {
+            Form::Lists(data) => data.corners(part as usize),
+            Form::Terrain(terrain) => terrain.corners(part as usize),
+        }
+    }
+
+    /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
+    /// gives it; `None` on what is flat.
+    pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
+        let [a, b, c] = self.corner_normals(part)?.map(Vec3::normalize_or_zero);
+        Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
+    }
+
+    /// Whether triangles may have normals at their corners.
+    pub fn has_normals(&self) -> bool {
+        self.made.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
+    }
+
+    /// The normals at a triangle's corners, if it has any.
+    #[inline]
+    pub fn corner_normals(&self, part: u32) -> Option<[Vec3; 3]> {
+        match (&self.made, &self.form) {
+            (Some(made), Form::Lists(data)) => made.of_triangle(&**data, part as usize),
+            (Some(made), Form::Terrain(terrain)) => made.of_triangle(terrain, part as usize),
+            (None, Form::Lists(data)) => attribute(&data.triangle_normals, &data.normals, part),
+            (None, Form::Terrain(_)) => None,
+        }
+    }
+
+    /// The texture coordinates of a triangle's corners, if it has any.
+    #[inline]
+    fn corner_uvs(&self, part: u32) -> Option<[Vec2; 3]> {
+        match &self.form {
+            Form::Lists(data) => attribute(&data.triangle_uvs, &data.uvs, part),
+            Form::Terrain(terrain) => Some(terrain.triangle(part as usize).map(|vertex| terrain.uv(vertex))),
+        }
+    }
+
+    /// The vertices' colours and opacity, mixed at a point of a triangle.
+    fn color(&self, part: u32, barycentric: Vec3) -> Option<[f32; 4]> {
+        let data = self.lists()?;
+        let [a, b, c] = attribute(&data.triangles, &data.colors, part)?;
+        let Vec3 { x, y, z } = barycentric;
+        Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
+    }
+
+    /// The second texture coordinates at a point of a triangle.
+    pub fn second_uv(&self, part: u32, barycentric: Vec3) -> Option<Vec2> {
+        let data = self.lists()?;
+        let [a, b, c] = attribute(&data.triangles, &data.second_uvs, part)?;
+        Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
+    }
+
+    /// The directions in which u and v grow at a point of a triangle: those of the file, or those
+    /// of the triangle.
+    pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
+        let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, part));
+        if let Some(corners) = tangents.filter(|_| !second) {
+            let [a, b, c] = corners.map(|[x, y, z, _]| Vec3::new(x, y, z));
+            let tangent = barycentric.x * a + barycentric.y * b + barycentric.z * c;
+            if tangent != Vec3::ZERO {
+                return Some([tangent, corners[0][3] * normal.cross(tangent)]);
+            }
+        }
+        self.derivatives(part, second)
+    }
+
+    /// How a point of a triangle moves as its texture coordinates grow by 1.
+    pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
+        let [a, b, c] = match second {
+            true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, part))?,
+            false => self.corner_uvs(part)?,
+        };
+        let [p, q, r] = self.corners(part);
+        let (along, across) = (b - a, c - a);
+        let area = along.perp_dot(across);
+        let u = ((q - p) * across.y - (r - p) * along.y) / area;
+        let v = ((r - p) * along.x - (q - p) * across.x) / area;
+        (u.is_finite() && v.is_finite() && u != Vec3::ZERO && v != Vec3::ZERO).then_some([u, v])
+    }
+
+    /// The surface of a triangle at a crossing.
+    #[inline]
+    pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
+        // All that lies far away in memory is asked for before anything waits for it.
+        let (corners, normals) = (self.corners(part), self.corner_normals(part));
+        let uvs = self.corner_uvs(part);
+        let mut surface = triangle_surface(corners, normals, crossing.uv);
+        let barycentric = surface.barycentric;
+        surface.uv = uvs.map(|[a, b, c]| barycentric.x * a + barycentric.y * b + barycentric.z * c).into();
+        surface.color = self.color(part, barycentric).unwrap_or([1.0; 4]);
+        surface
+    }
+}
+
+/// An attribute's values at the corners of a triangle, if it has them all.
+fn attribute<T: Copy>(indices: &[[u32; 3]], values: &[T], part: u32) -> Option<[T; 3]> {
+    let [a, b, c] = *indices.get(part as usize)?;
+    Some([*values.get(a as usize)?, *values.get(b as usize)?, *values.get(c as usize)?])
+}

@@ -1,0 +1,316 @@
+//! Shapes: what a ray can hit. One file each; the list is [`Primitive`].
+
+mod chord;
+pub mod cone;
+pub mod cuboid;
+pub mod cylinder;
+pub mod disc;
+pub mod ellipsoid;
+pub mod height_field;
+pub mod mesh;
+mod mesh_data;
+pub mod normals;
+pub mod plane;
+pub mod quadric;
+pub mod rectangle;
+pub mod sphere;
+mod tangents;
+#[cfg(any(test, feature = "testing"))]
+#[doc(hidden)]
+pub mod testing;
+#[cfg(test)]
+mod tests;
+pub mod torus;
+pub mod triangle;
+pub mod uv;
+pub mod voxels;
+
+use crate::describe::described_list;
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
+pub use cone::Cone;
+pub use cuboid::Cuboid;
+pub use cylinder::Axis;
+pub use cylinder::Cylinder;
+pub use disc::Disc;
+pub use durer_bvh::watertight;
+pub use ellipsoid::Ellipsoid;
+use glam::DVec3;
+pub use height_field::{HeightField, Terrain};
+pub use mesh::{Mesh, MeshData, TriangleMesh};
+pub use plane::Plane;
+pub use quadric::Quadric;
+pub use rectangle::Rectangle;
+pub use sphere::Sphere;
+pub use torus::Torus;
+pub use triangle::Triangle;
+pub use uv::Uv;
+pub use voxels::VoxelGrid;
+
+macro_rules! delegate {
+    ($($variant:ident),+) => {
+        impl Shape for Primitive {
+            fn bounds(&self) -> Option<Aabb> {
+                match self { $(Primitive::$variant(s) => s.bounds(),)+ }
+            }
+            fn overlaps(&self, cell: &Aabb) -> bool {
+                match self { $(Primitive::$variant(s) => s.overlaps(cell),)+ }
+            }
+            fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
+                match self { $(Primitive::$variant(s) => s.intersect(ray),)+ }
+            }
+            fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
+            }
+            fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
+                match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
+            }
+            fn inside(&self, point: DVec3) -> Option<bool> {
+                match self { $(Primitive::$variant(s) => s.inside(point),)+ }
+            }
+            fn starts_inside(&self, line: &Line) -> bool {
+                match self { $(Primitive::$variant(s) => s.starts_inside(line),)+ }
+            }
+            fn centered(&self) -> Option<(Self, Vec3)> {
+                match self { $(Primitive::$variant(s) => s.centered().map(|(s, moved)| (s.into(), moved)),)+ }
+            }
+            fn flaw(&self) -> Option<&'static str> {
+                match self { $(Primitive::$variant(s) => s.flaw(),)+ }
+            }
+        }
+    };
+}
+
+described_list! {
+    /// A shape that is given in the scene file itself.
+    Primitive => delegate {
+        Sphere(sphere::Sphere),
+        Plane(plane::Plane),
+        Triangle(triangle::Triangle),
+        Cuboid(cuboid::Cuboid),
+        Cylinder(cylinder::Cylinder),
+        Cone(cone::Cone),
+        Torus(torus::Torus),
+        Ellipsoid(ellipsoid::Ellipsoid),
+        Quadric(quadric::Quadric),
+        Disc(disc::Disc),
+        Rectangle(rectangle::Rectangle),
+    }
+}
+
+impl Primitive {
+    /// The axis of what is round about one.
+    pub fn axis(&self) -> Option<Axis> {
+        match self {
+            Primitive::Cylinder(s) => Some(s.axis()),
+            Primitive::Cone(s) => Some(s.axis()),
+            _ => None,
+        }
+    }
+
+    /// [`Shape::crossings`] by an axis that is known.
+    #[inline(always)]
+    pub fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        match (self, axis) {
+            (Primitive::Cylinder(s), Some(axis)) => s.crossings_about(axis, line, offer),
+            (Primitive::Cone(s), Some(axis)) => s.crossings_about(axis, line, offer),
+            _ => self.crossings(line, offer),
+        }
+    }
+}
+
+/// Where a ray meets a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ShapeHit {
+    /// Position along the ray.
+    pub t: f32,
+    /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and
+    /// third barycentric coordinate on triangles; on shapes of several faces the number of the
+    /// face, first.
+    pub uv: Vec2,
+}
+
+/// What a shape is like at a crossing, in object space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surface {
+    /// The point, rounded to single precision.
+    pub position: Vec3,
+    /// What rounding left of the point: see [`Surface::point`].
+    pub rest: Vec3,
+    /// Bound on the absolute error of the point, by axis.
+    pub error: Vec3,
+    /// Bound on the curvature, in object space: one over the least radius. Zero on what is flat.
+    pub curvature: f32,
+    /// Unit normal of the true surface.
+    pub n_geo: Vec3,
+    /// Unit normal for shading: interpolated on smooth meshes.
+    pub n_shade: Vec3,
+    /// Texture coordinates.
+    pub uv: Uv,
+    /// Barycentric coordinates; of use on triangles.
+    pub barycentric: Vec3,
+    /// From the point to the bent surface that a flat triangle stands for: where it is seen from
+    /// the side of `n_shade`, and from the other. Zero on what is as it looks. A shadow ray
+    /// starts there; after Hanika, *Hacking the Shadow Terminator*.
+    pub shadow_offsets: [Vec3; 2],
+    /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they
+    /// bring none.
+    pub color: [f32; 4],
+    /// The number of the solid that it bounds, if that has several parts: what leaves it knows on
+    /// which side of it it starts.
+    pub solid: Option<u32>,
+}
+
+impl Surface {
+    /// Nothing yet: zeros, which are written fastest.
+    pub const NOWHERE: Surface = Surface {
+        position: Vec3::ZERO,
+        rest: Vec3::ZERO,
+        error: Vec3::ZERO,
+        curvature: 0.0,
+        n_geo: Vec3::ZERO,
+        n_shade: Vec3::ZERO,
+        uv: Uv::None,
+        barycentric: Vec3::ZERO,
+        shadow_offsets: [Vec3::ZERO; 2],
+        color: [0.0; 4],
+        solid: None,
+    };
+
+    /// The surface at a point that is placed on it in double precision, so that it is known to its
+    /// rounding and to `floor`; flat unless a curvature is set.
+    pub fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
+        let position = point.as_vec3();
+        let n = normal.normalize_or(DVec3::Y).as_vec3();
+        let error = gamma(2) * position.abs() + floor;
+        Surface {
+            position,
+            rest: Vec3::ZERO,
+            error,
+            curvature: 0.0,
+            n_geo: n,
+            n_shade: n,
+            uv: uv.into(),
+            barycentric: Vec3::ZERO,
+            shadow_offsets: [Vec3::ZERO; 2],
+            color: [1.0; 4],
+            solid: None,
+        }
+    }
+
+    /// A flat surface at a point of space, known to a few roundings.
+    pub fn around(point: DVec3, normal: Vec3) -> Self {
+        let floor = gamma(4) * point.abs().max_element() as f32;
+        Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
+    }
+
+    /// The point as it is known. Far from the origin of coordinates that is finer than single
+    /// precision.
+    #[inline]
+    pub fn point(&self) -> DVec3 {
+        self.position.as_dvec3() + self.rest.as_dvec3()
+    }
+
+    fn curved(self, curvature: f64) -> Self {
+        Surface { curvature: curvature as f32, ..self }
+    }
+
+    /// How far the surface may fall away from its tangent plane within an error of the point.
+    #[inline]
+    pub fn bulge(&self, error: Vec3) -> Vec3 {
+        0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
+    }
+}
+
+/// The points of a shape keep off its edges by so many errors of theirs, so that secondary rays
+/// start in front of the neighbouring face too: of faces that meet at more than some 10 degrees,
+/// for the start moves by two errors along the normal.
+const INSET: f32 = 16.0;
+
+/// A coordinate on a face from 0 to `end`, [`INSET`] errors off both ends.
+fn inset(x: f64, end: f64, error: f32) -> f64 {
+    let margin = f64::from(INSET * error).min(0.25 * end);
+    x.clamp(margin, end - margin)
+}
+
+/// Points as seen from a center, where single precision holds that exactly.
+fn exactly<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
+    let exact = |p: &Vec3| (*p - center).as_dvec3() == p.as_dvec3() - center.as_dvec3();
+    points.iter().all(exact).then(|| points.map(|p| p - center))
+}
+
+/// What every shape can do.
+pub trait Shape {
+    /// Bounds in object space; `None` for a shape without end.
+    fn bounds(&self) -> Option<Aabb>;
+
+    /// Whether some of it may lie in a box that overlaps its bounds.
+    fn overlaps(&self, _cell: &Aabb) -> bool {
+        true
+    }
+
+    /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in
+    /// any order.
+    ///
+    /// A closed shape is crossed where the line goes in or out, and nowhere else: a line that
+    /// touches it does not count, so that crossings along the line alternate between the two.
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
+
+    /// The crossing of least `t` inside the ray's open interval.
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
+        let line = ray.line();
+        let mut first: Option<ShapeHit> = None;
+        if line.is_sound() {
+            self.crossings(&line, &mut |t, uv| {
+                let t = t as f32;
+                if ray.contains(t) && first.is_none_or(|first| t < first.t) {
+                    first = Some(ShapeHit { t, uv });
+                }
+            });
+        }
+        first
+    }
+
+    /// The surface at a crossing, next to a point that is on it but for rounding.
+    fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
+
+    /// Whether a point is inside; `None` for shapes that are surfaces only.
+    fn inside(&self, _point: DVec3) -> Option<bool> {
+        None
+    }
+
+    /// Whether a line comes from inside the shape, as it may with shapes without end.
+    fn starts_inside(&self, _line: &Line) -> bool {
+        false
+    }
+
+    /// The same shape near the origin of coordinates, and how far it was moved; `None` where it has
+    /// no place, or single precision does not hold the result exactly.
+    fn centered(&self) -> Option<(Self, Vec3)>
+    where
+        Self: Sized,
+    {
+        None
+    }
+
+    /// What is wrong with the values of its fields taken together, if anything.
+    fn flaw(&self) -> Option<&'static str> {
+        None
+    }
+}
+
+/// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from
+/// -x.
+fn turn(x: f64, y: f64) -> f32 {
+    (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
+}
+
+/// A box from points in double precision, enlarged by their rounding.
+fn padded(min: DVec3, max: DVec3) -> Aabb {
+    let pad = gamma(6) * min.abs().max(max.abs()).max_element() as f32;
+    Aabb { min: min.as_vec3() - pad, max: max.as_vec3() + pad }
+}
+
+/// Half the size of the box around a disc of radius 1.
+fn disc_reach(normal: DVec3) -> DVec3 {
+    (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
+}

@@ -1,0 +1,162 @@
+//! A single triangle.
+
+use super::watertight::{self, WatertightRay};
+use super::{INSET, Shape, ShapeHit, Surface, Uv, exactly};
+use crate::describe::{Rule, described};
+use crate::dialect::set;
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
+use glam::DVec3;
+
+described! {
+    /// A triangle; its front is where its corners go round counter-clockwise.
+    Triangle ["Triangle" in set::CLASSIC, "triangle" in set::F23] {
+        /// First corner.
+        vertex0: Vec3 = Vec3::ZERO, required, Rule::Any, ["vertex0" in set::ALL];
+        /// Second corner.
+        vertex1: Vec3 = Vec3::X, required, Rule::Any, ["vertex1" in set::ALL];
+        /// Third corner.
+        vertex2: Vec3 = Vec3::Y, required, Rule::Any, ["vertex2" in set::ALL];
+    }
+}
+
+impl Triangle {
+    /// Its corners in order.
+    pub fn corners(&self) -> [Vec3; 3] {
+        [self.vertex0, self.vertex1, self.vertex2]
+    }
+}
+
+impl From<watertight::Crossing> for ShapeHit {
+    fn from(watertight::Crossing { t, uv }: watertight::Crossing) -> Self {
+        ShapeHit { t, uv }
+    }
+}
+
+impl Shape for Triangle {
+    fn bounds(&self) -> Option<Aabb> {
+        Some(Aabb::around(self.corners()))
+    }
+
+    fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
+        WatertightRay::new(ray).intersect(self.corners(), ray.t_min, ray.t_max).map(ShapeHit::from)
+    }
+
+    fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        let ray = Ray::new(line.origin.as_vec3(), line.dir.as_vec3());
+        let found = self.intersect(&Ray { t_min: f32::NEG_INFINITY, ..ray });
+        found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
+    }
+
+    /// Moved by a multiple of a power of two above its size: so neighbours are mostly moved alike,
+    /// and still meet in an edge.
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        let corners = self.corners();
+        let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
+        let grid = 64.0 * f32::from_bits(size.to_bits() & 0x7f80_0000);
+        let center = (self.vertex0 / grid).round() * grid;
+        let [vertex0, vertex1, vertex2] = exactly(corners, center)?;
+        Some((Triangle { vertex0, vertex1, vertex2 }, center))
+    }
+
+    fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> Surface {
+        Surface { uv: Uv::At(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
+    }
+}
+
+/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of
+/// them. The point keeps off the edges: see [`inset`].
+///
+/// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
+#[inline(always)]
+fn interpolate(corners: [Vec3; 3], uv: Vec2) -> (Vec3, Vec3, Vec3) {
+    let barycentric = Vec3::new(1.0 - uv.x - uv.y, uv.x, uv.y);
+    let (position, error) = weighted(corners, barycentric);
+    match inset(corners, barycentric, error) {
+        Some(moved) => (weighted(corners, moved).0, error, barycentric),
+        None => (position, error, barycentric),
+    }
+}
+
+#[inline(always)]
+fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
+    let (wa, ub, vc) = (weights.x * a, weights.y * b, weights.z * c);
+    (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
+}
+
+/// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges,
+/// where the given one does not.
+#[inline(always)]
+fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
+    // The distance from an edge is the barycentric coordinate times twice the area over the edge's
+    // length. All squared.
+    let areas = (b - a).cross(c - a).length_squared();
+    let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
+    let least = lengths * (INSET * INSET * error.length_squared());
+    if !(areas * barycentric * barycentric).cmplt(least).any() {
+        return None;
+    }
+    let Vec3 { x, y, z } = least / areas;
+    let moved = barycentric.max(Vec3::new(x.sqrt(), y.sqrt(), z.sqrt()).min(Vec3::splat(0.25)));
+    Some(moved / moved.element_sum())
+}
+
+/// The unit normal (b - a) x (c - a); that of a triangle without area points up.
+#[inline(always)]
+pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
+    let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+    (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
+}
+
+/// The surface of a triangle at a crossing, without texture and colour. Normals of no length are
+/// none.
+#[inline(always)]
+pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
+    let (position, error, barycentric) = interpolate(corners, uv);
+    let n_geo = face_normal(corners);
+    let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
+    // Not by closures given to `map_or`, which are called like any function.
+    if let Some(normals) = normals {
+        n_shade = mixed(normals, barycentric).normalize_or(n_geo);
+        let [front, back] = offsets_of_corners(position, corners, normals);
+        shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
+    }
+    // Normals in the file say which side is out, whatever way the corners go round.
+    let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
+    Surface {
+        position,
+        rest: Vec3::ZERO,
+        error,
+        curvature: 0.0,
+        n_geo,
+        n_shade,
+        uv: Uv::None,
+        barycentric,
+        shadow_offsets,
+        color: [1.0; 4],
+        solid: None,
+    }
+}
+
+#[inline(always)]
+fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
+    barycentric.x * a + barycentric.y * b + barycentric.z * c
+}
+
+/// For each corner, the way from a point of the triangle up to the plane through the corner across
+/// its normal; none where the point lies above that plane. And the same from the other side.
+///
+/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
+/// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
+/// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
+/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
+#[inline(always)]
+fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
+    let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];
+    for i in 0..3 {
+        let n = normals[i].normalize_or_zero();
+        let height = (corners[i] - point).dot(n);
+        let way = height * n;
+        (shadow_offsets[0][i], shadow_offsets[1][i]) = if height < 0.0 { (Vec3::ZERO, way) } else { (way, Vec3::ZERO) };
+    }
+    shadow_offsets
+}

@@ -1,0 +1,74 @@
+//! Fog: that lets nothing through, or has no end.
+
+use super::finding::{Finding, number, percent};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_scene::light::Light;
+use durer_scene::math::{Color, fp};
+
+/// Where less than this is left of what is behind it, fog is a wall.
+const WALL: f32 = 0.01;
+
+/// Fog that keeps light off.
+pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };
+    if !scout.is_physical() {
+        return Vec::new();
+    }
+    let span = written.span;
+    let extinction = fog.extinction.max_element();
+    let mut found = Vec::new();
+    let mut ways: Vec<f32> = scout
+        .seen()
+        .filter_map(|(probe, seen)| {
+            let length = probe.ray.dir.length();
+            let (from, to) = match &fog.place {
+                Some(place) => place.bounds.clip(probe.ray.origin, probe.ray.dir)?,
+                None => (0.0, f32::INFINITY),
+            };
+            Some((to.min(seen.t) - from.max(0.0)).max(0.0) * length)
+        })
+        .collect();
+    ways.sort_by(f32::total_cmp);
+    let even = fog.place.as_ref().is_none_or(|place| place.density.is_none());
+    let swallowed = ways.iter().filter(|way| fp::exp(-extinction * **way) < WALL).count();
+    if even && !ways.is_empty() && swallowed * 20 > scout.seen().count() * 19 {
+        let middle = ways[ways.len() / 2];
+        let some = number(0.5 / middle);
+        let diagnostic =
+            Diagnostic::warning(format!("this fog lets nothing through: its extinction is {}", number(extinction)))
+                .effect(format!(
+                    "of light that goes straight on, a hundredth is left after {}; what is seen is {} away",
+                    number(4.6 / extinction),
+                    number(middle)
+                ))
+                .label(format!("hides {} of what is seen", percent(swallowed, scout.seen().count())))
+                .help(format!("`extinction` is per unit of the scene: `extinction {some}`, say"));
+        let value = scout.value(span, &["extinction"]);
+        let diagnostic = diagnostic.fix_at(value, some);
+        found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
+    } else if fog.place.is_none() {
+        let sky = world.environment().is_some() || world.cube_map().is_some() || world.background() != Color::ZERO;
+        let suns = world.lights().iter().any(|light| matches!(light, Light::Directional(_)));
+        let near = world.lights().iter().any(|light| !matches!(light, Light::Directional(_)))
+            || world.objects().iter().any(|object| world.may_shine(object.material));
+        if sky && !near || suns {
+            let bounds = world.bounds();
+            let size = bounds.size().max_element().max(1.0);
+            let (min, max) = (bounds.min - size, bounds.max + size);
+            let diagnostic = Diagnostic::warning("this fog has no end: no light of sun or sky comes through")
+                .effect(match near {
+                    true => "lights without a place and the background are black",
+                    false => "the picture is black: light would have to come through fog without end",
+                })
+                .help(format!(
+                    "give it a box: `min {} max {}`, say",
+                    super::finding::vector(min.round()),
+                    super::finding::vector(max.round())
+                ));
+            found.push(Finding::from(diagnostic.at(span)).whole(!near));
+        }
+    }
+    found
+}

@@ -1,0 +1,148 @@
+//! Lights with a beam: spotlights and measured lamps that shine past all that is seen.
+
+use super::aim::{Aim, places, within};
+use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
+use super::lights::{all_fail, useless, written};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::math::{Vec3, fp};
+use durer_scene::scene::Spanned;
+
+/// Beams that miss what is seen.
+pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
+    missing(scout, Aim::Away, |diagnostic, light| {
+        let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
+        // Of a plane the horizon is seen as well: things tell where to shine.
+        let things = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
+        let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
+        let all = if things.is_empty() { places(scout) } else { things };
+        let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
+        let (word, direction) = match &light.value {
+            Light::Spot(spot) => ("this spotlight", spot.direction),
+            Light::Photometric(lamp) => ("this measured lamp", lamp.direction),
+            _ => return diagnostic,
+        };
+        // Turned round it is most often what was meant.
+        let turned = -direction.normalize_or(Vec3::NEG_Y);
+        let to = (middle - place).normalize_or(Vec3::NEG_Y);
+        let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
+        let text = vector(aimed);
+        let help =
+            format!("`direction` is where its light goes: `direction {text}` goes to the middle of what is seen");
+        let diagnostic = Diagnostic { message: format!("{word} shines past all that is seen"), ..diagnostic };
+        match scout.value(light.span, &["direction"]) {
+            Some(value) => diagnostic.at(value).help(help).fix(value, text),
+            // What is not written is straight down.
+            None => diagnostic.help(help),
+        }
+    })
+}
+
+/// Cones that hold next to nothing of what is seen.
+pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
+    missing(scout, Aim::Narrow, |diagnostic, light| {
+        let Light::Spot(spot) = &light.value else { return diagnostic };
+        let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
+        let message = format!("the cone of this spotlight is {} degrees wide only", number(spot.angle));
+        let diagnostic = Diagnostic { message, ..diagnostic };
+        let help = format!("`angle` is in degrees, from the middle to the edge: write `angle {degrees}`, say");
+        let Some(value) = scout.value(light.span, &["angle"]) else { return diagnostic.help(help) };
+        let mut diagnostic = diagnostic.at(value).help(help).fix(value, degrees);
+        if let Some(inner) = scout.value(light.span, &["innerAngle"]).filter(|_| spot.inner_angle <= spot.angle) {
+            diagnostic = diagnostic.fix(inner, number(spot.inner_angle.to_degrees().round()));
+        }
+        diagnostic
+    })
+}
+
+fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Light>) -> Diagnostic) -> Vec<Finding> {
+    let lights = scout.world().lights().len().min(MAX_SOUGHT);
+    let mut found = Vec::new();
+    for number in (0..lights).filter(|&light| scout.aims()[light] == Some(wanted)) {
+        let (Some(light), Some((diagnostic, span))) = (written(scout, number), useless(scout, number, String::new()))
+        else {
+            continue;
+        };
+        let held = percent((1e4 * within(scout, number, &places(scout))) as usize, 10_000);
+        let mut diagnostic = say(diagnostic.at(span), light);
+        if wanted == Aim::Narrow {
+            diagnostic = diagnostic.label(format!("{held} of what is seen is in its cone"));
+        }
+        found.push(Finding::from(diagnostic).whole(all_fail(scout)));
+    }
+    found
+}
+
+/// Spotlights whose inner cone is wider than the outer one.
+pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
+    let lights = scout.subject.scene.lights.iter().flatten();
+    let say = |light: &Spanned<Light>| {
+        let Light::Spot(spot) = &light.value else { return None };
+        if spot.inner_angle <= spot.angle {
+            return None;
+        }
+        let (angle, inner) = (number(spot.angle), number(spot.inner_angle));
+        let diagnostic =
+            Diagnostic::warning(format!("the `innerAngle` of {inner} is more than the `angle` of {angle}"))
+                .effect(format!("the cone ends at {angle} degrees, at once and not softly"))
+                .help(format!("light fades between the two: `angle {inner} innerAngle {angle}`"));
+        Some(Finding::from(match (scout.value(light.span, &["angle"]), scout.value(light.span, &["innerAngle"])) {
+            (Some(a), Some(b)) => diagnostic.at(b).fix(a, inner).fix(b, angle),
+            _ => diagnostic.at(light.span),
+        }))
+    };
+    lights.filter_map(say).take(MAX_SOUGHT).collect()
+}
+
+/// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
+fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
+    let Light::Point(point) = &scout.world().lights()[light] else { return None };
+    point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
+    let world = scout.world();
+    let steps = (0..26).map(|i| {
+        let (sin, cos) = fp::sin_cos_degrees(f64::from(i) * 137.508);
+        let z = 1.0 - 2.0 * (f64::from(i) + 0.5) / 26.0;
+        let r = (1.0 - z * z).sqrt();
+        Vec3::new((r * cos) as f32, (r * sin) as f32, z as f32)
+    });
+    let axes = [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+    let rays = axes.into_iter().chain(steps).map(|dir| durer_scene::math::Ray::new(point.position, dir));
+    let hits = rays.filter_map(|ray| world.closest(&ray, &mut ()));
+    hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
+}
+
+/// Fading lights just above a surface.
+pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
+    let places = places(scout);
+    let mut found = Vec::new();
+    for light in 0..scout.world().lights().len().min(super::finding::MAX_ALIKE) {
+        let Some((near, object)) = touching(scout, light) else { continue };
+        let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
+        let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
+        away.sort_by(f32::total_cmp);
+        let lit: Vec<f32> =
+            scout.seen().filter_map(|(_, seen)| seen.by(light)).map(|lit| lit.adds.max_element()).collect();
+        let bright = lit.iter().filter(|adds| **adds > 0.04).count();
+        // Light along a large surface is what is lost: things that stand for lamps are small.
+        let along: Vec<f32> = scout
+            .seen()
+            .filter(|(_, seen)| seen.object == object)
+            .filter_map(|(_, seen)| Some(seen.by(light)?.cosine))
+            .collect();
+        let grazing = along.iter().filter(|cosine| cosine.abs() < 0.15).count() * 10 > along.len() * 7;
+        let large = along.len() * 4 > scout.seen().count();
+        if away.is_empty() || !grazing || !large || near > 0.03 * away[away.len() / 2] || bright * 5 > lit.len() {
+            continue;
+        }
+        let middle = away[away.len() / 2];
+        let diagnostic =
+            Diagnostic::warning(format!("this light is {} from the {}", number(near), scout.object(object)))
+                .related(scout.object_span(object), "so near")
+                .effect("one bright spot is below it, and hardly anything else is lit")
+                .help(format!("what is seen is {} from it on the mean: move it away from there", number(middle)));
+        let only = scout.world().lights().len() == 1;
+        found.push(Finding::from(scout.at_value(diagnostic, lamp.span, &["position"])).whole(only));
+    }
+    found
+}

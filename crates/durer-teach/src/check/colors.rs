@@ -1,0 +1,515 @@
+//! Colours: of materials that show nothing, and numbers that are none of a colour's.
+
+use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Severity, Span};
+use durer_render::world::{Geometry, Material, Phong};
+use durer_scene::dialect::{Compat, Dialect, Secondary};
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::material::Pattern;
+use durer_scene::math::Color;
+use durer_scene::scene::{Material as Written, Spanned};
+
+/// What gives back less of all light looks black.
+const BLACK: f32 = 0.01;
+/// Colours that differ by less look alike.
+const ALIKE: f32 = 2.0 / 255.0;
+
+/// So many rays must have met a thing of the background's colour.
+const FEWEST_LOST: usize = 6;
+
+/// The Phong materials as written and as they are used, with their numbers.
+fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
+    let compiled = scout.world().materials().iter();
+    let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
+    both.filter_map(|(i, (written, compiled))| match compiled {
+        Material::Phong(phong) => Some((i as u32, written, phong)),
+        Material::Solid(..) => None,
+    })
+}
+
+/// How many rays see a material, or one that is mixed of it.
+fn rays(scout: &SceneProbe, material: u32) -> usize {
+    scout.material_rays()[material as usize]
+}
+
+/// Whether nothing that is seen gives back any light.
+pub(super) fn all_black(scout: &SceneProbe) -> bool {
+    let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
+    scout.seen().next().is_some() && !phongs(scout).any(shows)
+}
+
+fn is_black(phong: &Phong) -> bool {
+    let shown = phong.reflective + phong.transparent + phong.highlight.map_or(Color::ZERO, |h| h.0);
+    phong.diffuse.max_element() < BLACK
+        && phong.texture.is_none()
+        && phong.noise.is_none()
+        && shown.max_element() < BLACK
+}
+
+/// Materials that give back no light at all.
+pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() {
+        return super::layers::black(scout);
+    }
+    let all = scout.seen().count();
+    let whole = all_black(scout);
+    // A part of a pattern may be black, unless all of it is.
+    let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
+    let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
+    let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} is black: it gives back no light"))
+            .label(format!("on {} of what is seen", percent(rays(scout, *i), all)))
+            .effect("what is made of it is black, however much light there is")
+            .help("`diffuseColor` is the share of light that it gives back: `0.8 0.8 0.8` is a light grey");
+        let diagnostic = scout.at_value(diagnostic, written.span, &["diffuseColor", "diffuse"]);
+        Finding::from(diagnostic).whole(whole)
+    };
+    black.iter().take(MAX_SOUGHT).map(say).collect()
+}
+
+/// Mirrors and glass in a picture without secondary rays.
+pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
+    let settings = &scout.subject.job.settings;
+    let old = scout.world().rules().is_official();
+    let counts = |color: Color| if old { color.length() } else { color.max_element() };
+    // What counts for too little from the first bounce on is never traced.
+    let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
+    let none = settings.bounces == 0;
+    let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
+    // Where the highlight's colour is the mirror's too, only what would be black without mirroring
+    // is meant as a mirror.
+    let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
+    let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
+    let all: Vec<_> =
+        phongs(scout).filter(|(i, _, phong)| bounces(phong) && meant(phong) && rays(scout, *i) > 0).collect();
+    let Some((i, written, phong)) = all.iter().find(|(.., phong)| none || cut(phong)) else {
+        return switched_off(scout, &all);
+    };
+    let diffuse = phong.diffuse.max_element();
+    let what = if phong.transparent == Color::ZERO { "mirrors" } else { "lets light through" };
+    let (message, help) = match none {
+        true => (
+            format!("material {i} {what}, but there are 0 levels of secondary rays"),
+            "ask for some: `--bounces 4` (in the course's programs `-bounces 4`)".to_string(),
+        ),
+        false => (
+            format!(
+                "material {i} {what}, but its rays count for {} and those below {} are left out",
+                super::finding::number(counts(phong.reflective).max(counts(phong.transparent))),
+                super::finding::number(settings.least_weight)
+            ),
+            "ask for a smaller one: `--min-throughput 0.01` (in the course's programs `-weight 0.01`)".to_string(),
+        ),
+    };
+    let diagnostic = Diagnostic::warning(message)
+        .at(written.span)
+        .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
+        .help(help);
+    // Where that year's program makes none unless it is asked, nobody has left them out.
+    let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
+    let black: usize =
+        all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
+    let usual = none && scout.world().rules().bounces == 0 && black * 10 < scout.seen().count();
+    let whole = !usual && seen * 2 > scout.seen().count();
+    let finding = Finding::from(if usual { Diagnostic { severity: Severity::Note, ..diagnostic } } else { diagnostic });
+    vec![finding.whole(whole)]
+}
+
+/// Mirrors and glass whose rays the options leave out, or let end inside.
+fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
+    let settings = &scout.subject.job.settings;
+    let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
+    let is_glass = |phong: &Phong| phong.transparent != Color::ZERO;
+    let say = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| {
+        let (message, help) = match is_glass(phong) {
+            false if !settings.reflection => {
+                (format!("material {i} mirrors, but mirrored rays are left out"), "leave `--no-reflection` away")
+            }
+            true if !settings.refraction => (
+                format!("material {i} lets light through, but refracted rays are left out"),
+                "leave `--no-refraction` away",
+            ),
+            // Light goes in by one bounce and out by another.
+            true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
+                format!(
+                    "material {i} is of glass, but there is 1 level of secondary rays: light does not come out again"
+                ),
+                "ask for more: `--bounces 4` (in the course's programs `-bounces 4`)",
+            ),
+            _ => return None,
+        };
+        let effect = if dark(phong) { "it is black, or nearly so" } else { "only its own colour is seen" };
+        Some(Finding::from(Diagnostic::warning(message).at(written.span).effect(effect).help(help)))
+    };
+    all.iter().filter_map(say).take(1).collect()
+}
+
+/// Glass of an index that no glass has.
+pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = super::layers::odd_index(scout);
+    let fields = ["indexOfRefraction", "refractionIndex"];
+    for (i, written, phong) in phongs(scout).filter(|(i, ..)| rays(scout, *i) > 0).take(MAX_SOUGHT) {
+        let Written::Phong(own, _) = &written.value else { continue };
+        let dark = phong.diffuse.max_element() < 0.3 && phong.texture.is_none();
+        if own.refraction_index == Some(0.0) && dark && scout.value(written.span, &["refractionIndex"]).is_some() {
+            let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of 0"))
+                .effect("this year's program takes that for no glass: it lets nothing through, and mirrors by its `specularColor`")
+                .help("glass has 1.5, water 1.33; for a mirror leave `refractionIndex` away");
+            found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
+        }
+        if phong.transparent.max_element() <= 0.0 {
+            continue;
+        }
+        let given = own.index_of_refraction.or(own.refraction_index);
+        let index = super::finding::number(given.unwrap_or(phong.ior));
+        let seen_itself = phong.diffuse + phong.reflective;
+        let diagnostic = Diagnostic::warning(format!("material {i} has an index of refraction of {index}"));
+        let diagnostic = match given {
+            _ if phong.ior > 4.0 || phong.ior < 0.5 => diagnostic
+                .effect("light is bent as by nothing that there is, and hardly gets through")
+                .help("water has 1.33, glass 1.5, diamond 2.4; it is the index inside, with 1 outside"),
+            Some(_) if phong.ior < 0.95 => {
+                diagnostic.effect("light is bent the wrong way, as in a bubble of air in glass").help(format!(
+                    "it is the index inside, with 1 outside: 1 / {index} is {}; water has 1.33, glass 1.5",
+                    super::finding::number(1.0 / phong.ior)
+                ))
+            }
+            Some(_) if (phong.ior - 1.0).abs() < 1e-3 => {
+                let unseen = phong.fresnel || seen_itself.max_element() < 0.1 && phong.transparent.min_element() > 0.9;
+                let severity = if unseen { Severity::Warning } else { Severity::Note };
+                Diagnostic { severity, ..diagnostic }
+                    .effect(match unseen {
+                        true => "light goes straight through and nothing is mirrored: it is hardly seen",
+                        false => "light goes straight through, and is not bent",
+                    })
+                    .help("water has 1.33, glass 1.5, diamond 2.4")
+            }
+            // Coloured foil is made so.
+            None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
+                "material {i} lets light through and has no `{}`",
+                if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
+            ))
+            .effect("light goes straight through, as through foil, and is not bent")
+            .help("glass has 1.5, water 1.33"),
+            _ => continue,
+        };
+        found.push(Finding::from(scout.at_value(diagnostic, written.span, &fields)));
+    }
+    found
+}
+
+/// A colour in the scene, where it is, and what it is called.
+struct Named {
+    color: Color,
+    block: Span,
+    fields: [&'static str; 2],
+    /// Greatest value that makes sense.
+    most: f32,
+}
+
+fn all_colors(scout: &SceneProbe) -> Vec<Named> {
+    let mut colors = Vec::new();
+    for (i, written, used) in phongs(scout) {
+        let Written::Phong(phong, _) = &written.value else { continue };
+        // A surface gives back no more than it gets.
+        // What is hardly seen may stand for a lamp.
+        let small = rays(scout, i) * 25 < scout.probes.len();
+        let named = |color, fields, most: f32| {
+            let most = if small { most.max(15.0) } else { most };
+            Named { color, block: written.span, fields, most }
+        };
+        colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
+        let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
+        // A highlight may be a little stronger than white; a mirror gives back no more than it
+        // gets.
+        let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
+        colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
+        colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
+        colors.push(all(phong.transparent_color, ["transparentColor", "transparentColor"], 1.001));
+    }
+    for (number, (written, light)) in
+        scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()
+    {
+        // A light that fades may be as strong as it must, so that not too much of it arrives.
+        let fades = !matches!(light, Light::Directional(_))
+            && !matches!(light, Light::Point(point) if point.attenuation.is_none());
+        // Of lamps in candela nobody expects 1.
+        let candela = matches!(light, Light::Spot(_) | Light::Photometric(_));
+        let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
+        let too_much = arrives.fold(0.0, f32::max) > 20.0;
+        // Under paths light is in units of its own, and the exposure makes a picture of it.
+        let free = candela || fades && !too_much || scout.is_physical();
+        let most = if free { f32::INFINITY } else { 20.0 };
+        colors.push(Named { color: light.color(), block: written.span, fields: ["color", "color"], most });
+    }
+    colors
+}
+
+/// Colours from 0 to 255.
+pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
+        // Only whole numbers of which some are large are meant as 255ths.
+        let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
+        let bytes = whole && (20.0..=255.0).contains(&color.max_element());
+        // Tens up to a hundred may be percent as well.
+        let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
+        let mended = if bytes { color / 255.0 } else { color / color.max_element() };
+        let far = color.max_element() > 2.0;
+        let message = format!("the colour {} is {}beyond 1", vector(color), if far { "far " } else { "" });
+        let diagnostic = Diagnostic::warning(message)
+            .effect(match far {
+                true => "it is white, or of a pure colour, whatever the light",
+                false => "more light comes back than arrives: bright parts are cut off, and lose their shading",
+            })
+            .help(match bytes {
+                true if percent => format!(
+                    "colours go from 0 to 1: `{}` if this is in percent, `{}` if it is of 255",
+                    vector(color / 100.0),
+                    vector(mended)
+                ),
+                true => format!("colours go from 0 to 1, not to 255: `{}`", vector(mended)),
+                false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
+            });
+        let diagnostic = match place {
+            // What was meant by any other number nobody knows.
+            Some(place) if bytes && !percent => diagnostic.at(place).fix(place, vector(mended)),
+            Some(place) => diagnostic.at(place),
+            None => Diagnostic { span: block, ..diagnostic },
+        };
+        found.push(Finding::from(diagnostic).whole(far));
+    };
+    let beyond = all_colors(scout).into_iter().filter(|named| named.color.max_element() > named.most);
+    for Named { color, block, fields, .. } in beyond.take(MAX_SOUGHT) {
+        say(color, scout.value(block, &fields), Some(block));
+    }
+    let background = &scout.subject.scene.background;
+    for (color, fields) in
+        [(background.color, ["color", "color"]), (background.ambient_light, ["ambientLight", "ambient_light"])]
+    {
+        if color.max_element() > 2.0 && !scout.is_physical() {
+            let block = background_span(scout);
+            say(color, block.and_then(|block| scout.value(block, &fields)), block);
+        }
+    }
+    found
+}
+
+/// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more
+/// than all light.
+pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
+    let bounces = scout.subject.job.settings.bounces > 0;
+    let sum = |phong: &Phong| {
+        let glass = if phong.fresnel { Color::ZERO } else { phong.transparent };
+        (phong.diffuse + phong.reflective + glass).max_element()
+    };
+    let adds = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
+    let too_much = phongs(scout).filter(|(_, _, phong)| bounces && adds(phong) && sum(phong) > 1.05);
+    let (i, written, phong) = too_much.max_by_key(|(i, ..)| rays(scout, *i)).filter(|(i, ..)| rays(scout, *i) > 0)?;
+    let message = format!(
+        "material {i} gives back {} times what it gets: its diffuse colour and what it mirrors and lets through are more \
+         than 1 together",
+        super::finding::number(sum(phong))
+    );
+    let diagnostic = Diagnostic::warning(message).help("make them smaller, so that they sum to 1 at most");
+    Some(scout.at_value(
+        diagnostic,
+        written.span,
+        &["reflectiveColor", "transparentColor", "specularColor", "specular"],
+    ))
+}
+
+/// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets
+/// through.
+pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() {
+        return super::layers::dull_glass(scout);
+    }
+    if scout.world().rules().secondary != Secondary::SpecularFresnel {
+        return dull_by_color(scout);
+    }
+    let dull = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| match &written.value {
+        Written::Phong(phong, _) => {
+            phong.refraction_index.is_some_and(|index| index > 0.0)
+                && phong.specular_color == Color::ZERO
+                && rays(scout, *i) > 0
+        }
+        _ => false,
+    };
+    let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} is of glass, and lets nothing through"))
+            .effect("this year's program weighs what glass mirrors and lets through by `specularColor`, which is black")
+            .help("write `specularColor 1 1 1` for clear glass");
+        Finding::from(scout.at_value(diagnostic, written.span, &["specularColor", "refractionIndex"]))
+    };
+    phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
+}
+
+/// Glass with an index and no colour of what goes through.
+fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
+    let dull = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| match &written.value {
+        Written::Phong(own, _) => {
+            let index = own.index_of_refraction.or(own.refraction_index).unwrap_or(1.0);
+            let opaque = own.transparent_color == Color::ZERO && !phong.fresnel;
+            let dark = phong.diffuse.max_element() < 0.15 && phong.texture.is_none() && phong.noise.is_none();
+            opaque
+                && dark
+                && !(0.999..=1.001).contains(&index)
+                && own.refraction_index != Some(0.0)
+                && rays(scout, *i) > 0
+        }
+        _ => false,
+    };
+    let say = |(i, written, _): (u32, &Spanned<Written>, &Phong)| {
+        let diagnostic = Diagnostic::warning(format!("material {i} has the index of glass, and lets nothing through"))
+            .effect("its `transparentColor` is black: what is made of it is dark, and nothing is seen through it")
+            .help("`transparentColor` is the share of light that goes through: `0.9 0.9 0.9` is clear");
+        Finding::from(scout.at_value(diagnostic, written.span, &["transparentColor", "indexOfRefraction"]))
+    };
+    phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
+}
+
+/// Where the background is written: the scene does not keep it.
+pub(super) fn background_span(scout: &SceneProbe) -> Option<Span> {
+    let file = scout.subject.scene.camera_span.file;
+    durer_formats::course::place::section(scout.subject.files.bytes(file)?, file, "Background")
+}
+
+/// Colours below zero.
+pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
+    let below = |named: &Named| named.color.min_element() < 0.0;
+    let say = |Named { color, block, fields, .. }: Named| {
+        let mended = color.abs();
+        let diagnostic = Diagnostic::warning(format!("the colour {} is below zero", vector(color)))
+            .effect("it takes light away: what it touches is darker, or black")
+            .help(format!("colours go from 0 to 1: `{}`", vector(mended)));
+        let diagnostic = match scout.value(block, &fields) {
+            Some(place) => diagnostic.at(place).fix(place, vector(mended)),
+            None => diagnostic.at(block),
+        };
+        Finding::from(diagnostic)
+    };
+    let background = &scout.subject.scene.background;
+    let own = |color: Color, field: &'static str, nodes: &'static str| {
+        Some(Named { color, block: background_span(scout)?, fields: [field, nodes], most: 1.0 })
+    };
+    let own = [own(background.color, "color", "color"), own(background.ambient_light, "ambientLight", "ambient_light")];
+    let all = all_colors(scout).into_iter().chain(own.into_iter().flatten());
+    all.filter(below).take(MAX_SOUGHT).map(say).collect()
+}
+
+/// Things that have the colour of what is behind them.
+pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    if world.cube_map().is_some() {
+        return Vec::new();
+    }
+    let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
+    let alike = |color: Color| (shown(color) - shown(world.background())).abs().max_element() < ALIKE;
+    let mut seen = scout.seen().peekable();
+    if seen.peek().is_none() || !seen.all(|(probe, _)| alike(probe.color)) {
+        return lost_in_background(scout, &alike);
+    }
+    let black = shown(world.background()).max_element() < ALIKE;
+    let diagnostic = Diagnostic::warning("all that is seen has the colour of the background");
+    let diagnostic = match background_span(scout) {
+        Some(block) => scout.at_value(diagnostic, block, &["color"]),
+        None => diagnostic,
+    };
+    let diagnostic = diagnostic.effect("nothing can be told from it").help(match black {
+        true => "nothing is lit; another background colour would at least show the outlines",
+        false => "take another `color` for the background, or for the materials",
+    });
+    let finding = Finding::from(diagnostic);
+    // Where no light arrives, that is the cause, and this comes of it.
+    vec![if black { finding.last() } else { finding.whole(true) }]
+}
+
+/// Things of which all that is seen has the background's colour, exactly: others are seen.
+fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
+    let world = scout.world();
+    if world.background().max_element() < 0.02 || scout.is_physical() {
+        return Vec::new();
+    }
+    let say = |(number, object): (usize, &durer_render::world::Object)| {
+        let mut own = scout.seen().filter(|(_, seen)| seen.object as usize == number).peekable();
+        // What mirrors the background is meant to show it.
+        let Material::Phong(phong) = world.materials().get(object.material as usize)? else { return None };
+        let own_color = phong.reflective == Color::ZERO && phong.transparent == Color::ZERO && phong.texture.is_none();
+        own.peek()?;
+        let count = scout.seen().filter(|(_, seen)| seen.object as usize == number).count();
+        if !own_color || count < FEWEST_LOST || !own.all(|(probe, _)| alike(probe.color)) {
+            return None;
+        }
+        let written = scout.subject.scene.materials.get(object.material as usize)?;
+        let diagnostic =
+            Diagnostic::warning(format!("the {} has the colour of the background", scout.object(number as u32)))
+                .at(scout.object_span(number as u32))
+                .related(written.span, "its material")
+                .effect("it cannot be told from it")
+                .help("take another `color` for the background, or for the material");
+        Some(Finding::from(diagnostic))
+    };
+    world.objects().iter().enumerate().filter_map(say).take(super::finding::MAX_ALIKE).collect()
+}
+
+/// Textures on things without texture coordinates.
+pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
+    let meshes_only = scout.world().rules().has(Compat::MeshTextures);
+    let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
+    let mut found = Vec::new();
+    for (i, written, _) in textured {
+        let bare = scout.seen().find(|(_, seen)| seen.material == i && !seen.has_uv);
+        if let Some((_, seen)) = bare {
+            let name = scout.object(seen.object);
+            let diagnostic =
+                Diagnostic::warning(format!("material {i} has a texture, but the {name} has no coordinates for it"))
+                    .related(scout.object_span(seen.object), "this has the material")
+                    .effect("the texture is not seen; `diffuseColor` is")
+                    .help(match (&scout.world().objects()[seen.object as usize].geometry, meshes_only) {
+                        (Geometry::Mesh(_), _) => "the mesh file needs `vt` lines, and faces as `f 1/1 2/2 3/3`",
+                        (_, true) => {
+                            "this year's program shows textures on meshes alone: take a `TriangleMesh` with `vt` lines"
+                        }
+                        (_, false) => "take a shape that has coordinates, or a `TriangleMesh` with `vt` lines",
+                    });
+            found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
+        }
+    }
+    found
+}
+
+/// Materials that nothing is made of.
+pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let mut used = vec![false; world.materials().len()];
+    for object in world.objects() {
+        match &object.geometry {
+            Geometry::Solid(solid) => solid.parts().for_each(|part| used[part.material as usize] = true),
+            _ => used[object.material as usize] = true,
+        }
+    }
+    // A mixed material uses earlier ones.
+    for i in (0..world.materials().len()).rev() {
+        if let (Material::Solid(solid, ..), true) = (&world.materials()[i], used[i]) {
+            solid.materials().into_iter().for_each(|part| used[part as usize] = true);
+        }
+    }
+    let written = &scout.subject.scene.materials;
+    let unused: Vec<usize> = (0..written.len()).filter(|&i| !used[i]).collect();
+    let Some(&first) = unused.first() else { return Vec::new() };
+    let list: Vec<String> = unused.iter().take(8).map(ToString::to_string).collect();
+    let message = match unused.len() {
+        1 => format!("nothing is made of material {first}"),
+        n => format!("nothing is made of {}: {}", counted(n, "material", "materials"), list.join(", ")),
+    };
+    let diagnostic = Diagnostic::note(message)
+        .at(written[first].span)
+        .effect("it changes nothing in the picture")
+        .help(match scout.subject.dialect {
+            Dialect::F23 => "is the `index` of a `Component<Material>` wrong? They count from 0",
+            _ => "is a `MaterialIndex` wrong? They count from 0",
+        });
+    vec![Finding::from(diagnostic)]
+}

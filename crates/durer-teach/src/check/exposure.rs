@@ -1,0 +1,231 @@
+//! Pictures that are too bright, too dark, or of one colour; depths that are all black or all
+//! white.
+
+use super::brightness::brightest;
+use super::finding::{Finding, number, percent, vector};
+use super::lights::place;
+use super::probes::ProbeHit;
+use super::scene_probe::SceneProbe;
+use super::verdict::VISIBLE;
+use durer_diag::{Diagnostic, Severity};
+use durer_scene::light::Emitter as _;
+use durer_scene::math::{Color, fp};
+
+/// Values beyond this are cut in eight bits; beyond the other, much of their shading is lost.
+const BEYOND: f32 = 1.0 + VISIBLE;
+const FAR_BEYOND: f32 = 1.25;
+/// Where so large a share of what is seen is cut, or far beyond, it is more than highlights.
+const MAX_CUT: f32 = 0.4;
+const MAX_FAR: f32 = 0.2;
+
+/// Where more than this share is white, nothing is seen for light.
+const MAX_WHITE: f32 = 0.5;
+
+/// A factor of light in stops.
+fn stops_of(factor: f32) -> f32 {
+    fp::ln(factor) / std::f32::consts::LN_2
+}
+
+/// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in
+/// cd/m^2.
+fn white(scout: &SceneProbe) -> Vec<Finding> {
+    let shown = scout.light();
+    let white = shown.iter().filter(|color| color.min_element() > 1.1).count();
+    if white as f32 <= MAX_WHITE * shown.len() as f32 {
+        return Vec::new();
+    }
+    let mut values: Vec<f32> = shown.iter().map(|color| color.max_element()).collect();
+    values.sort_by(f32::total_cmp);
+    let middle = values[values.len() / 2];
+    let stops = stops_of(0.5 / middle).round();
+    let factor = number(0.5 / middle);
+    let diagnostic = Diagnostic::warning(format!(
+        "there is too much light: half of the picture is brighter than {}",
+        number(middle)
+    ))
+    .effect(format!("{} of the picture is white", percent(white, shown.len())));
+    let background = &scout.subject.scene.background;
+    let sky = background.sun().is_some() || background.cie_sky.is_some();
+    let lamp = super::lamps::brightest(scout).filter(|_| !sky);
+    let exposure = number(stops + stops_of(scout.subject.exposure));
+    let help = match sky {
+        true => format!("this sky is in cd/m^2, as outdoors: its pictures need `--exposure {exposure}`"),
+        false => format!("light is in cd/m^2: ask for `--exposure {exposure}`, or multiply what shines by {factor}"),
+    };
+    let diagnostic = diagnostic.help(help);
+    let diagnostic = match lamp {
+        Some((place, value)) => diagnostic.at(place).fix(place, number(value * 0.5 / middle)),
+        None => Diagnostic { span: super::colors::background_span(scout), ..diagnostic },
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Values beyond 1 in a picture of eight bits.
+pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() || scout.world().environment().is_some() {
+        return white(scout);
+    }
+    let lit: Vec<Color> = scout.seen().map(|(probe, _)| probe.color).filter(|color| color.is_finite()).collect();
+    let far = lit.iter().filter(|color| color.max_element() > FAR_BEYOND).count();
+    let cut = lit.iter().filter(|color| color.max_element() > BEYOND).count();
+    let white = lit.iter().filter(|color| color.min_element() > BEYOND).count();
+    let over = |count: usize, share: f32| count as f32 > share * lit.len() as f32;
+    if !over(cut, MAX_CUT) && !over(far, MAX_FAR) {
+        return Vec::new();
+    }
+    let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
+    // Ambient light is left as it is, unless it alone is too much.
+    let world = scout.world();
+    let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
+    let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
+    let effect = format!(
+        "{} of what is seen is cut at 1, and loses its shading; {} is white",
+        percent(cut, lit.len()),
+        percent(white, lit.len())
+    );
+    let mut diagnostic =
+        Diagnostic::warning(format!("there is too much light: the brightest colour is {}", vector(brightest)))
+            .effect(effect)
+            .help(format!(
+                "multiply the colours of the lights by {}, or write a picture that keeps them (.exr, .hdr)",
+                number(factor)
+            ));
+    // Where the lamps alone are too much, no material is to blame.
+    let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
+    let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
+    if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
+        let severity = if over(far, MAX_FAR) { Severity::Warning } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, effect: diagnostic.effect, ..cause };
+        return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+    }
+    for (i, light) in world.lights().iter().enumerate() {
+        let Some(span) = place(scout, i) else { continue };
+        // A light that nearly does not fade is not too bright of itself.
+        let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
+        if let (Some(value), Some(a)) = (faded, super::verdict::divisor(light)) {
+            let single = scout.text(value).split_whitespace().count() == 1;
+            let text = if single { number(a.z / factor) } else { vector(a / factor) };
+            let diagnostic =
+                diagnostic.help(format!("it fades too little: `{text}`, say, for `{}`", scout.text(value)));
+            let diagnostic = diagnostic.at(value).label("this light arrives that strong").fix(value, text);
+            return vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())];
+        }
+        let unit = scout.value(span, &["candela", "lumens", "lux"]);
+        let value = unit.or_else(|| scout.value(span, &["color"]));
+        let strength = unit.and_then(|unit| scout.text(unit).trim().parse::<f32>().ok());
+        let less = strength.map_or_else(|| vector(light.color() * factor), |strength| number(strength * factor));
+        diagnostic = diagnostic.fix_at(value, less);
+        diagnostic.span = diagnostic.span.or(value).or(Some(span));
+    }
+    if !over(far, MAX_FAR) {
+        diagnostic.severity = Severity::Note;
+    }
+    vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
+}
+
+/// A picture of one colour.
+pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
+    let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
+    let mut colors = scout.light().iter().map(|color| shown(*color));
+    let Some(first) = colors.next().filter(|_| scout.light().len() > 4) else { return Vec::new() };
+    if !colors.all(|color| (color - first).abs().max_element() < VISIBLE) {
+        return Vec::new();
+    }
+    let name = match (first.max_element() < VISIBLE, first.min_element() > 1.0 - VISIBLE) {
+        (true, _) => "black".to_string(),
+        (_, true) => "white".to_string(),
+        _ => format!("of the one colour {}", vector(first)),
+    };
+    let empty = scout.seen().next().is_none();
+    // What is too small for the grid of rays is there all the same.
+    if empty && scout.visibilities().contains(&super::visibility::Visibility::Seen) {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning(format!("the whole picture is {name}"));
+    let diagnostic = match empty {
+        true => diagnostic.effect("every ray misses: it is the background"),
+        false => diagnostic.effect("no shading is seen"),
+    };
+    vec![Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` tells of what a pixel is made")).last()]
+}
+
+/// A picture that is nearly black where it is not background.
+pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.is_physical() {
+        return dark_paths(scout);
+    }
+    let most = scout.seen().map(|(probe, _)| probe.color.max_element()).fold(0.0, f32::max);
+    let lights = scout.world().lights();
+    if scout.seen().next().is_none() || most > 0.06 || lights.is_empty() {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning(format!("the brightest thing in the picture is {} only", number(most)))
+        .effect("all that is seen is black, or nearly so")
+        .help(format!("it takes about {} times as much light", number(0.8 / most.max(1e-4))));
+    let diagnostic = match place(scout, 0) {
+        Some(span) => scout.at_value(diagnostic, span, &["color"]),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).last()]
+}
+
+/// The same of a path tracer's picture.
+fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
+    if !scout.is_dark() {
+        return Vec::new();
+    }
+    let most = brightest(scout.light());
+    let message = match most < 1e-6 {
+        true => "the whole picture is black: no light finds its way to the camera".to_string(),
+        false => format!("the brightest thing in the picture is {} only", number(most)),
+    };
+    let factor = 0.6 / most.max(1e-9);
+    let diagnostic = Diagnostic::warning(message).effect("all that is seen is black, or nearly so");
+    let lamp = super::lamps::brightest(scout).filter(|_| most > 1e-6);
+    let diagnostic = match lamp {
+        Some((place, value)) => {
+            let stops = number(stops_of(factor).round() + stops_of(scout.subject.exposure));
+            let text = number(value * factor);
+            diagnostic.at(place).fix(place, text.clone()).help(format!(
+                "it takes about {} times as much light: write `{text}`, say, or ask for `--exposure {stops}`",
+                number(factor)
+            ))
+        }
+        None => diagnostic.help("is a lamp enclosed, turned away, or too weak? Does fog swallow its light?"),
+    };
+    vec![Finding::from(diagnostic).last()]
+}
+
+/// A range of depths beside all depths.
+pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
+    let Some((min, max)) = scout.subject.job.depth_range else { return Vec::new() };
+    let depths: Vec<f32> = scout.seen().map(|(_, seen)| seen.t).collect();
+    let least = depths.iter().copied().fold(f32::INFINITY, f32::min);
+    let most = depths.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    let (low, high) = (min.min(max), min.max(max));
+    if min > max {
+        let turned = format!("{} {}", number(max), number(min));
+        let message = format!("the range of depths goes backwards, from {} to {}", number(min), number(max));
+        let help =
+            format!("the nearer comes first: `--depth-range {turned}` (in the course's programs `-depth {turned}`)");
+        let diagnostic = Diagnostic::warning(message).effect("near and far are exchanged in the picture of depths");
+        return vec![Finding::from(diagnostic.help(help))];
+    }
+    let outside = depths.iter().filter(|t| **t <= low || **t >= high).count();
+    // A range that is far too wide maps all depths to one grey.
+    let flat = (most - least) < 0.02 * (high - low) && most > least;
+    if depths.is_empty() || outside * 20 < depths.len() * 19 && !flat {
+        return Vec::new();
+    }
+    let words = format!("depths in the picture go from {} to {}", number(least), number(most));
+    let fitting = format!("{} {}", number(least), number(most));
+    let diagnostic =
+        Diagnostic::warning(format!("the range of depths, {} to {}, does not fit: {words}", number(min), number(max)))
+            .effect(if flat {
+                "the picture of depths is of nearly one grey"
+            } else {
+                "the picture of depths is all black or all white"
+            })
+            .help(format!("`--depth-range {fitting}` (in the course's programs `-depth {fitting}`) shows them"));
+    vec![Finding::from(diagnostic).whole(true)]
+}

@@ -1,0 +1,300 @@
+//! Sizes: things too small or too large to be seen, and fields of view to match.
+
+use super::finding::{Finding, MAX_SOUGHT, number};
+use super::scene_probe::SceneProbe;
+use super::verdict::Verdict;
+use super::visibility::{Visibility, pixels};
+use durer_diag::{Diagnostic, Span};
+use durer_render::world::Geometry;
+use durer_scene::camera::{Camera, Projection};
+use durer_scene::math::{Aabb, fp};
+use durer_scene::scene::{MatrixOp, Node, Object};
+use durer_scene::shape::Primitive;
+
+/// What spans fewer pixels cannot be recognised.
+const FEWEST_PIXELS: f32 = 6.0;
+/// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the
+/// picture.
+const OUT_OF_SCALE: f32 = 3e3;
+const HARMFUL: f32 = 100.0;
+/// And beyond this, where the camera is in it as well.
+const SWALLOWING: f32 = 20.0;
+
+/// Sizes of things that single precision can place beside others.
+const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
+
+/// All that has an end spans but a few pixels.
+pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
+    let bounds = scout.world().bounds();
+    let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
+        return Vec::new();
+    };
+    let empty = scout.seen().next().is_none();
+    // Who takes so wide a field of view wants to see much, not a few small things in its middle.
+    let share = match scout.world().camera() {
+        Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
+        Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
+        Camera::Orthographic(_) => 0.12,
+        _ => 0.0,
+    };
+    let fewest = (share * scout.larger()).max(FEWEST_PIXELS);
+    if size >= fewest || !empty && !scout.visibilities().contains(&Visibility::Seen) {
+        return Vec::new();
+    }
+    let (span, larger) = (scout.subject.scene.camera_span, scout.larger());
+    let wanted = 0.6 * larger / size.max(1e-6);
+    let diagnostic =
+        Diagnostic::warning(format!("all things together are {} pixels wide in a picture of {larger}", number(size)))
+            .effect(if empty && size < FEWEST_PIXELS {
+                "every ray misses them; the whole picture is background"
+            } else {
+                "next to nothing is seen of them"
+            });
+    let (diagnostic, field) = match scout.world().camera() {
+        Camera::Perspective(camera) if camera.angle > 90.0 => {
+            (diagnostic.help("take a smaller field of view, 40 degrees, say, or go nearer"), "angle")
+        }
+        Camera::Orthographic(camera) => {
+            let help = format!("take a smaller picture: `size {}`, say", number(camera.size / wanted));
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), number(camera.size / wanted));
+            (diagnostic.help(help), "size")
+        }
+        _ => {
+            let help = format!("go about {} times nearer, or make them that much larger", number(wanted));
+            (diagnostic.help(help), "center")
+        }
+    };
+    let diagnostic = scout.at_value(diagnostic, span, &[field, if field == "angle" { "fov" } else { field }]);
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The picture shows a tiny part of things: an angle in radians, say.
+pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
+    let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
+    // What is seen whole is not seen too near.
+    let seen =
+        scout.world().objects().iter().zip(scout.visibilities()).filter(|(_, sight)| **sight == Visibility::Seen);
+    let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
+    if bounds.is_empty() {
+        return Vec::new();
+    }
+    if sizes.iter().any(|size| *size < 3.0 * larger) {
+        return one_fills(scout, &sizes).into_iter().collect();
+    }
+    let radians = |angle: f32| angle <= std::f32::consts::PI;
+    match scout.world().camera() {
+        Camera::Perspective(camera) if camera.angle < 5.0 => {
+            // A telescope is there to see far things.
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
+            let degrees = camera.angle.to_degrees();
+            let mut diagnostic =
+                Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+                    .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                    .help("angles are in degrees: 30 to 60 are usual");
+            if let Some(place) = scout.value(span, &["angle", "fov"]).filter(|_| radians(camera.angle)) {
+                let whole = degrees.round().clamp(20.0, 100.0);
+                diagnostic = diagnostic.fix(place, number(whole)).help(format!(
+                    "angles are in degrees; in radians it would be {}: write `{whole}`, say",
+                    number(degrees)
+                ));
+            }
+            vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
+        }
+        Camera::Orthographic(camera) => {
+            // A picture of one thing's surface alone shows nothing.
+            let mut seen: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
+            seen.sort_unstable();
+            seen.dedup();
+            let most = if seen.len() == 1 { 8.0 } else { 30.0 };
+            let Some(size) = pixels(scout, bounds).filter(|size| *size > most * larger) else { return Vec::new() };
+            let wanted = number(1.2 * camera.size * size / larger);
+            let diagnostic = Diagnostic::warning(format!("the picture is {} wide only", number(camera.size)))
+                .effect(format!("less than a {}th of the scene's width is seen", number((size / larger).floor())))
+                .help(format!("`size {wanted}` shows all of it"));
+            let diagnostic = diagnostic.fix_at(scout.value(span, &["size"]), wanted);
+            vec![Finding::from(scout.at_value(diagnostic, span, &["size"])).whole(true)]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// A narrow field of view that one thing fills, and most others are beside it.
+fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
+    let Camera::Perspective(camera) = scout.world().camera() else { return None };
+    let visibilities = scout.visibilities().iter().zip(scout.world().objects());
+    let out =
+        visibilities.filter(|(sight, object)| **sight == Visibility::Outside && object.bounds().is_some()).count();
+    let filled = sizes.iter().all(|size| *size > 0.9 * scout.larger());
+    if camera.angle > 12.0 || sizes.is_empty() || !filled || out < 2 || out < sizes.len() {
+        return None;
+    }
+    let diagnostic = Diagnostic::warning(format!("the field of view is {} degrees only", number(camera.angle)))
+        .effect(match sizes.len() {
+            1 => format!("one thing fills the picture, and {out} are beside it"),
+            n => format!("{n} things fill the picture, and {out} are beside it"),
+        })
+        .help("30 to 60 degrees are usual: is a digit missing?");
+    let span = scout.subject.scene.camera_span;
+    Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))
+}
+
+/// How many times larger an object is than the largest other one, if that is far.
+pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
+    let size = |i: usize| Some(scout.world().objects()[i].bounds()?.size().max_element());
+    let others = (0..scout.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
+    let times = size(object as usize)? / others.fold(0.0, f32::max);
+    (times > SWALLOWING && times.is_finite()).then_some(times)
+}
+
+/// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others
+/// are not seen for it.
+fn is_harm(scout: &SceneProbe, object: u32) -> bool {
+    let visibilities = scout.visibilities();
+    let hides = visibilities.contains(&Visibility::Hidden(object));
+    let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
+    let ball = matches!(&scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
+    // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
+    if swallows(scout, object) {
+        return true;
+    }
+    match visibilities[object as usize] {
+        // What of a ball is too high or too large, its place tells.
+        Visibility::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
+        _ => true,
+    }
+}
+
+/// Whether the camera is in an object that keeps light off or hides others.
+fn swallows(scout: &SceneProbe, object: u32) -> bool {
+    let eye = scout.world().camera().pose().center;
+    let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
+    let harms = keeps_light || scout.visibilities().contains(&Visibility::Hidden(object));
+    harms && super::within::around(scout.world(), eye).contains(&object)
+}
+
+/// Objects far larger or smaller than most.
+pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let sized = |(i, object): (usize, &durer_render::world::Object)| {
+        let bounds: Aabb = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        Some((i as u32, bounds.size().max_element())).filter(|(_, size)| *size > 0.0)
+    };
+    let mut sizes: Vec<(u32, f32)> = world.objects().iter().enumerate().filter_map(sized).collect();
+    sizes.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let absurd = sizes.iter().filter(|(_, size)| !ABSURD.contains(size));
+    let lost: Vec<Finding> = absurd
+        .take(MAX_SOUGHT)
+        .map(|&(object, size)| {
+            let diagnostic = Diagnostic::warning(format!("the {} is {} wide", scout.object(object), number(size)))
+                .at(scout.object_span(object))
+                .effect("numbers of this size have not enough digits: it is not seen, or all is inside it")
+                .help("look at its size and the `Scale` around it");
+            Finding::from(diagnostic).whole(size > 1.0)
+        })
+        .collect();
+    if sizes.len() < 2 || !lost.is_empty() {
+        return lost;
+    }
+    // Of two, that which the camera's distance speaks for is right.
+    let eye = world.camera().pose().center;
+    let away = |object: u32| world.objects()[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
+    let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
+    let middle = match sizes[..] {
+        [small, large] => {
+            if odd(small) < odd(large) {
+                small.1
+            } else {
+                large.1
+            }
+        }
+        _ => sizes[sizes.len() / 2].1,
+    };
+    let mut found = Vec::new();
+    for &(object, size) in &sizes {
+        let ratio = if size > middle { size / middle } else { middle / size };
+        // Of two, either may be wrong: the small one is not seen, the large one hides.
+        let spoils = size > middle && is_harm(scout, object);
+        if found.len() >= MAX_SOUGHT
+            || ratio
+                < if !spoils {
+                    OUT_OF_SCALE
+                } else if swallows(scout, object) {
+                    SWALLOWING
+                } else {
+                    HARMFUL
+                }
+        {
+            continue;
+        }
+        // The ground may well be part of a huge ball, and the sky another.
+        if size > middle && !spoils {
+            continue;
+        }
+        let word = if size > middle { "larger" } else { "smaller" };
+        let diagnostic = Diagnostic::warning(format!(
+            "the {} is {} times {word} than most things here",
+            scout.object(object),
+            number(ratio)
+        ))
+        .at(scout.object_span(object))
+        .effect(match scout.visibilities()[object as usize] {
+            Visibility::Seen if size > middle => "it hides or holds the others",
+            Visibility::Seen => "hardly a pixel shows it",
+            _ if size > middle => "it reaches over all, and what of it would be seen is not in the picture",
+            _ => "it is not seen",
+        })
+        .help(format!(
+            "its largest side is {}, that of most things {}: is it in another unit, as millimetres? ProbeGrid at its size and the \
+             `{}` around it",
+            number(size),
+            number(middle),
+            scout.word("Scale", "scale")
+        ));
+        let shown = scout.seen().filter(|(_, seen)| seen.object == object).count();
+        found.push(Finding::from(diagnostic).whole(shown * 2 > scout.probes.len()));
+    }
+    found
+}
+
+/// Rotations by less than a turn in radians, which are fractions of pi.
+pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
+    let mut angles = Vec::new();
+    if let Some(root) = &scout.subject.scene.root {
+        root.objects.iter().for_each(|object| rotations(object, &mut angles));
+    }
+    let fraction = |angle: f32| {
+        let parts = angle.abs() / std::f32::consts::PI * 12.0;
+        angle.abs() > 0.1 && angle.abs() < 6.5 && angle.fract() != 0.0 && (parts - parts.round()).abs() < 0.01
+    };
+    let Some((span, words, angle)) = angles.into_iter().find(|(.., angle)| fraction(*angle)) else { return Vec::new() };
+    let degrees = number(angle.to_degrees().round());
+    let diagnostic = Diagnostic::warning(format!("a rotation by {angle} degrees looks like radians"))
+        .effect("this object is hardly turned")
+        .help(format!("angles are in degrees: {degrees}"));
+    let value = scout.value(span, &words).filter(|value| scout.text(*value).parse() == Ok(angle));
+    vec![Finding::from(match value {
+        Some(value) => diagnostic.at(value).fix(value, degrees),
+        None => diagnostic.at(span),
+    })]
+}
+
+/// A rotation: where its transform is written, what it may be called, and its angle.
+type Rotation = (Span, [&'static str; 2], f32);
+
+fn rotations(object: &Object, angles: &mut Vec<Rotation>) {
+    match &object.node {
+        Node::Transform(ops, inner) => {
+            angles.extend(ops.iter().filter_map(|op| match op {
+                MatrixOp::XRotate(angle) => Some((object.span, ["XRotate", "x_rotate"], *angle)),
+                MatrixOp::YRotate(angle) => Some((object.span, ["YRotate", "y_rotate"], *angle)),
+                MatrixOp::ZRotate(angle) => Some((object.span, ["ZRotate", "z_rotate"], *angle)),
+                MatrixOp::Rotate(_, angle) => Some((object.span, ["Rotate", "rotate"], *angle)),
+                _ => None,
+            }));
+            rotations(inner, angles);
+        }
+        Node::Group(group) => group.objects.iter().for_each(|inner| rotations(inner, angles)),
+        Node::Solid(_, parts) => parts.iter().for_each(|part| rotations(part, angles)),
+        _ => {}
+    }
+}

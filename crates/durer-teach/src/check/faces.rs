@@ -1,0 +1,103 @@
+//! Flat faces that lie in one another: of two, one is seen at random.
+
+use super::scene_probe::SceneProbe;
+use durer_render::world::{Geometry, Object};
+use durer_scene::camera::Projection;
+use durer_scene::math::Vec3;
+use durer_scene::shape::Primitive;
+
+/// Of more things, none are looked at.
+const MAX_THINGS: usize = 300;
+
+/// A flat face: its corners in order, and its normal if only one side is ever seen.
+struct Face {
+    object: usize,
+    corners: Vec<Vec3>,
+    outwards: Option<Vec3>,
+}
+
+impl Face {
+    fn normal(&self) -> Vec3 {
+        (self.corners[1] - self.corners[0]).cross(self.corners[2] - self.corners[0]).normalize_or_zero()
+    }
+}
+
+fn faces_of(number: usize, object: &Object) -> Vec<Face> {
+    let world = |corners: &[Vec3]| corners.iter().map(|p| object.world_point(*p)).collect::<Vec<Vec3>>();
+    match &object.geometry {
+        Geometry::Primitive(Primitive::Rectangle(r)) => {
+            let (a, b) = (r.corner + r.edge0, r.corner + r.edge1);
+            vec![Face { object: number, corners: world(&[r.corner, a, a + r.edge1, b]), outwards: None }]
+        }
+        Geometry::Primitive(Primitive::Cuboid(cuboid)) => {
+            let corner = |i: usize| {
+                let pick = |axis: usize| if i >> axis & 1 == 1 { cuboid.max[axis] } else { cuboid.min[axis] };
+                Vec3::new(pick(0), pick(1), pick(2))
+            };
+            let sides = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+            let middle = object.world_point(0.5 * (cuboid.min + cuboid.max));
+            let side = |places: [usize; 4]| {
+                let corners = world(&places.map(corner));
+                let mut face = Face { object: number, corners, outwards: None };
+                let n = face.normal();
+                face.outwards = Some(if n.dot(face.corners[0] - middle) < 0.0 { -n } else { n });
+                face
+            };
+            sides.map(side).into()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Whether two faces lie in one plane and cover a part of each other.
+fn meet(a: &Face, b: &Face) -> bool {
+    let (n, m) = (a.normal(), b.normal());
+    if n == Vec3::ZERO || m == Vec3::ZERO || n.dot(m).abs() < 1.0 - 1e-6 {
+        return false;
+    }
+    let size = a.corners.iter().chain(&b.corners).map(|p| (*p - a.corners[0]).length()).fold(0.0, f32::max);
+    if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
+        return false;
+    }
+    // Convex shapes are apart where a side of one separates them; those that only touch are apart
+    // too.
+    let separates = |one: &Face, other: &Face| {
+        let count = one.corners.len();
+        (0..count).any(|i| {
+            let side = one.corners[(i + 1) % count] - one.corners[i];
+            let out = side.cross(n).normalize_or_zero();
+            let reach = |face: &Face| {
+                face.corners.iter().map(|p| out.dot(*p)).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)))
+            };
+            let ((a0, a1), (b0, b1)) = (reach(one), reach(other));
+            a1.min(b1) - a0.max(b0) < 1e-3 * size
+        })
+    };
+    !separates(a, b) && !separates(b, a)
+}
+
+/// The objects, boxes and rectangles, whose faces lie in one another on the side that the camera
+/// sees.
+pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
+    let objects = scout.world().objects();
+    if objects.len() > MAX_THINGS {
+        return Vec::new();
+    }
+    let eye = scout.world().camera().pose().center;
+    let faces: Vec<Face> = objects.iter().enumerate().flat_map(|(i, object)| faces_of(i, object)).collect();
+    let faces_eye = |face: &Face| face.outwards.is_none_or(|n| n.dot(eye - face.corners[0]) > 0.0);
+    let mut found: Vec<(usize, usize)> = Vec::new();
+    for (i, a) in faces.iter().enumerate() {
+        for b in faces[i + 1..].iter().filter(|b| b.object != a.object) {
+            let (first, second) = (a.object, b.object);
+            if !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
+                // Boxes side by side face each other.
+                let opposite = a.outwards.zip(b.outwards).is_some_and(|(n, m)| n.dot(m) < 0.0);
+                if !opposite {
+                    found.push((first, second));
+                }
+            }
+        }
+    }
+    found
+}

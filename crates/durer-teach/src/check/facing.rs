@@ -1,0 +1,133 @@
+//! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
+
+use super::finding::{Finding, MAX_SOUGHT, counted};
+use super::mesh::topology::Topology;
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Severity};
+use durer_render::world::Geometry;
+use durer_scene::math::{Affine, Vec3};
+use durer_scene::shape::Primitive;
+
+/// The text change that turns a flat shape round.
+fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
+    let span = scout.object_span(object);
+    let Geometry::Primitive(shape) = &scout.world().objects()[object as usize].geometry else { return diagnostic };
+    match shape {
+        Primitive::Triangle(_) => match (scout.value(span, &["vertex1"]), scout.value(span, &["vertex2"])) {
+            (Some(b), Some(c)) => {
+                diagnostic.fix(b, scout.text(c)).fix(c, scout.text(b)).help("exchange `vertex1` and `vertex2`")
+            }
+            _ => diagnostic,
+        },
+        Primitive::Plane(plane) => match (scout.value(span, &["normal"]), scout.value(span, &["offset"])) {
+            (Some(n), Some(d)) => diagnostic
+                .fix(n, super::finding::vector(-plane.normal))
+                .fix(d, super::finding::number(-plane.offset))
+                .help("turn its `normal`, and the sign of its `offset` with it"),
+            _ => diagnostic,
+        },
+        _ => diagnostic,
+    }
+}
+
+/// Objects of which only backs are seen: a warning where backs are not shaded as fronts are, else a
+/// note on flat shapes, which have a front that was meant to be seen.
+pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
+    let shaded = scout.subject.job.settings.shade_back;
+    let is_flat = |i: usize| {
+        let shape = &scout.world().objects()[i].geometry;
+        matches!(shape, Geometry::Primitive(Primitive::Triangle(_) | Primitive::Plane(_)))
+    };
+    let count = scout.world().objects().len();
+    let (mut seen, mut backs, mut black) = (vec![0; count], vec![0; count], false);
+    for (_, surface) in scout.seen() {
+        seen[surface.object as usize] += 1;
+        backs[surface.object as usize] += usize::from(surface.from_behind);
+        black |= surface.black;
+    }
+    let all: usize = seen.iter().sum();
+    // Who is on the wrong side of what hides everything is told that alone.
+    if !super::hidden::hidden(scout).is_empty() {
+        return Vec::new();
+    }
+    let turned_away = (0..count).filter(|&i| {
+        seen[i] > 0 && backs[i] == seen[i] && (!shaded || is_flat(i)) && !super::mesh::shows_inside_out(scout, i as u32)
+    });
+    let say = |i: usize| {
+        let message = format!("the {} is seen from behind", scout.object(i as u32));
+        if shaded {
+            let note = Diagnostic::note(message)
+                .at(scout.object_span(i as u32))
+                .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
+            // A plane with normal and offset turned is the same plane, and looks the same where
+            // backs are shaded.
+            let plane = matches!(scout.world().objects()[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
+            return Finding::from(if plane { note } else { turned(scout, note, i as u32) });
+        }
+        let diagnostic = Diagnostic::warning(message)
+            .at(scout.object_span(i as u32))
+            .effect(if black {
+                "its back is left black"
+            } else {
+                "its normal points away: no light falls on what is seen of it"
+            })
+            .help("ask for `--shade-back` (in the course's programs `-shade_back`)");
+        Finding::from(turned(scout, diagnostic, i as u32)).whole(backs[i] * 10 > all * 9)
+    };
+    turned_away.take(MAX_SOUGHT).map(say).collect()
+}
+
+/// Triangles written one by one that hang together, some of which go round the other way.
+pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
+    let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
+    for (i, object) in scout.world().objects().iter().enumerate() {
+        if matches!(&object.geometry, Geometry::Primitive(Primitive::Triangle(_))) {
+            match soups.iter_mut().rev().take(8).find(|soup| soup.0 == object.to_world) {
+                Some(soup) => soup.1.push(i as u32),
+                None => soups.push((object.to_world, vec![i as u32])),
+            }
+        }
+    }
+    soups.iter().filter(|soup| soup.1.len() > 3).flat_map(|soup| turned_of(scout, &soup.1)).collect()
+}
+
+fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
+    let corners = |&i: &u32| match &scout.world().objects()[i as usize].geometry {
+        Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
+        _ => [Vec3::ZERO; 3],
+    };
+    let positions: Vec<Vec3> = soup.iter().flat_map(corners).collect();
+    let triangles: Vec<[u32; 3]> = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let topology = Topology::of(&positions, &triangles);
+    let inside_out = topology.is_closed() && topology.turned.is_empty() && topology.volume < 0.0;
+    if inside_out {
+        let diagnostic = Diagnostic::warning(format!(
+            "{} that enclose something face inwards",
+            counted(soup.len(), "triangle", "triangles")
+        ))
+        .at(scout.object_span(soup[0]))
+        .label("the first of them")
+        .effect("a tracer that does not turn normals shades them as from inside, black");
+        let diagnostic = soup.iter().fold(diagnostic, |diagnostic, &i| turned(scout, diagnostic, i));
+        return vec![Finding::from(diagnostic.help("let their corners go round counter-clockwise, seen from outside"))];
+    }
+    let Some(&first) = topology.turned.first() else { return Vec::new() };
+    let count = topology.turned.len();
+    let mut diagnostic = Diagnostic::warning(match count {
+        1 => "this triangle faces the other way than its neighbours".to_string(),
+        n => format!("{n} triangles face the other way than their neighbours"),
+    })
+    .at(scout.object_span(soup[first as usize]))
+    .effect("its normal points inwards: black or wrongly lit in a tracer that does not turn it");
+    if count > 1 {
+        diagnostic = diagnostic.label("the first of them");
+    }
+    for &i in &topology.turned {
+        diagnostic = turned(scout, diagnostic, soup[i as usize]);
+    }
+    if !topology.is_closed() && count * 3 > soup.len() {
+        // Sheets that only touch have no common side.
+        diagnostic.severity = Severity::Note;
+    }
+    vec![Finding::from(diagnostic)]
+}

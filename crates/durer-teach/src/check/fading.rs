@@ -1,0 +1,125 @@
+//! Lights that fade: what is left of them where they arrive, and what they are divided by.
+
+use super::finding::{Finding, number, vector};
+use super::lights::{each, place, useless, written};
+use super::scene_probe::SceneProbe;
+use super::verdict::{Verdict, divisor};
+use durer_diag::{Diagnostic, Span};
+use durer_scene::dialect::Dialect;
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::math::Vec3;
+
+pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        let Verdict::Faint(most) = verdict else { return None };
+        let message = match written(scout, light)?.value {
+            Light::Directional(_) => format!("this light adds {} at most", number(most)),
+            _ => format!("this light fades to {} before it arrives", number(most)),
+        };
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let factor = 0.8 / most.max(1e-30);
+        let written = &written(scout, light)?.value;
+        let Light::Point(point) = written else {
+            let color = written.color() * factor;
+            let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
+            return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
+        };
+        // Where its colour is that of a light, what fades it is wrong.
+        let value = scout.value(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
+        if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
+            let reversed = Vec3::new(a.z, a.y, a.x);
+            if let Some(text) = fits(scout, light, reversed).then(|| vector(reversed)) {
+                let help = format!("the three factors are for 1, d and d²: `attenuation {text}`?");
+                return Some(diagnostic.at(value).fix(value, text).help(help));
+            }
+        }
+        let (value, text, field) = match (value, point.falloff, point.attenuation) {
+            (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
+            (Some(value), None, Some(a)) => {
+                // The constant keeps a light bright near by: it only grows to what it should have
+                // been.
+                let scaled = a / factor;
+                (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
+            }
+            // The dialect fades light by itself, unless something else is written.
+            _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights()[light])) {
+                (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
+                    let after = Span { start: color.end, ..color };
+                    let text = format!(" attenuation {}", number(a.z / factor));
+                    let help =
+                        format!("without `attenuation` it is {} here: write `{}`, say", number(a.z), text.trim());
+                    return Some(diagnostic.at(color).fix(after, text).help(help));
+                }
+                (color, _) => (color, vector(point.color * factor), "color".into()),
+            },
+        };
+        let help = format!("it is about {} times too weak: `{field} {text}`, say", number(factor));
+        Some(diagnostic.at(value).fix(value, text).help(help))
+    })
+}
+
+/// Whether a light that is divided by other factors would arrive as bright as lights do.
+fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
+    let Light::Point(point) = &scout.world().lights()[light] else { return false };
+    let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
+    let left = faces.map(|(probe, seen)| {
+        let d = (probe.ray.at(seen.t) - point.position).length();
+        point.color.max_element() / (factors.x + factors.y * d + factors.z * d * d)
+    });
+    (0.2..4.0).contains(&left.fold(0.0, f32::max))
+}
+
+/// The word before a value.
+fn before(scout: &SceneProbe, value: Span) -> Span {
+    let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
+    let head = &bytes[..value.start as usize];
+    let end = head.iter().rposition(|b| !b.is_ascii_whitespace()).map_or(0, |at| at + 1);
+    let start = head[..end].iter().rposition(u8::is_ascii_whitespace).map_or(0, |at| at + 1);
+    Span { file: value.file, start: start as u32, end: end as u32 }
+}
+
+pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
+    let found = scout.verdicts().iter().enumerate().filter(|(_, verdict)| **verdict == Verdict::Divides);
+    found
+        .filter_map(|(light, _)| {
+            let span = place(scout, light)?;
+            let divisor = divisor(&scout.world().lights()[light]).unwrap_or_default();
+            let zero = divisor == Vec3::ZERO;
+            let message = match zero {
+                true => match scout.value(span, &["attenuation", "falloff"]) {
+                    Some(value) => {
+                        format!(
+                            "this light divides by zero: its {} is {}",
+                            scout.text(before(scout, value)),
+                            scout.text(value)
+                        )
+                    }
+                    None => "this light divides by zero: nothing is written of how it fades".to_string(),
+                },
+                false => format!("this light is divided by numbers that are not above zero: {}", vector(divisor)),
+            };
+            let value = scout.value(span, &["attenuation", "falloff"]);
+            let diagnostic = Diagnostic::warning(message)
+                .effect(match zero {
+                    true => "what it shines on is no number, and is left out of the picture: black, or specks",
+                    false => "it takes light away, or what it shines on is no number: black",
+                })
+                .help(match scout.value(span, &["falloff"]) {
+                    Some(_) => "write a `falloff` above 0, as `falloff 0.05`",
+                    None if scout.subject.dialect == Dialect::F23 => {
+                        "write an `attenuation` above 0, as `attenuation 0.05`"
+                    }
+                    None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
+                    None => "`attenuation 1 0 0` is light that does not fade",
+                });
+            let triple = written(scout, light).is_some_and(
+                |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
+            );
+            let diagnostic = match value {
+                Some(value) if triple => diagnostic.fix(value, "1 0 0").at(value),
+                _ => diagnostic.at(value.unwrap_or(span)),
+            };
+            Some(Finding::from(diagnostic).whole(true))
+        })
+        .collect()
+}

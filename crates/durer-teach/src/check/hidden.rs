@@ -1,0 +1,235 @@
+//! One thing before all others, or before nearly all: planes above all.
+
+use super::finding::{Finding, counted, number, percent, vector};
+use super::objects::empty_solids;
+use super::scene_probe::SceneProbe;
+use super::visibility::{Visibility, has_eye, points, rays_to};
+use durer_diag::{Diagnostic, Span};
+use durer_render::world::{Geometry, Object};
+use durer_scene::camera::{Camera, Projection};
+use durer_scene::math::{Ray, Vec3};
+use durer_scene::shape::Primitive;
+
+/// Of more things, one alone is not blamed.
+const FEW_OBJECTS: usize = 8;
+
+/// One thing is in front of all others, or of nearly all.
+pub(super) fn hidden_behind(scout: &SceneProbe) -> Vec<Finding> {
+    let found = hidden(scout);
+    if found.is_empty() { in_the_way(scout) } else { found }
+}
+
+/// One thing is in front of all others.
+pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
+    let mut hits = scout.seen().map(|(_, seen)| seen.object);
+    let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
+    let (mut hidden, mut others) = (0, 0);
+    let empty = empty_solids(scout);
+    let there = |(i, _): &(usize, &Visibility)| *i as u32 != front && !empty.contains(&(*i as u32));
+    for (number, sight) in scout.visibilities().iter().enumerate().filter(there) {
+        match sight {
+            Visibility::Hidden(_) => hidden += 1,
+            Visibility::Unknown if scout.world().objects()[number].bounds().is_none() => {}
+            _ => others += 1,
+        }
+    }
+    let covered = scout.seen().count();
+    let is_plane = scout.world().objects()[front as usize].bounds().is_none();
+    // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
+    let few = !is_plane && covered * 2 < scout.probes.len();
+    if hidden == 0 || others > 0 || few || scout.is_glass(front) {
+        return Vec::new();
+    }
+    let name = scout.object(front);
+    let behind = scout.seen().all(|(_, seen)| seen.from_behind);
+    // Rays without a beginning see what is behind the camera too.
+    let backwards = !has_eye(scout) && scout.seen().all(|(_, seen)| seen.t < 0.0);
+    // Whoever looks at its back may be on the wrong side of it himself.
+    let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
+    let help = match (is_plane, behind) {
+        _ if backwards => {
+            "it is behind the camera's `center`, but this camera's rays have no beginning and see what is behind it first: move \
+             it away, or turn its `offset`"
+        }
+        _ if is_plane && turned.is_none() && !behind => {
+            "the camera and the things behind the plane are on different sides of it: move one of them"
+        }
+        (true, true) => {
+            "the camera is behind the plane, which stands where p · normal = offset: move the camera, or look at `offset` \
+             and at the direction of `normal`"
+        }
+        (true, false) => "the plane stands where p · normal = offset: is the sign of `offset` right?",
+        _ => "move it, make it smaller, or move the camera",
+    };
+    let diagnostic = Diagnostic::warning(format!("the {name} hides everything else"))
+        .at(scout.object_span(front))
+        .label(format!("covers {} of the picture", percent(covered, scout.probes.len())))
+        .effect(format!("{} behind it cannot be seen", counted(hidden, "object", "objects")))
+        .help(help);
+    let diagnostic = match turned {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// One thing just before the camera that covers most of the picture and others with it.
+fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
+    let objects = scout.world().objects();
+    let mut counts = vec![0; objects.len()];
+    let mut nearest = vec![f32::INFINITY; objects.len()];
+    for (probe, seen) in scout.seen() {
+        counts[seen.object as usize] += 1;
+        nearest[seen.object as usize] = nearest[seen.object as usize].min(seen.t * probe.ray.dir.length());
+    }
+    let Some(front) = (0..objects.len()).max_by_key(|&i| counts[i]) else { return Vec::new() };
+    if counts[front] * 10 < scout.probes.len() * 5 || scout.is_glass(front as u32) || !hidden(scout).is_empty() {
+        return Vec::new();
+    }
+    let Some(bounds) = objects[front].bounds() else { return Vec::new() };
+    // A room or a table holds the others; what is in the way is far before them, and hides nearly
+    // all of them.
+    let eye = scout.world().camera().pose().center;
+    let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
+    let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
+    let nearest_other = others.iter().map(away).fold(f32::INFINITY, f32::min);
+    if others.is_empty() || objects.len() > FEW_OBJECTS || nearest[front] > 0.4 * nearest_other {
+        return Vec::new();
+    }
+    let (mut looked, mut covered) = (0, 0);
+    for &other in &others {
+        let rays = points(&objects[other]).into_iter().flat_map(|point| rays_to(scout, point));
+        for hit in rays.filter_map(|ray| scout.world().closest(&ray, &mut ())) {
+            looked += usize::from(hit.object as usize == other || hit.object as usize == front);
+            covered += usize::from(hit.object as usize == front);
+        }
+    }
+    if looked == 0 || covered * 10 < looked * 7 || bounds.holds(eye) {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::note(format!("the {} covers most of the picture", scout.object(front as u32)))
+        .at(scout.object_span(front as u32))
+        .label(format!("{} of it", percent(counts[front], scout.probes.len())))
+        .effect(format!("of the others, next to nothing is seen: it covers {} of them", percent(covered, looked)))
+        .help(format!(
+            "it is {} before the camera: move it away or make it smaller, or go back",
+            number(nearest[front])
+        ));
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// A plane between the camera and all things that have an end, though something else, the sky say,
+/// is seen beside it.
+pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
+    let objects = scout.world().objects();
+    let mut front = None;
+    let empty = empty_solids(scout);
+    let there =
+        |(i, (object, _)): &(usize, (&Object, &Visibility))| object.bounds().is_some() && !empty.contains(&(*i as u32));
+    for (_, (object, sight)) in objects.iter().zip(scout.visibilities()).enumerate().filter(there) {
+        let by = match sight {
+            Visibility::Hidden(by) => {
+                Some(*by).filter(|by| objects[*by as usize].bounds().is_none() && !scout.is_glass(*by))
+            }
+            Visibility::Outside if has_eye(scout) => plane_before(scout, object),
+            _ => None,
+        };
+        if by.is_none() || front.is_some_and(|known| Some(known) != by) {
+            front = None;
+            break;
+        }
+        front = by;
+    }
+    let front = match front {
+        Some(front) => Some(front).filter(|_| hidden(scout).is_empty()),
+        None => ceiling(scout),
+    };
+    let Some(front) = front else { return Vec::new() };
+    let lid = ceiling(scout) == Some(front);
+    let what =
+        if lid { "everything, the camera too, is below the" } else { "all other things are on the far side of the" };
+    if let Some(raised) = raised(scout, front).filter(|_| !lid) {
+        let pose = scout.world().camera().pose();
+        let diagnostic = Diagnostic::warning(format!("the camera is below the {}", scout.object(front)))
+            .related(scout.object_span(front), "the other things stand on it")
+            .effect("nothing but the plane and the background is seen")
+            .help(format!("move it to the side of the things: `center {}`, say", vector(raised)));
+        let span = scout.subject.scene.camera_span;
+        let value = scout.value(span, &["center"]).filter(|_| raised != pose.center);
+        let diagnostic = scout.at_value(diagnostic.fix_at(value, vector(raised)), span, &["center"]);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let diagnostic = Diagnostic::warning(format!("{what} {}", scout.object(front)))
+        .at(scout.object_span(front))
+        .effect(match lid {
+            true => "it is a ceiling that is seen from its back, and keeps off the light from above",
+            false => "nothing but the plane and the background is seen",
+        })
+        .help("a plane stands where p · normal = offset: look at its `offset`, or at the height of the things");
+    let diagnostic = match offset_turned(scout, front) {
+        Some((place, text)) => diagnostic.fix(place, text),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The plane between the camera and an object, if there is one: no camera that turns sees the
+/// object.
+pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
+    let world = scout.world();
+    let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
+    let way = Ray { t_max: 1.0, ..Ray::new(eye, place - eye) };
+    world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
+}
+
+/// Where the camera would be as far above a plane as it is below, if all things stand on it.
+fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
+    let (n, d) = ground(scout, object)?;
+    let eye = scout.world().camera().pose().center;
+    let height = |p: Vec3| p.dot(n) - d;
+    let things: Vec<[Vec3; 8]> = scout.world().objects().iter().filter_map(|o| Some(o.bounds()?.corners())).collect();
+    let size = scout.world().bounds().size().max_element();
+    let lowest = things.iter().flatten().map(|p| height(*p)).fold(f32::INFINITY, f32::min);
+    (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
+}
+
+/// The normal and offset of a plane in the world.
+pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
+    let object = &scout.world().objects()[object as usize];
+    let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+    let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
+    let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+    Some((n, on.dot(n)))
+}
+
+/// The only plane, if it faces up and all things and the camera are below it.
+fn ceiling(scout: &SceneProbe) -> Option<u32> {
+    let world = scout.world();
+    let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
+    let mut planes = planes.filter_map(|(i, object)| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i as u32, plane)),
+        _ => None,
+    });
+    let (number, plane) = planes.next().filter(|_| planes.next().is_none())?;
+    let pose = world.camera().pose();
+    let below = |p: Vec3| p.dot(plane.normal) < plane.offset;
+    let faces_up = plane.normal.normalize_or_zero().dot(pose.up.normalize_or_zero()) > 0.7;
+    let things = world.bounds();
+    let all = !things.is_empty() && things.corners().iter().all(|corner| below(*corner)) && below(pose.center);
+    let seen = scout.seen().any(|(_, seen)| seen.object == number);
+    (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
+}
+
+/// The other sign of a plane's offset and where it is written, if the camera and the things are on
+/// one side of it then.
+fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
+    let plane_object = &scout.world().objects()[object as usize];
+    let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
+    if plane_object.to_world.is_some() || plane.offset == 0.0 {
+        return None;
+    }
+    let place = scout.value(scout.object_span(object), &["offset"])?;
+    let above = |p: Vec3| p.dot(plane.normal) > -plane.offset;
+    let things = scout.world().bounds();
+    (above(things.center()) == above(scout.world().camera().pose().center)).then(|| (place, number(-plane.offset)))
+}

@@ -1,0 +1,255 @@
+//! Under a path tracer: surfaces that shine, and why their light is not seen.
+
+use super::finding::{Finding, MAX_SOUGHT};
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Severity, Span};
+use durer_render::integrator::Method;
+use durer_render::world::emitters::Form;
+use durer_render::world::{Geometry, Material, Object};
+use durer_scene::math::{Ray, Vec2, Vec3};
+use durer_scene::scene::Material as Written;
+use durer_scene::shape::Primitive;
+
+/// So many places are asked how much of a lamp's light they get.
+const MAX_PLACES: usize = 200;
+/// Places on a lamp.
+const ON_LAMP: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
+/// A lamp that gives a smaller share of what it might gives nothing.
+const NOTHING: f32 = 0.1;
+const HARDLY: f32 = 0.03;
+
+/// What a lamp does for what is seen: sums over places, of the cosine at the lamp.
+#[derive(Clone, Copy, Debug, Default)]
+struct Given {
+    /// Where nothing is in the way.
+    front: f32,
+    back: f32,
+    /// And if nothing were in the way.
+    front_free: f32,
+    /// How many rays only glass was in the way of.
+    glass: usize,
+    rays: usize,
+    /// What was in the way of the front last.
+    blocker: Option<u32>,
+}
+
+/// The surfaces that shine, of which points can be chosen: their number, and whether both sides do.
+fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
+    let world = scout.world();
+    let shines = |(number, object): (usize, &Object)| {
+        let Some(Material::Phong(phong)) = world.materials().get(object.material as usize) else { return None };
+        let emission = phong.emission.as_ref().filter(|emission| emission.radiance.max_element() > 0.0)?;
+        Some((number as u32, emission.two_sided))
+    };
+    world.objects().iter().enumerate().filter_map(shines).take(MAX_SOUGHT).collect()
+}
+
+/// Where the strongest lamp's strength is written, and how much that is.
+pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
+    let materials = &scout.subject.scene.materials;
+    let lamps = shining(scout).into_iter().filter_map(|(number, _)| {
+        let written = materials.get(scout.world().objects()[number as usize].material as usize)?;
+        let Written::Principled(layers) = &written.value else { return None };
+        Some((scout.value(written.span, &["emissionLuminance"])?, layers.emission_luminance))
+    });
+    lamps.max_by(|a, b| a.1.total_cmp(&b.1))
+}
+
+/// Whether light may go through an object.
+fn is_clear(scout: &SceneProbe, object: u32) -> bool {
+    match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
+        Some(Material::Phong(phong)) => {
+            phong.transparent.max_element() > 0.0
+                || phong.principled.as_ref().is_some_and(|own| own.interface || own.written.opacity < 1.0)
+        }
+        _ => false,
+    }
+}
+
+/// The first thing that keeps light off between two places, and whether glass was passed.
+fn between(scout: &SceneProbe, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
+    let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
+    let mut glass = false;
+    for hit in scout.world().all_hits(&ray).take(16).filter(|hit| hit.object != lamp) {
+        if !is_clear(scout, hit.object) {
+            return (Some(hit.object), glass);
+        }
+        glass = true;
+    }
+    (None, glass)
+}
+
+/// What a lamp of one part does; `None` for what has no points that can be chosen.
+fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
+    let object = &scout.world().objects()[lamp as usize];
+    let all: Vec<Vec3> =
+        scout.seen().filter(|(_, seen)| seen.object != lamp).map(|(probe, seen)| probe.ray.at(seen.t)).collect();
+    let places = all.iter().step_by(all.len().div_ceil(MAX_PLACES).max(1));
+    let mut given = Given::default();
+    let mut flat = true;
+    for place in places {
+        for u in ON_LAMP {
+            let (point, normal) = match &object.geometry {
+                Geometry::Primitive(Primitive::Plane(plane)) => {
+                    let n =
+                        object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+                    let on =
+                        object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
+                    (*place - (*place - on).dot(n) * n, n)
+                }
+                _ if object.parts() == 1 => {
+                    let (form, normal) = Form::of(object, 0)?;
+                    flat &= normal != Vec3::ZERO;
+                    let (point, n, _) = form.point(normal, u)?;
+                    (point.as_vec3(), n)
+                }
+                _ => return None,
+            };
+            let way = *place - point;
+            let cosine = way.normalize_or_zero().dot(normal);
+            let (blocker, glass) = between(scout, lamp, point, *place);
+            given.rays += 1;
+            given.glass += usize::from(glass && blocker.is_none());
+            if cosine > 0.0 {
+                given.front_free += cosine;
+                given.blocker = blocker.or(given.blocker);
+            }
+            if blocker.is_none() {
+                given.front += cosine.max(0.0);
+                given.back -= cosine.min(0.0);
+            }
+        }
+    }
+    (given.rays > 0).then_some((given, flat))
+}
+
+/// How far a lamp's light goes from its middle, as a share of the scene; `None`: on and on.
+fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
+    let (form, normal) = Form::of(object, 0)?;
+    let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
+    let ray = Ray { t_min: 1e-5, ..Ray::new(point.as_vec3(), n) };
+    let hit = scout.world().closest(&ray, &mut ())?;
+    Some(hit.t / scout.world().bounds().size().length().max(1e-6))
+}
+
+/// Lamps that shine away from what is seen.
+pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
+    let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && scout.is_physical());
+    let say = |(number, _): (u32, bool)| {
+        let object = &scout.world().objects()[number as usize];
+        let (given, flat) = given(scout, number)?;
+        // A lamp that lights the ceiling is one as well.
+        let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !scout.is_dark();
+        if !flat || given.back <= 0.0 || given.front > NOTHING * given.back || indirect {
+            return None;
+        }
+        let turn = match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(_)) => "exchange two of its corners",
+            Geometry::Primitive(Primitive::Rectangle(_)) => "exchange `edge0` and `edge1`",
+            Geometry::Primitive(Primitive::Plane(_)) => "turn its `normal`, and the sign of its `offset` with it",
+            _ => "turn its `normal`",
+        };
+        let message = format!("the {} shines away from all that is seen", scout.object(number));
+        let diagnostic = Diagnostic::warning(message)
+            .at(scout.object_span(number))
+            .effect("it lights nothing that is seen, and is black from behind")
+            .help(format!(
+                "a surface shines to the side of its normal: {turn}, or give its material `walls thin`, with which both sides \
+                 shine"
+            ));
+        let whole = scout.is_dark() || scout.world().lights().is_empty();
+        Some(Finding::from(turned_round(scout, diagnostic, number)).whole(whole))
+    };
+    one_sided.filter_map(say).collect()
+}
+
+/// The edit that turns a flat thing round.
+fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
+    let span = scout.object_span(number);
+    let value = |field: &str| scout.value(span, &[field]);
+    match &scout.world().objects()[number as usize].geometry {
+        Geometry::Primitive(Primitive::Rectangle(_)) => match (value("edge0"), value("edge1")) {
+            (Some(a), Some(b)) => diagnostic.fix(a, scout.text(b)).fix(b, scout.text(a)),
+            _ => diagnostic,
+        },
+        Geometry::Primitive(Primitive::Disc(disc)) => {
+            diagnostic.fix_at(value("normal"), super::finding::vector(-disc.normal))
+        }
+        Geometry::Primitive(Primitive::Plane(plane)) => match (value("normal"), value("offset")) {
+            (Some(n), Some(d)) => {
+                diagnostic.fix(n, super::finding::vector(-plane.normal)).fix(d, super::finding::number(-plane.offset))
+            }
+            _ => diagnostic,
+        },
+        _ => diagnostic,
+    }
+}
+
+/// Lamps whose light something keeps in.
+pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
+    if !scout.is_physical() {
+        return Vec::new();
+    }
+    let lamps = shining(scout);
+    let say = |&(number, both): &(u32, bool)| {
+        let (given, _) = given(scout, number)?;
+        let blocker = given.blocker?;
+        let back = if both { given.back } else { 0.0 };
+        if given.front_free < 1.0 || given.front + back > HARDLY * given.front_free {
+            return None;
+        }
+        let whole = scout.is_dark() || lamps.len() == 1 && scout.world().lights().is_empty();
+        let name = scout.object(number);
+        let diagnostic = Diagnostic::warning(format!(
+            "the {name} shines, but the {} keeps its light off all that is seen",
+            scout.object(blocker)
+        ))
+        .at(scout.object_span(number))
+        .related(scout.object_span(blocker), "in the way")
+        .effect(if scout.is_dark() { "the picture is black" } else { "no light of it comes straight to what is seen" })
+        .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
+        // Light may well come round corners, where it does.
+        let dark = scout.is_dark();
+        let severity = if dark { Severity::Warning } else { Severity::Note };
+        (dark || lamps.len() > 1).then(|| Finding::from(Diagnostic { severity, ..diagnostic }).whole(whole))
+    };
+    lamps.iter().filter_map(say).collect()
+}
+
+/// Lamps inside of glass: paths come upon them by chance, or not at all.
+pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    if !matches!(scout.subject.job.method, Method::Path(_)) {
+        return Vec::new();
+    }
+    let around = |place: Vec3, own: Option<u32>| {
+        let bodies = world.objects().iter().enumerate().map(|(number, _)| number as u32).filter(|n| Some(*n) != own);
+        bodies.take(500).find(|&number| {
+            let Some(Material::Phong(phong)) =
+                world.materials().get(world.objects()[number as usize].material as usize)
+            else {
+                return false;
+            };
+            let skin = phong.principled.as_ref().is_none_or(|layers| !layers.interface);
+            skin && phong.transparent.max_element() > 0.0
+                && phong.ior != 1.0
+                && world.objects()[number as usize].contains(place)
+        })
+    };
+    let mut found = super::physical::lamp_in_glass(scout);
+    for (number, _) in shining(scout) {
+        let Some(middle) = world.objects()[number as usize].bounds().map(|bounds| bounds.center()) else { continue };
+        let Some(glass) = around(middle, Some(number)) else { continue };
+        if given(scout, number).is_some_and(|(given, _)| given.glass * 2 <= given.rays) {
+            continue;
+        }
+        let message = format!("the {} shines inside of the {}", scout.object(number), scout.object(glass));
+        let diagnostic = Diagnostic::warning(message)
+            .at(scout.object_span(number))
+            .related(scout.object_span(glass), "glass around it")
+            .effect("paths come upon it by chance alone: little light, and bright specks")
+            .help("take `--integrator photons`, or leave the glass away");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}

@@ -1,0 +1,149 @@
+//! Materials of layers that show nothing, or not what they are meant to: black metals, glass that
+//! swallows all light, surfaces that are not there.
+
+use super::finding::{Finding, MAX_SOUGHT, number as number_word, vector};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Walls;
+use durer_scene::math::fp;
+use durer_scene::scene::{Material as Written, Spanned};
+
+/// Shares of light below this are black.
+const BLACK: f32 = 0.002;
+
+/// The materials of layers that something is made of, with their numbers.
+fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
+    let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
+    let all = scout.subject.scene.materials.iter().enumerate();
+    let own = all.filter_map(|(number, written)| match &written.value {
+        Written::Principled(layers) if used(number) => Some((number, written, &**layers)),
+        _ => None,
+    });
+    own.take(MAX_SOUGHT).collect()
+}
+
+/// The least side of the largest thing that is made of a material.
+fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
+    let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
+    let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
+    sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)
+}
+
+/// Materials of layers that give back no light, whatever falls on them.
+pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+        if scout.material_rays()[number] == 0 {
+            return None;
+        }
+        let base = m.base_weight * m.base_color.max_element();
+        let textured = m.base_color_texture.is_some() || m.base_spectrum.is_some();
+        let skin =
+            m.specular_weight * m.specular_color.max_element() > BLACK || m.coat_weight > 0.0 || m.fuzz_weight > 0.0;
+        let word = if m.emission_luminance > 0.0 || m.thin_film_weight > 0.0 {
+            return None;
+        } else if m.base_metalness > 0.9 {
+            (base <= BLACK && !textured && m.coat_weight == 0.0).then_some("baseColor")?
+        } else if m.transmission_weight > 0.5 {
+            return None;
+        } else if m.has_subsurface() && m.subsurface_weight > 0.9 {
+            (m.subsurface_color.max_element() <= BLACK).then_some("subsurfaceColor")?
+        } else {
+            (base <= BLACK && !textured && !skin).then_some("baseColor")?
+        };
+        let what = match word {
+            "subsurfaceColor" => "the colour that the body shows",
+            _ if m.base_metalness > 0.9 => "what a metal mirrors",
+            _ => "the share of light that it gives back",
+        };
+        let diagnostic = Diagnostic::warning(format!("material {number} is black: it gives back no light"))
+            .effect("what is made of it is black, however much light there is")
+            .help(format!("`{word}` is {what}: `{word} 0.8 0.8 0.8` is light"));
+        let words = [word, "baseWeight"];
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &words)))
+    };
+    layers(scout).into_iter().filter_map(say).collect()
+}
+
+/// Glass that lets nothing through.
+pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+        let color = m.transmission_color.max_element();
+        if m.transmission_weight < 0.5 || m.transmission_scatter.max_element() > 0.0 || color >= 1.0 {
+            return None;
+        }
+        let message = format!("material {number} is of glass, and lets nothing through");
+        let diagnostic = Diagnostic::warning(message);
+        let (diagnostic, word) = if m.transmission_depth == 0.0 || m.walls == Walls::Thin {
+            (color <= BLACK).then(|| {
+                let help = "`transmissionColor` is the share of light that passes: `1 1 1` is clear";
+                (diagnostic.effect("its colour swallows all light: it is black").help(help), "transmissionColor")
+            })?
+        } else {
+            // The ways through a round thing are about as long as that.
+            let thick = thickness(scout, number)?;
+            let left = fp::exp(fp::ln(color.max(1e-6)) * 0.6 * thick / m.transmission_depth);
+            (left < BLACK).then(|| {
+                let depth = number_word(thick);
+                let effect = format!(
+                    "light has its colour, {}, after {} already; what is made of it is {} thick: it is black",
+                    vector(m.transmission_color),
+                    number_word(m.transmission_depth),
+                    number_word(thick)
+                );
+                let help = format!("`transmissionDepth` is in units of the scene: `transmissionDepth {depth}`, say");
+                (
+                    diagnostic
+                        .effect(effect)
+                        .help(help)
+                        .fix_at(scout.value(written.span, &["transmissionDepth"]), depth),
+                    "transmissionDepth",
+                )
+            })?
+        };
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &[word])))
+    };
+    layers(scout).into_iter().filter_map(say).collect()
+}
+
+/// Bodies of glass that bend no light, or as nothing does.
+pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+        let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
+        let plain =
+            m.coat_weight == 0.0 && m.fuzz_weight == 0.0 && m.emission_luminance == 0.0 && m.thin_film_weight == 0.0;
+        if m.transmission_weight < 0.5 || m.walls == Walls::Thin {
+            return None;
+        }
+        let index = number_word(m.specular_ior);
+        let message = format!("material {number} is of glass with an index of refraction of {index}");
+        let effect = match m.specular_ior {
+            // Smoke in a body has no skin by right.
+            ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
+                "light goes straight through and nothing is mirrored: what is made of it is not seen"
+            }
+            ior if !(0.4..=4.5).contains(&ior) => "light is bent as by nothing that there is",
+            _ => return None,
+        };
+        let help = "water has 1.33, glass 1.5, diamond 2.4: `specularIor 1.5`";
+        let diagnostic = Diagnostic::warning(message).effect(effect).help(help);
+        let diagnostic = diagnostic.fix_at(scout.value(written.span, &["specularIor"]), "1.5");
+        Some(Finding::from(scout.at_value(diagnostic, written.span, &["specularIor"])))
+    };
+    layers(scout).into_iter().filter_map(say).collect()
+}
+
+/// Surfaces of which nothing is there.
+pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
+        if m.opacity > 0.01 {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!("material {number} has the `opacity` {}", number_word(m.opacity)))
+            .effect("what is made of it is not there: light goes through as if nothing were")
+            .help("`opacity` is the share of the surface that is there; 1 is all of it");
+        let value = scout.value(written.span, &["opacity"]);
+        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "1"), written.span, &["opacity"])))
+    };
+    layers(scout).into_iter().filter_map(say).collect()
+}

@@ -1,0 +1,254 @@
+//! Lenses and eyes: focus, aperture, shift, separation; and what is seen from its edge.
+
+use super::finding::{Finding, number};
+use super::probes::{Probe, ProbeHit};
+use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
+use durer_diag::Diagnostic;
+use durer_render::world::Geometry;
+use durer_scene::camera::{Camera, Projection, ThinLensCamera};
+use durer_scene::math::{Aabb, Vec3, fp};
+use durer_scene::shape::Primitive;
+
+/// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
+const MAX_BLUR: f32 = 0.08;
+/// What becomes a smaller disc looks sharp.
+const SHARP: f32 = 0.02;
+/// No lens is wider than this share of the distance at which it is sharp.
+const WIDEST: f32 = 0.4;
+/// And few are wider than this share.
+const FITTING: f32 = 0.12;
+/// Eyes that are further apart than this share of what they look at see different things.
+const FURTHEST: f32 = 0.5;
+
+/// The discs that what is seen becomes, as shares of the picture's larger side, and its depths.
+fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
+    let forward = scout.world().camera_frame().forward;
+    let depth = |(probe, seen): (&Probe, &ProbeHit)| seen.t * probe.ray.dir.dot(forward);
+    let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
+    let width = 2.0 * (sine / cosine) as f32;
+    let blur = |z: f32| camera.aperture * (z - camera.focus_distance).abs() / (camera.focus_distance * z * width);
+    scout.seen().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
+}
+
+/// A lens that blurs all that is seen.
+pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
+    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
+    let all = blurs(scout, camera);
+    let depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
+    let least = all.iter().map(|(blur, _)| *blur).fold(f32::INFINITY, f32::min);
+    if !wide_aperture(scout).is_empty() || depths.is_empty() || least < MAX_BLUR {
+        return Vec::new();
+    }
+    let mut sorted = depths;
+    sorted.sort_by(f32::total_cmp);
+    let middle = number(sorted[sorted.len() / 2]);
+    let message = format!(
+        "nothing is sharp: the lens is sharp at {}, and all that is seen is {} and more away",
+        number(camera.focus_distance),
+        number(sorted[0])
+    );
+    let diagnostic = Diagnostic::warning(message)
+        .effect(format!("every point is a disc of at least {:.0} % of the picture's width", 100.0 * least))
+        .help(format!("`focusDistance {middle}` is where most things are; a smaller `aperture` blurs less"));
+    let span = scout.subject.scene.camera_span;
+    vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
+}
+
+/// An opening that no lens has: everything but one plane is blurred away.
+pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
+    let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
+    let all = blurs(scout, camera);
+    let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
+    // An opening that would do where most things are is sharp at the wrong place.
+    let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
+    depths.sort_by(f32::total_cmp);
+    let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < FITTING * middle);
+    if all.is_empty() || camera.aperture < WIDEST * camera.focus_distance || sharp * 10 > all.len() || fits {
+        return Vec::new();
+    }
+    let mut sizes: Vec<f32> = all.iter().map(|(blur, _)| *blur).collect();
+    sizes.sort_by(f32::total_cmp);
+    let usual = number(0.02 * camera.focus_distance);
+    let message = format!(
+        "the `aperture` is {}, and the lens is sharp at {}",
+        number(camera.aperture),
+        number(camera.focus_distance)
+    );
+    let diagnostic = Diagnostic::warning(message)
+        .effect(format!(
+            "a point becomes a disc of {:.0} % of the picture's width: all is a blur",
+            100.0 * sizes[sizes.len() / 2]
+        ))
+        .help(format!(
+            "it is the diameter of the opening in units of the scene, and no f-number: the focal length over that. \
+             `aperture {usual}`, say"
+        ));
+    let span = scout.subject.scene.camera_span;
+    let diagnostic = diagnostic.fix_at(scout.value(span, &["aperture"]), usual);
+    vec![Finding::from(scout.at_value(diagnostic, span, &["aperture"])).whole(true)]
+}
+
+/// A film that is shifted so far that all is beside the picture.
+pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
+    let Camera::ThinLens(camera) = scout.world().camera() else { return None };
+    let span = scout.subject.scene.camera_span;
+    let fields = [("shiftRight", camera.shift_right), ("shiftUp", camera.shift_up)];
+    let (word, shift) =
+        fields.into_iter().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).filter(|(_, s)| s.abs() > 0.5)?;
+    let to = middle - camera.center;
+    let forward = to.dot(scout.world().camera_frame().forward);
+    let (sine, cosine) = fp::sin_cos_degrees(f64::from(0.5 * camera.angle));
+    let across = (to - forward * scout.world().camera_frame().forward).length() / forward.max(1e-6);
+    (forward > 0.0 && across < (sine / cosine) as f32).then(|| {
+        let diagnostic = Diagnostic::warning(format!(
+            "the film is shifted past everything: `{word} {}`",
+            number(shift)
+        ))
+        .effect("what the lens looks at is beside the picture")
+        .help("it is a part of half the picture's larger side: 1 moves the middle to the edge; write 0, or 0.3, say");
+        let value = scout.value(span, &[word]);
+        scout.at_value(diagnostic.fix_at(value, "0"), span, &[word])
+    })
+}
+
+/// Eyes too far from each other.
+pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let (separation, target) = match world.camera() {
+        Camera::Stereo(camera) => (camera.separation, Some(camera.convergence)),
+        Camera::Cave(camera) => (camera.separation, None),
+        Camera::Cylindrical(camera) => (camera.separation, None),
+        Camera::Equirectangular(camera) => (camera.separation, None),
+        _ => return Vec::new(),
+    };
+    let span = scout.subject.scene.camera_span;
+    if scout.value(span, &["separation"]).is_none() {
+        return Vec::new();
+    }
+    let eye = world.camera().pose().center;
+    let mut depths: Vec<f32> = scout.seen().map(|(probe, seen)| (probe.ray.at(seen.t) - eye).length()).collect();
+    depths.sort_by(f32::total_cmp);
+    let bounds = world.bounds();
+    let away = if bounds.is_empty() { f32::INFINITY } else { (bounds.center() - eye).length() };
+    let middle = depths.get(depths.len() / 2).copied().unwrap_or(away).min(away).min(target.unwrap_or(f32::INFINITY));
+    if !middle.is_finite() || separation < FURTHEST * middle || middle <= 0.0 {
+        return Vec::new();
+    }
+    let millimetres = (50.0..=80.0).contains(&separation);
+    let usual = number(if millimetres { separation / 1000.0 } else { middle / 30.0 });
+    let diagnostic = Diagnostic::warning(format!(
+        "the eyes are {} apart, and look at what is {} away",
+        number(separation),
+        number(middle)
+    ))
+    .effect("each sees something else: no two pictures of it make one")
+    .help(format!(
+        "`separation` is in units of the scene{}; a 30th of the distance is usual: `separation {usual}`, say",
+        if millimetres { ", and this looks like millimetres" } else { "" }
+    ));
+    let diagnostic = diagnostic.fix_at(scout.value(span, &["separation"]), usual);
+    vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
+}
+
+/// Planes that are seen from their edge, which is to say not at all.
+pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
+    let orthographic = matches!(world.camera(), Camera::Orthographic(_));
+    if !orthographic && !super::visibility::has_eye(scout) {
+        return Vec::new();
+    }
+    let things = world.bounds();
+    let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
+    let mut found = Vec::new();
+    for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_SOUGHT) {
+        let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
+        let on =
+            object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
+        let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+        let off = (eye - on).dot(n);
+        let edge = if orthographic { forward.dot(n).abs() < 1e-5 } else { off.abs() < 1e-5 * size };
+        if !edge || scout.visibilities()[number] == Visibility::Seen {
+            continue;
+        }
+        let name = scout.object(number as u32);
+        let diagnostic = match orthographic {
+            true => Diagnostic::note(format!("the camera looks along the {name}"))
+                .help("it is a line at most, seen so: tilt the camera's `direction` towards it"),
+            false => {
+                // To the side where things are.
+                let side = if (things.center() - on).dot(n) < 0.0 { -n } else { n };
+                let raised = super::finding::vector(eye + 0.2 * size * side);
+                let value = scout.value(scout.subject.scene.camera_span, &["center"]);
+                Diagnostic::warning(format!("the camera lies in the {name}"))
+                    .help(format!("raise it: `center {raised}`, say"))
+                    .fix_at(value, raised)
+            }
+        };
+        let diagnostic = diagnostic.effect("the plane is seen from its edge, which is to say not at all");
+        let diagnostic = diagnostic.related(scout.object_span(number as u32), "this plane");
+        found.push(Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])));
+    }
+    found
+}
+
+/// A scene so far from the origin that numbers have no digits left for its shapes.
+pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let sized = |b: Aabb| {
+        (!b.is_empty() && b.size().is_finite()).then(|| (b.center().abs().max_element(), b.size().max_element()))
+    };
+    let all: Vec<(f32, f32)> = world.objects().iter().filter_map(|object| sized(object.bounds()?)).collect();
+    let eye = world.camera().pose().center.abs().max_element();
+    // Both the camera and most things: what stands far away alone is something else.
+    let lost = |far: f32, size: f32| far * f32::EPSILON > size / 500.0;
+    let many = all.iter().filter(|(far, size)| lost(*far, *size)).count();
+    if many * 2 <= all.len() || all.is_empty() {
+        return Vec::new();
+    }
+    let mut sizes: Vec<f32> = all.iter().map(|(_, size)| *size).collect();
+    sizes.sort_by(f32::total_cmp);
+    let size = sizes[sizes.len() / 2];
+    let far = all.iter().map(|(far, _)| *far).fold(eye, f32::max);
+    if !lost(eye, size.max(1e-6)) {
+        return Vec::new();
+    }
+    let diagnostic = Diagnostic::warning(format!(
+        "the scene lies {} from the origin, and its things are {} wide",
+        number(far),
+        number(size)
+    ))
+    .effect(format!(
+        "numbers of that size have steps of {}: shapes are rounded away, and surfaces are rough",
+        number(far * f32::EPSILON)
+    ))
+    .help("take the same number off all coordinates, the camera's too, so that the scene lies about the origin");
+    vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
+}
+
+/// A scene smaller than the distance at which an old program lets shadow rays begin.
+pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let Some(epsilon) = world.rules().epsilon else { return Vec::new() };
+    let settings = &scout.subject.job.settings;
+    let mut sizes: Vec<f32> = world
+        .objects()
+        .iter()
+        .filter_map(|object| Some(object.bounds()?.size().max_element()))
+        .filter(|size| *size > 0.0)
+        .collect();
+    sizes.sort_by(f32::total_cmp);
+    let Some(&middle) = sizes.get(sizes.len() / 2) else { return Vec::new() };
+    if middle > 10.0 * epsilon || !settings.shadows && settings.bounces == 0 {
+        return Vec::new();
+    }
+    let factor = number([1e2, 1e3, 1e4, 1e5, 1e6].into_iter().find(|factor| factor * middle > 0.5).unwrap_or(1e7));
+    let diagnostic = Diagnostic::warning(format!("the things in this scene are {} wide", number(middle)))
+        .effect(format!(
+            "this year's program lets shadow rays and mirrored rays begin {} from the surface: shadows and mirrors are lost",
+            number(epsilon)
+        ))
+        .help(format!("make the whole scene larger, about {factor} times, with camera and lights"));
+    vec![Finding::from(diagnostic.at(scout.subject.scene.camera_span)).whole(true)]
+}

@@ -1,0 +1,318 @@
+//! Lights that do nothing to what is seen, or less than was meant.
+
+use super::finding::{Finding, percent, vector};
+use super::probes::Lit;
+use super::scene_probe::SceneProbe;
+use super::verdict::{GRAZING, MAX_JUDGED, VISIBLE, Verdict, most_common};
+use super::within::around;
+use durer_diag::{Diagnostic, Severity, Span};
+use durer_formats::course::place::{block, section};
+use durer_scene::camera::Projection;
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::math::Vec3;
+use durer_scene::scene::Spanned;
+
+/// A light as it is written.
+pub(super) fn written<'s>(scout: &SceneProbe<'s>, light: usize) -> Option<&'s Spanned<Light>> {
+    scout.subject.scene.lights.as_ref()?.get(light)
+}
+
+/// Where a light is written.
+pub(super) fn place(scout: &SceneProbe, light: usize) -> Option<Span> {
+    Some(written(scout, light)?.span)
+}
+
+/// Whether no light adds anything to what is seen.
+pub(super) fn all_fail(scout: &SceneProbe) -> bool {
+    let verdicts = scout.verdicts();
+    !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != Verdict::Works)
+}
+
+/// A warning about a light that adds nothing.
+pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
+    let span = place(scout, light)?;
+    let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
+        (true, false) => "no light reaches what is seen: all surfaces are black",
+        (true, true) => "no light reaches what is seen: surfaces show ambient light alone, flat and dark",
+        (false, _) => "it adds nothing to the picture",
+    };
+    Some((Diagnostic::warning(message).at(span).effect(effect), span))
+}
+
+/// The findings of one kind, each made of a light's number and its verdict.
+pub(super) fn each(scout: &SceneProbe, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
+    let whole = all_fail(scout);
+    let verdicts = scout.verdicts().iter().enumerate();
+    verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
+}
+
+/// Lights that do something only because nothing casts shadows: an object is around them.
+fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
+    let shadows = scout.subject.job.settings.shadows;
+    let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
+    let say = |(light, lamp): (usize, &Light)| {
+        let Light::Point(point) = lamp else { return None };
+        if scout.verdicts()[light] != Verdict::Works {
+            return None;
+        }
+        let object = *around(scout.world(), point.position).first()?;
+        let span = place(scout, light)?;
+        let note = Diagnostic::note(format!("this light is inside the {}", scout.object(object)))
+            .effect("that object has no light from it, and with shadows nothing else has")
+            .related(scout.object_span(object), "around the light")
+            .help("move one of them, unless the object stands for a lamp");
+        Some(Finding::from(scout.at_value(note, span, &["position"])))
+    };
+    lights.filter_map(say).collect()
+}
+
+pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = enclosed(scout);
+    found.extend(each(scout, |light, verdict| {
+        let Verdict::Inside(object) = verdict else { return None };
+        let name = scout.object(object);
+        let (diagnostic, span) = useless(scout, light, format!("this light is inside the {name}"))?;
+        let bounds = scout.world().objects()[object as usize].bounds()?;
+        let above = Vec3::new(bounds.center().x, bounds.max.y + bounds.size().max_element(), bounds.center().z);
+        let diagnostic =
+            scout.at_value(diagnostic, span, &["position"]).related(scout.object_span(object), "around the light");
+        Some(diagnostic.help(format!("move it out: `position {}` is above it, say", vector(above))))
+    }));
+    found
+}
+
+pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        let Verdict::Blocked(object) = verdict else { return None };
+        let name = scout.object(object);
+        let message = format!("the {name} keeps this light off all that is seen");
+        let (diagnostic, _) = useless(scout, light, message)?;
+        let help = match (scout.world().objects()[object as usize].bounds(), &scout.world().lights()[light]) {
+            (None, Light::Directional(_)) => {
+                "the light comes from behind the plane: turn its `direction`, which is where light goes"
+            }
+            (None, _) => "the light is behind the plane: move it to the other side",
+            (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
+            (Some(_), _) => "move the light, or what is in its way",
+        };
+        Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
+    })
+}
+
+/// Where lights together reach a smaller share of what is seen, most of it is in the dark.
+const MOSTLY_DARK: f32 = 0.33;
+/// Where less than this share of the strongest light arrives of one, it is there to brighten
+/// shadows.
+const WEAK: f32 = 0.15;
+
+/// Where they reach less than this, only a rim is lit.
+const RIM: f32 = 0.2;
+/// And here nearly all.
+const NEARLY_ALL_DARK: f32 = 0.25;
+
+/// The lights that work, without those of which far less arrives than of the strongest.
+fn main_lights(scout: &SceneProbe) -> Vec<usize> {
+    let strength = |light: usize| {
+        let arrives = scout.seen().filter_map(|(_, seen)| Some(seen.by(light)?.arrives.max_element()));
+        arrives.filter(|light| light.is_finite()).fold(0.0, f32::max)
+    };
+    let working = (0..scout.verdicts().len()).filter(|&light| scout.verdicts()[light] == Verdict::Works);
+    let all: Vec<(usize, f32)> = working.take(MAX_JUDGED).map(|light| (light, strength(light))).collect();
+    let most = all.iter().map(|(_, strength)| *strength).fold(0.0, f32::max);
+    all.into_iter().filter(|(_, strength)| *strength >= WEAK * most).map(|(light, _)| light).collect()
+}
+
+/// Lights that do reach something, but little, since most of what is seen faces away from them.
+fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
+    let working = main_lights(scout);
+    let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
+    let is_main = |lit: &&Lit| working.contains(&lit.light);
+    let bright = |lit: &Lit| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
+    // A back that is not shaded as a front is no light's fault.
+    let shaded = scout.subject.job.settings.shade_back;
+    for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
+        all += 1;
+        reached += usize::from(seen.lit.iter().any(&bright));
+        let faces_away = seen.lit.iter().filter(is_main).all(|lit| lit.cosine <= GRAZING);
+        away += usize::from(faces_away);
+        grazed += usize::from(faces_away && seen.lit.iter().filter(is_main).any(is_grazing));
+    }
+    // What is black of itself, or in shadow, tells nothing of where the lights are.
+    let reaches = reached as f32 > MOSTLY_DARK * all as f32;
+    if all == 0 || working.is_empty() || reaches || away * 2 < all - reached || super::colors::all_black(scout) {
+        return Vec::new();
+    }
+    let Some(span) = place(scout, working[0]) else { return Vec::new() };
+    if grazed * 2 > away {
+        return grazing(scout, &working).into_iter().map(|diagnostic| Finding::from(diagnostic).whole(true)).collect();
+    }
+    let which = if working.len() == 1 { "this light" } else { "the lights" };
+    let message = format!("{} of what is seen faces away from {which}", percent(away, all));
+    let mut diagnostic = Diagnostic::warning(message)
+        .effect(match scout.world().ambient().max_element() > VISIBLE {
+            true => "most of the picture shows ambient light alone, flat and dark",
+            false => "most of the picture is black",
+        })
+        .help("the light is behind what is seen: `direction` is where light goes, `position` where it is");
+    diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
+    // All lights turned round together are meant to be where they came from.
+    for &light in &working {
+        if let Some(Spanned { value: Light::Directional(light), span }) = written(scout, light) {
+            diagnostic = diagnostic.fix_at(scout.value(*span, &["direction"]), vector(-light.direction));
+        }
+    }
+    // A crescent of a round thing may well be meant; of a floor no light at all is not.
+    let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
+    let floor = scout.seen().any(|(_, seen)| flat(seen.object));
+    let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
+    if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
+        diagnostic.severity = Severity::Note;
+        // A moon is left as it is; a rim of light is more likely a sign too many.
+        if reached as f32 > RIM * all as f32 {
+            diagnostic.fix.clear();
+        }
+        return vec![Finding::from(diagnostic)];
+    }
+    vec![Finding::from(diagnostic).whole((reached as f32) < NEARLY_ALL_DARK * all as f32)]
+}
+
+fn is_grazing(lit: &Lit) -> bool {
+    lit.cosine.abs() <= 1e-3
+}
+
+/// The first of some lights, which only goes along what is seen.
+fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
+    let light = *lights.iter().find(|light| {
+        let all = scout.seen().filter_map(|(_, seen)| seen.by(**light));
+        let (grazed, count) =
+            all.fold((0, 0), |(grazed, count), lit| (grazed + usize::from(is_grazing(lit)), count + 1));
+        grazed * 4 > count
+    })?;
+    let (diagnostic, span) = useless(scout, light, "this light only grazes what is seen: N · L is 0 there".into())?;
+    let objects: Vec<u32> =
+        scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(is_grazing)).map(|(_, seen)| seen.object).collect();
+    let surface = most_common(&objects)?;
+    let diagnostic = diagnostic.related(scout.object_span(surface), "it goes along this");
+    let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
+    let at = scout.world().intersect(&probe.ray, &mut ())?;
+    let n = if at.inside() { -at.surface.n_geo } else { at.surface.n_geo };
+    match &written(scout, light)?.value {
+        Light::Directional(lamp) => {
+            let tilted = vector(lamp.direction - 0.7 * lamp.direction.length() * n);
+            let value = scout.value(span, &["direction"]);
+            let help = format!("`direction` is where light goes: `direction {tilted}` falls on the surface");
+            Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
+        }
+        lamp => {
+            let place = lamp.place().map(|(place, _)| place);
+            let from = match lamp {
+                Light::Point(point) => point.position,
+                _ => place?,
+            };
+            let eye = scout.world().camera().pose().center;
+            let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
+            let value = scout.value(span, &["position"]);
+            let help = format!("the light lies in the plane of that surface: raise it, to `position {raised}`, say");
+            Some(scout.at_value(diagnostic.fix_at(value, raised), span, &["position"]).help(help))
+        }
+    }
+}
+
+/// Lights that lie in a plane that is seen, or go exactly along it: it gets nothing of them.
+fn along_plane(scout: &SceneProbe) -> Vec<Finding> {
+    let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
+    let is_along = |light: &usize| {
+        let all = scout.seen().filter(|(_, seen)| flat(seen.object)).filter_map(|(_, seen)| seen.by(*light));
+        let (count, along) = all.fold((0, 0), |(n, along), lit| (n + 1, along + usize::from(is_grazing(lit))));
+        count * 5 > scout.seen().count() && along * 10 > count * 9
+    };
+    main_lights(scout)
+        .into_iter()
+        .filter(is_along)
+        .filter_map(|light| grazing(scout, &[light]))
+        .map(Finding::from)
+        .collect()
+}
+
+pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = mostly_dark(scout);
+    if found.is_empty() {
+        found = along_plane(scout);
+    }
+    found.extend(each(scout, |light, verdict| {
+        if verdict != Verdict::Behind {
+            return None;
+        }
+        let lit: Vec<&Lit> = scout.seen().filter_map(|(_, seen)| seen.by(light)).collect();
+        let away = lit.iter().filter(|lit| lit.cosine <= 1e-3).count();
+        let turned = lit.iter().filter(|lit| lit.cosine < -1e-3).count();
+        if turned * 2 < away {
+            return grazing(scout, &[light]);
+        }
+        let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let diagnostic = match &written(scout, light)?.value {
+            Light::Directional(written) => {
+                let turned = vector(-written.direction);
+                let help = format!(
+                    "`direction` is where the light goes, not where it is: `direction {turned}` lights this side"
+                );
+                let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
+                scout.at_value(fixed, span, &["direction"]).help(help)
+            }
+            _ => {
+                let eye = scout.world().camera().pose().center;
+                let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
+                scout.at_value(diagnostic, span, &["position"]).help(help)
+            }
+        };
+        // One of several lights may well be meant for another side.
+        Some(if all_fail(scout) { diagnostic } else { Diagnostic { severity: Severity::Note, ..diagnostic } })
+    }));
+    found
+}
+
+pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
+    each(scout, |light, verdict| {
+        if verdict != Verdict::Cancelled || super::colors::all_black(scout) {
+            return None;
+        }
+        let message = "what this light shines on gives back none of its colour".to_string();
+        let (diagnostic, span) = useless(scout, light, message)?;
+        let color = vector(scout.world().lights()[light].color());
+        let help = format!("light and surface are multiplied, channel by channel: this light is {color}");
+        let material = scout.seen().next().map(|(_, seen)| seen.material)?;
+        let diagnostic = match scout.subject.scene.materials.get(material as usize) {
+            Some(material) => diagnostic.related(material.span, "a material that it shines on"),
+            None => diagnostic,
+        };
+        Some(scout.at_value(diagnostic, span, &["color"]).help(help))
+    })
+}
+
+/// Lights that are written twice.
+pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
+    let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
+    let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
+        let first = lights[..i].iter().find(|first| first.value == light.value)?;
+        Some(Diagnostic::warning("this light is written twice").at(light.span).related(first.span, "the same"))
+    });
+    let say = |diagnostic: Diagnostic| {
+        let diagnostic = diagnostic.effect("both add up: its light counts twice");
+        Finding::from(without(scout, diagnostic.help("leave one out")))
+    };
+    pairs.map(say).collect()
+}
+
+/// Takes the light that a finding is about out of the file, and out of the count of lights.
+fn without(scout: &SceneProbe, diagnostic: Diagnostic) -> Diagnostic {
+    let Some(own) = diagnostic.span else { return diagnostic };
+    let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };
+    let Some(whole) = block(bytes, own) else { return diagnostic };
+    let count = section(bytes, own.file, "Lights").and_then(|lights| scout.value(lights, &["numLights"]));
+    let left = scout.world().lights().len() - 1;
+    match count {
+        Some(count) => diagnostic.fix(whole, "").fix(count, left.to_string()),
+        None => diagnostic.fix(whole, ""),
+    }
+}

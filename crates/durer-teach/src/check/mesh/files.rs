@@ -1,0 +1,156 @@
+//! The mesh files of a scene, and what shows them.
+
+use super::normals::Given;
+use super::topology::Topology;
+use crate::check::finding::vector;
+use crate::check::probes::ProbeGrid;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_formats::read_mesh;
+use durer_render::world::{Material, Object as Placed};
+use durer_scene::camera::Projection;
+use durer_scene::describe::FileName;
+use durer_scene::math::Aabb;
+use durer_scene::scene::{Group, Node, Object};
+use durer_scene::shape::MeshData;
+
+/// Files of more bytes are not looked into: the check is to take no longer than the eye.
+const MAX_BYTES: usize = 64 << 20;
+/// A share of turned or odd triangles that modellers leave behind, and nobody sees.
+const NEGLIGIBLE: f32 = 0.002;
+
+/// A mesh file, and the objects that show it.
+#[derive(Debug)]
+pub(in crate::check) struct MeshFile<'s> {
+    pub(super) name: &'s FileName,
+    /// Its number among the files that were read.
+    pub(super) file: u32,
+    pub(super) objects: Vec<&'s Object>,
+    pub(super) data: MeshData,
+    pub(super) topology: Topology,
+    /// The normals that the file brings, where they count.
+    pub(super) given: Option<Given>,
+}
+
+/// All mesh files of a scene.
+pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
+    let mut uses = Uses::new();
+    if let Some(root) = &grid.subject.scene.root {
+        collect(root, &mut uses);
+    }
+    uses.into_iter().filter_map(|(name, objects)| read(grid, name, objects)).collect()
+}
+
+type Uses<'s> = Vec<(&'s FileName, Vec<&'s Object>)>;
+
+fn collect<'s>(group: &'s Group, uses: &mut Uses<'s>) {
+    group.objects.iter().for_each(|object| collect_object(object, uses));
+}
+
+fn collect_object<'s>(object: &'s Object, uses: &mut Uses<'s>) {
+    match &object.node {
+        Node::Group(group) => collect(group, uses),
+        Node::Transform(_, inner) => collect_object(inner, uses),
+        Node::Solid(_, parts) => parts.iter().for_each(|part| collect_object(part, uses)),
+        Node::Mesh(mesh) => match uses.iter_mut().find(|(name, _)| name.path == mesh.obj_file.path) {
+            Some((_, objects)) => objects.push(object),
+            None => uses.push((&mesh.obj_file, vec![object])),
+        },
+        Node::Primitive(_) | Node::HeightField(_) | Node::Voxels(..) => {}
+    }
+}
+
+fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) -> Option<MeshFile<'s>> {
+    let files = grid.subject.files;
+    let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
+    let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
+    // It was read before, and what is wrong with it was said.
+    let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
+    let topology = Topology::of(&data.positions, &data.triangles);
+    let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
+    Some(MeshFile { name, file, objects, data, topology, given })
+}
+
+impl MeshFile<'_> {
+    pub(super) fn is_beyond_notice(&self, count: usize) -> bool {
+        count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
+    }
+
+    /// The line of a triangle's face in a Wavefront file: a face of n corners is n - 2 triangles.
+    pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
+        let bytes = grid.subject.files.bytes(self.file)?;
+        let (mut start, mut before, mut found) = (0, 0, None);
+        for line in bytes.split_inclusive(|b| *b == b'\n') {
+            if line.starts_with(b"f ") || line.starts_with(b"f\t") {
+                let corners = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() - 1;
+                let here = before..before + corners.saturating_sub(2);
+                if here.contains(&(triangle as usize)) {
+                    let end = start + line.trim_ascii_end().len();
+                    found = Some(Span { file: self.file, start: start as u32, end: end as u32 });
+                }
+                before = here.end;
+            }
+            start += line.len();
+        }
+        found.filter(|_| before == self.data.triangles.len())
+    }
+
+    /// A warning about some of its triangles: at the first of them, or where the scene names the
+    /// file.
+    pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
+        let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
+        match self.face(grid, triangle) {
+            Some(span) => {
+                diagnostic.at(span).label("the first of them").related(self.name.span, "the mesh is shown here")
+            }
+            None => {
+                let corners = corners.map(vector).join(", ");
+                diagnostic.at(self.name.span).label(format!("triangle {triangle} is the first: {corners}"))
+            }
+        }
+    }
+
+    /// The first of its objects that is of glass.
+    pub(super) fn glass(&self, grid: &ProbeGrid) -> Option<&Object> {
+        let materials = grid.world().materials();
+        let refracts = |material: u32| match materials.get(material as usize) {
+            Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0 && phong.ior != 1.0,
+            _ => false,
+        };
+        self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
+    }
+
+    /// Its objects as they are placed in the world.
+    pub(super) fn placed<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w Placed> {
+        grid.world().objects().iter().filter(|object| self.is_shown_at(object.span))
+    }
+
+    /// Whether what is written at a place shows it.
+    pub(super) fn is_shown_at(&self, place: Span) -> bool {
+        self.objects.iter().any(|object| object.span.start == place.start)
+    }
+
+    /// Whether the camera is in it, as in a room: its walls face inwards by right.
+    pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
+        let eye = grid.world().camera().pose().center;
+        self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
+    }
+
+    /// Whether it is the inner wall of hollow glass: that faces inwards by right.
+    pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
+        let objects = grid.world().objects();
+        let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
+        self.placed(grid).filter_map(|object| Some((object, object.bounds()?))).any(|(inner, bounds)| {
+            let around = |other: &Placed| {
+                other.span.start != inner.span.start && other.bounds().is_some_and(|outer| holds(&outer, &bounds))
+            };
+            self.glass(grid).is_some() && objects.iter().any(|other| other.material == inner.material && around(other))
+        })
+    }
+
+    /// Whether it is closed and its normals, made or given, point inwards.
+    pub(super) fn is_inside_out(&self) -> bool {
+        let Topology { turned, volume, .. } = &self.topology;
+        let against = self.given.as_ref().is_some_and(Given::is_against_all);
+        self.topology.is_nearly_closed() && turned.is_empty() && *volume != 0.0 && (*volume < 0.0) != against
+    }
+}

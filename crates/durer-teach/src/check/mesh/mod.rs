@@ -1,0 +1,294 @@
+//! Meshes: their triangles, edges and normals, file by file.
+
+pub(super) mod files;
+mod normals;
+pub(super) mod topology;
+
+use super::finding::{Finding, counted, percent, vector};
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Span};
+use durer_render::world::{Material, Object as Placed};
+use durer_scene::dialect::Compat;
+use files::MeshFile;
+use topology::Topology;
+
+/// A share of triangles without area that is more than the poles of a turned body have.
+const MANY_FLAT: f32 = 0.03;
+
+/// Triangles without area.
+pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let (flat, all) = (&mesh.topology.degenerate, mesh.data.triangles.len());
+        let Some(&first) = flat.first() else { continue };
+        let message =
+            format!("{} of {all} of `{}` have no area", counted(flat.len(), "triangle", "triangles"), mesh.name.path);
+        let mut diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first);
+        if (flat.len() as f32) < MANY_FLAT * all as f32 {
+            diagnostic.severity = durer_diag::Severity::Note;
+        }
+        let diagnostic = diagnostic
+            .effect("they are not seen; where they should fill something there is a hole")
+            .help("do two corners have the same number, or the same place? Take them out, or mend their corners");
+        found.push(Finding::from(diagnostic).whole(flat.len() == all));
+    }
+    found
+}
+
+/// Holes and crowded edges where a mesh must have an inside.
+pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = flat_glass(scout);
+    for mesh in scout.meshes() {
+        let Some(glass) = mesh.glass(scout) else { continue };
+        let Topology { open, crowded, some_edge, .. } = &mesh.topology;
+        let Some([p, q]) = some_edge.map(|edge| edge.map(vector)) else { continue };
+        let what = match (open, crowded) {
+            (0, n) => format!("has {} with more than two triangles", counted(*n, "edge", "edges")),
+            (n, 0) => format!("is open: {} with one triangle only", counted(*n, "edge", "edges")),
+            (n, m) => format!("is open: {} with one triangle, {m} with more than two", counted(*n, "edge", "edges")),
+        };
+        let diagnostic = Diagnostic::warning(format!("the mesh `{}` is of glass, but {what}", mesh.name.path))
+            .at(glass.span)
+            .effect("a ray that goes in through a hole never comes out: refraction is wrong behind it")
+            .help(format!("close it; one such edge goes from {p} to {q}"));
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Opaque meshes with holes through which their inside is seen.
+pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
+        let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
+        let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
+        // A sheet is seen from one side, or nearly so.
+        if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
+            continue;
+        }
+        let edges = counted(mesh.topology.open, "edge", "edges");
+        let message = format!("`{}` has holes: {edges} with one triangle only", mesh.name.path);
+        let diagnostic = Diagnostic::note(message)
+            .at(mesh.name.span)
+            .effect("its inside is seen through them, from behind")
+            .help("are faces missing in the file?");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Flat things of glass: what has no inside.
+pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
+    use durer_render::world::Geometry;
+    use durer_scene::shape::Primitive;
+    let world = scout.world();
+    let glass = |object: &&Placed| {
+        let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
+        world.materials().get(object.material as usize).is_some_and(refracts)
+    };
+    let what = |object: &Placed| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(_)) => Some("plane"),
+        Geometry::Primitive(Primitive::Triangle(_)) => Some("triangle"),
+        Geometry::Primitive(Primitive::Disc(_)) => Some("disc"),
+        Geometry::Primitive(Primitive::Rectangle(_)) => Some("rectangle"),
+        _ => None,
+    };
+    let flat: Vec<(&Placed, &str)> =
+        world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
+    // Triangles that close a body are a body.
+    let corners: Vec<_> = flat
+        .iter()
+        .filter_map(|(object, _)| match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(t)) => Some(t.corners().map(|corner| object.world_point(corner))),
+            _ => None,
+        })
+        .collect();
+    let positions: Vec<_> = corners.iter().flatten().copied().collect();
+    let triangles: Vec<[u32; 3]> = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+    let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
+    let open = |(_, what): &&(&Placed, &str)| !(body && *what == "triangle");
+    let say = |(object, what): &(&Placed, &str)| {
+        let mut diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
+            .at(object.span)
+            .effect(
+                "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
+            )
+            .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
+        // The surface of a lake is flat by right.
+        if *what != "triangle" && !world.rules().is_official() {
+            diagnostic.severity = durer_diag::Severity::Note;
+        }
+        Finding::from(diagnostic)
+    };
+    flat.iter().filter(open).take(3).map(say).collect()
+}
+
+/// Mesh files with faces of more than three corners: name, how many, of how many, and the first of
+/// them.
+pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
+    let one = |mesh: &MeshFile<'s>| {
+        let bytes = scout.subject.files.bytes(mesh.file)?;
+        let (mut start, mut all, mut large, mut first) = (0, 0, 0, None);
+        for line in bytes.split_inclusive(|b| *b == b'\n') {
+            if line.starts_with(b"f ") || line.starts_with(b"f\t") {
+                all += 1;
+                if line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count() > 4 {
+                    large += 1;
+                    let end = start + line.trim_ascii_end().len();
+                    first.get_or_insert(Span { file: mesh.file, start: start as u32, end: end as u32 });
+                }
+            }
+            start += line.len();
+        }
+        Some((&*mesh.name.path, large, all, first?))
+    };
+    scout.meshes().iter().filter_map(one).collect()
+}
+
+/// Mesh files of which the year's program loses the last line, or gives normals to other vertices
+/// than the file says.
+pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
+    let rules = scout.world().rules();
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let Some(bytes) = scout.subject.files.bytes(mesh.file).filter(|_| mesh.name.path.ends_with(".obj")) else {
+            continue;
+        };
+        let last = bytes.rsplit(|b| *b == b'\n').next().unwrap_or_default();
+        if rules.has(Compat::LostLastLine) && (last.starts_with(b"f ") || last.starts_with(b"v ")) {
+            let start = (bytes.len() - last.len()) as u32;
+            let span = Span { file: mesh.file, start, end: bytes.len() as u32 };
+            let end = Span { start: span.end, ..span };
+            let diagnostic = Diagnostic::warning(format!("the last line of `{}` has no end", mesh.name.path))
+                .at(span)
+                .related(mesh.name.span, "the mesh is shown here")
+                .effect("this year's program loses that line: a face is missing, and there is a hole")
+                .help("end the file with an end of line")
+                .fix(end, "\n");
+            found.push(Finding::from(diagnostic));
+        }
+        if rules.has(Compat::NormalsByVertex)
+            && let Some(span) = other_normal(bytes, mesh.file)
+        {
+            let diagnostic = Diagnostic::warning(format!("faces of `{}` give corners normals of other numbers than their vertices", mesh.name.path))
+                .at(span)
+                .label("the first of them")
+                .related(mesh.name.span, "the mesh is shown here")
+                .effect("this year's program takes normal i for vertex i, whatever faces say: the shading is wrong")
+                .help("write one `vn` for each `v`, in the same order, and faces as `f 1//1 2//2 3//3`; or leave the `vn` out");
+            found.push(Finding::from(diagnostic));
+        }
+    }
+    found
+}
+
+/// The first corner of a face whose normal has another number than its vertex.
+fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
+    let mut start = 0;
+    for line in bytes.split_inclusive(|b| *b == b'\n') {
+        if line.starts_with(b"f ") {
+            let text = String::from_utf8_lossy(line);
+            let odd = |corner: &str| {
+                let mut parts = corner.split('/');
+                matches!((parts.next(), parts.nth(1)), (Some(v), Some(n)) if !n.is_empty() && v != n)
+            };
+            if text.split_ascii_whitespace().skip(1).any(odd) {
+                let end = start + line.trim_ascii_end().len();
+                return Some(Span { file, start: start as u32, end: end as u32 });
+            }
+        }
+        start += line.len();
+    }
+    None
+}
+
+/// Triangles that wind the other way than their neighbours.
+pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes().iter().filter(|mesh| mesh.given.is_none()) {
+        let (turned, all) = (&mesh.topology.turned, mesh.data.triangles.len());
+        let Some(&first) = turned.first().filter(|_| !mesh.is_beyond_notice(turned.len())) else { continue };
+        let message = format!(
+            "{} of {all} of `{}` wind the other way than their neighbours",
+            counted(turned.len(), "triangle", "triangles"),
+            mesh.name.path
+        );
+        let diagnostic = mesh
+            .at_triangle(scout, Diagnostic::warning(message), first)
+            .effect("their normals point to the other side: dark or wrongly shaded patches")
+            .help("exchange two corners of each of them");
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Closed meshes whose normals point inwards.
+pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in
+        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout))
+    {
+        let by_file = mesh.given.is_some();
+        let seen = scout
+            .seen()
+            .filter(|(_, seen)| mesh.objects.iter().any(|o| scout.object_span(seen.object).start == o.span.start));
+        let most = seen.count() * 2 > scout.seen().count();
+        let diagnostic = Diagnostic::warning(format!("the normals of `{}` point inwards", mesh.name.path))
+            .at(mesh.name.span)
+            .effect("a tracer that does not turn them shades it as from inside, black; as glass it bends light the wrong way")
+            .help(if by_file { "turn its `vn` vectors round" } else { "let its faces go round counter-clockwise, seen from outside" });
+        found.push(Finding::from(diagnostic).whole(most));
+    }
+    found
+}
+
+/// Whether an object shows a mesh that is inside out, which is told of as such.
+pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
+    let span = scout.object_span(object);
+    let turned =
+        scout.meshes().iter().filter(|mesh| mesh.is_inside_out() && !mesh.is_room(scout) && !mesh.is_hollow(scout));
+    turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
+}
+
+/// Normals in a file that contradict its faces, are missing on some, or are no directions.
+pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for mesh in scout.meshes() {
+        let Some(given) = &mesh.given else { continue };
+        let all = mesh.data.triangles.len();
+        let some = |list: &[u32]| list.first().copied().filter(|_| !mesh.is_beyond_notice(list.len()));
+        let mut say = |list: &[u32], first: u32, what: &str, effect: &str, help: &str| {
+            let message = format!("{} of the triangles of `{}` {what}", percent(list.len(), all), mesh.name.path);
+            let diagnostic = mesh.at_triangle(scout, Diagnostic::warning(message), first).effect(effect).help(help);
+            found.push(Finding::from(diagnostic));
+        };
+        if let Some(first) = some(&given.against) {
+            say(
+                &given.against,
+                first,
+                "have normals that point to the other side than their corners say",
+                "they are shaded as if seen from behind: dark, or lit from the wrong side",
+                "turn those `vn` round, or exchange two corners of the faces",
+            );
+        }
+        if let Some(first) = some(&given.missing) {
+            say(
+                &given.missing,
+                first,
+                "have no normals in the file, though others have",
+                "they look faceted, or differ from their neighbours",
+                "write faces as `f 1//1 2//2 3//3`, all of them or none",
+            );
+        }
+        if let Some(first) = some(&given.zero) {
+            say(
+                &given.zero,
+                first,
+                "have a normal of length 0",
+                "it is no direction: the shading there is wrong",
+                "a normal has length 1; write its direction",
+            );
+        }
+    }
+    found
+}

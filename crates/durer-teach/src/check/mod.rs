@@ -1,0 +1,189 @@
+//! What is wrong with a scene whose picture is black, white, empty or odd, and how to mend it.
+//!
+//! A [`SceneProbe`] sends a coarse grid of camera rays into the world and keeps what each found.
+//! The checks of the table [`CHECKS`] look at that, at the meshes and at the description. Every
+//! finding has a code that does not change, a place, an effect on the picture, a proposed change
+//! and, where that is mechanical, the edit of the scene's text.
+
+mod aim;
+mod air;
+mod beams;
+mod brightness;
+mod colors;
+mod exposure;
+mod extent;
+mod faces;
+mod facing;
+mod fading;
+mod finding;
+mod hidden;
+mod lamps;
+mod layers;
+mod lens;
+mod lights;
+mod mesh;
+mod names;
+mod numbers;
+mod objects;
+mod patterns;
+mod physical;
+pub mod picture;
+mod places;
+mod probes;
+mod repair;
+mod scene_probe;
+mod solid;
+mod table;
+#[cfg(test)]
+mod tests;
+mod unseen;
+mod verdict;
+mod view;
+mod visibility;
+mod within;
+mod words;
+mod year;
+
+use durer_diag::{Diagnostics, Severity};
+pub use finding::Finding;
+use finding::MAX_ALIKE;
+pub use probes::Subject;
+pub use repair::{Repaired, apply};
+pub use scene_probe::SceneProbe;
+pub use table::{CHECKS, Check, rank};
+
+/// Because of these nothing, or one thing alone, is seen.
+const EMPTIES: [&str; 7] =
+    ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
+
+/// What comes of some causes, and is not told beside them.
+const CONSEQUENCES: &[(&str, &[&str])] = &[
+    ("color-range", &["too-bright"]),
+    ("full-ambient", &["too-bright"]),
+    ("negative-color", &["too-dark", "light-cancelled"]),
+    ("pow-zero", &["too-bright"]),
+    ("light-twice", &["too-bright"]),
+    ("light-divides", &["not-finite"]),
+    ("no-falloff", &["not-finite", "light-divides"]),
+    ("below-plane", &["unseen", "seen-from-behind", "light-cancelled", "light-behind", "upside-down"]),
+    ("hidden-behind", &["upside-down"]),
+    ("degenerate-mesh", &["seen-from-behind"]),
+    ("squashed", &["all-missed", "too-small", "tiny", "out-of-scale", "empty-solid"]),
+    ("degenerate-triangle", &["all-missed", "unseen", "same-place"]),
+    ("dull-glass", &["black-material"]),
+    ("black-material", &["too-dark"]),
+    (
+        "far-origin",
+        &[
+            "unseen",
+            "tiny",
+            "hidden-behind",
+            "all-missed",
+            "degenerate-triangle",
+            "squashed",
+            "odd-normals",
+            "degenerate-mesh",
+        ],
+    ),
+    ("out-of-scale", &["unseen", "light-blocked", "tiny", "camera-inside", "seen-from-behind", "light-divides"]),
+    ("camera-inside", &["seen-from-behind", "light-inside", "light-behind", "light-blocked", "unseen"]),
+    ("degenerate-mesh", &["out-of-scale"]),
+    ("camera-away", &["light-cancelled", "light-behind", "light-blocked", "light-faint", "pattern-scale", "edge-on"]),
+    ("thick-fog", &["too-dark", "lamp-turned", "lamp-blocked"]),
+    ("wide-aperture", &["out-of-focus"]),
+    ("eyes-apart", &["unseen", "camera-away"]),
+    ("lamp-turned", &["too-dark", "lamp-blocked"]),
+    ("lamp-blocked", &["unseen"]),
+    ("light-near", &["too-dark", "too-bright", "light-faint"]),
+    ("unused-define", &["unused-material"]),
+    ("plane-normal", &["plane-through", "too-bright"]),
+    ("same-parts", &["pattern-scale"]),
+    ("empty-solid", &["one-color"]),
+    ("same-place", &["unseen"]),
+    ("too-small", &["tiny", "pattern-scale", "light-behind", "light-cancelled"]),
+    ("tiny", &["unseen"]),
+    ("epsilon", &["tiny"]),
+];
+
+/// All findings about a scene that was read and compiled, those of its reader among them; the
+/// causes first.
+pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
+    let scout = SceneProbe::new(subject);
+    let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
+    found.iter_mut().for_each(|finding| words::complete(&scout, finding));
+    for check in CHECKS.iter().filter(|check| !physical::is_beside_the_point(&scout, check.code)) {
+        let of_kind = (check.find)(&scout).into_iter();
+        found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
+    }
+    // Some are meant only where nothing else says why.
+    if found.iter().any(|finding| finding.whole && !finding.last) {
+        found.retain(|finding| !finding.last);
+    }
+    // A word of another year that says how light fades is why it does not here.
+    let fades = |finding: &Finding| {
+        let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
+        finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
+    };
+    if found.iter().any(fades) && found.iter().any(|f| f.diagnostic.code == "no-falloff") {
+        found.retain(|finding| !["no-falloff", "light-divides", "not-finite"].contains(&finding.diagnostic.code));
+        for finding in found.iter_mut().filter(|finding| fades(finding)) {
+            (finding.diagnostic.severity, finding.whole) = (Severity::Warning, true);
+        }
+    }
+    // A colour out of range is the cause of what is too bright; and so on.
+    for (cause, consequences) in CONSEQUENCES {
+        if found.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
+            found.retain(|finding| !consequences.contains(&finding.diagnostic.code));
+        }
+    }
+    // Where nothing is seen, each thing that is not seen is no finding of its own.
+    if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
+        found.retain(|finding| finding.diagnostic.code != "unseen");
+    }
+    ordered(found)
+}
+
+/// The findings of the reader and the compiler alone: of a scene that cannot be rendered.
+pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
+    ordered(diagnostics.iter().cloned().map(Finding::from).collect())
+}
+
+/// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the
+/// order of the table, in which causes stand before what comes of them, and each kind once before
+/// any is told of again. Of many that are alike, the last one told says how many more there are.
+fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
+    let level = |finding: &Finding| match finding.diagnostic.severity {
+        Severity::Error => 0,
+        Severity::Warning if finding.last => 3,
+        Severity::Warning if finding.whole => 1,
+        Severity::Warning => 2,
+        Severity::Note => 4,
+    };
+    // Errors stay as they were found: the first may be the reason of the others.
+    let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
+    found.sort_by_key(|finding| (level(finding), rank(finding)));
+    let mut told: Vec<(u8, &str)> = Vec::new();
+    found.sort_by_cached_key(|finding| {
+        let kind = (level(finding), finding.diagnostic.code);
+        let again = kind.0 > 0 && told.contains(&kind);
+        told.push(kind);
+        (level(finding), again, rank(finding))
+    });
+    let mut kept: Vec<Finding> = Vec::with_capacity(found.len());
+    let mut more = 0;
+    for finding in found {
+        let alike = |other: &&Finding| {
+            let (a, b) = (&finding.diagnostic, &other.diagnostic);
+            a.code == b.code && a.severity == b.severity && a.severity != Severity::Error
+        };
+        let known = kept.iter().rev().take_while(alike).count();
+        if known >= MAX_ALIKE && !finding.diagnostic.code.is_empty() {
+            more += 1;
+            finding::count_more(kept.last_mut(), more, &finding);
+        } else {
+            more = 0;
+            kept.push(finding);
+        }
+    }
+    kept
+}

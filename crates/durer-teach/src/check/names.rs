@@ -1,0 +1,30 @@
+//! Names in the scene file that nothing comes of.
+
+use super::finding::Finding;
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Severity, Span};
+use durer_formats::course::place::values;
+
+/// Things that are defined and never used.
+pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
+    // What other files define is a library.
+    let file = scout.subject.scene.camera_span.file;
+    let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };
+    let files = (0..).map_while(|i| scout.subject.files.bytes(i).map(|bytes| (i, bytes)));
+    let used: Vec<String> = files.flat_map(|(i, bytes)| values(bytes, i, "use")).map(|span| scout.text(span)).collect();
+    let defined = values(bytes, file, "define");
+    let unused: Vec<&Span> = defined.iter().filter(|span| !used.contains(&scout.text(**span))).collect();
+    let say = |span: &&Span| {
+        let name = scout.text(**span);
+        let mut diagnostic = Diagnostic::note(format!("`{name}` is defined and never used"))
+            .at(**span)
+            .effect("nothing of it is in the picture: `define` only gives it a name")
+            .help(format!("write `use {name}` in the `Group`, where it is wanted"));
+        // Where nothing defined is used, that was forgotten.
+        if unused.len() == defined.len() {
+            diagnostic.severity = Severity::Warning;
+        }
+        Finding::from(diagnostic)
+    };
+    unused.iter().map(say).collect()
+}

@@ -1,0 +1,88 @@
+//! Samples that are no finite numbers, and where that begins.
+
+use super::finding::Finding;
+use super::scene_probe::SceneProbe;
+use durer_diag::{Diagnostic, Span};
+use durer_render::integrator::TraceNode;
+use durer_render::integrator::trace::{TermKind, TermValue};
+use durer_render::render::explain::{explain, explain_ray};
+use durer_scene::sampler::SampleId;
+
+/// The first sample that is not finite, and the terms that make it so.
+pub(super) fn not_finite(scout: &SceneProbe) -> Vec<Finding> {
+    let (world, job) = (scout.world(), scout.subject.job);
+    let (name, tree) = match scout.subject.rejected {
+        Some((x, y, sample)) => {
+            let light = explain(world, job, x, y).ok().and_then(|pixel| {
+                let own = pixel.samples.into_iter().find(|own| own.sample == sample)?;
+                own.light
+            });
+            (format!("pixel {x},{y} (sample {sample})"), light)
+        }
+        None => match scout.probes.iter().find(|probe| !probe.color.is_finite()) {
+            Some(probe) => (
+                format!("pixel {},{}", probe.pixel.0, probe.pixel.1),
+                explain_ray(world, job, &probe.ray, SampleId::default()),
+            ),
+            None => return Vec::new(),
+        },
+    };
+    let bad = scout.probes.iter().filter(|probe| !probe.color.is_finite()).count();
+    let mut steps = Vec::new();
+    let mut place = None;
+    if let Some(tree) = &tree {
+        path(scout, &tree.root, &mut steps, &mut place);
+    }
+    let share = match bad {
+        0 => "such samples are left out: specks, or black".to_string(),
+        n => format!("{} of the picture is left out, and stays black", super::finding::percent(n, scout.probes.len())),
+    };
+    let mut diagnostic = Diagnostic::warning(format!("the light of {name} is no finite number")).effect(share);
+    if !steps.is_empty() {
+        diagnostic = diagnostic.help(format!("it comes about so: {}", steps.join(" -> ")));
+    }
+    diagnostic.span = place;
+    vec![Finding::from(diagnostic).whole(bad * 4 > scout.probes.len())]
+}
+
+/// From a term down to the one that is not finite first.
+fn path(scout: &SceneProbe, node: &TraceNode, steps: &mut Vec<String>, place: &mut Option<Span>) {
+    let names = scout.names();
+    match &node.what {
+        TermKind::Ray { hit: Some(hit), .. } => {
+            steps.push(format!("a ray that hits {}", names.object(hit.object)));
+            *place = Some(scout.object_span(hit.object));
+        }
+        TermKind::Ray { hit: None, .. } => steps.push("a ray that hits nothing".into()),
+        TermKind::Light { light, distance, .. } => {
+            *place = super::lights::place(scout, *light).or(*place);
+            let arrives =
+                if finite(node.scale) { String::new() } else { format!(", of which {} arrives", shown(node.scale)) };
+            steps.push(format!("{}, {distance} away{arrives}", names.light(*light)));
+        }
+        TermKind::Ambient { .. } => {
+            steps.push(format!("ambient light {} times colour {}", shown(node.factor), shown(node.value)))
+        }
+        TermKind::Highlight { base, exponent, .. } => {
+            steps.push(format!("highlight {base} to the power of {exponent}"))
+        }
+        TermKind::Diffuse { cosine } => {
+            steps.push(format!("diffuse light, N·L = {cosine}, colour {}", shown(node.value)))
+        }
+        TermKind::Secondary { here, there, .. } => {
+            steps.push(format!("mirrored or transmitted light, from index {here} to {there}"))
+        }
+        _ => {}
+    }
+    if let Some(next) = node.terms.iter().find(|term| !finite(term.contribution())) {
+        path(scout, next, steps, place);
+    }
+}
+
+fn finite(value: TermValue) -> bool {
+    value.numbers().iter().all(|x| x.is_finite())
+}
+
+fn shown(value: TermValue) -> String {
+    value.numbers().iter().map(f32::to_string).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,228 @@
+//! Objects: flat ones, squashed ones, and those at the same place.
+
+use super::faces::overlapping;
+use super::finding::{Finding, MAX_SOUGHT, number};
+use super::scene_probe::SceneProbe;
+use super::visibility::Visibility;
+use durer_diag::{Diagnostic, Span};
+use durer_render::world::{Geometry, Object};
+use durer_scene::math::{Ray, Vec3};
+use durer_scene::scene::{MatrixOp, Node, Object as Written};
+use durer_scene::shape::{Plane, Primitive};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// A box thinner than this share of its sides was squashed.
+const SQUASHED: f32 = 1e-4;
+
+/// Triangles of the scene file without area.
+pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
+    let flat = |object: &&Object| match &object.geometry {
+        Geometry::Primitive(Primitive::Triangle(triangle)) => {
+            let [a, b, c] = triangle.corners().map(|corner| corner.as_dvec3());
+            (b - a).cross(c - a).length() <= 1e-9 * (b - a).length_squared().max((c - a).length_squared())
+        }
+        _ => false,
+    };
+    let say = |object: &Object| {
+        let diagnostic = Diagnostic::warning("this triangle has no area: its corners lie on one line")
+            .at(object.span)
+            .effect("it is not seen")
+            .help("are two of its corners the same?");
+        Finding::from(diagnostic).whole(scout.world().objects().len() == 1)
+    };
+    scout.world().objects().iter().filter(flat).map(say).collect()
+}
+
+/// Solids that no ray meets, as far as a few hundred tell.
+pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
+    let world = scout.world();
+    let empty = |&(i, object): &(usize, &Object)| {
+        let Geometry::Solid(_) = &object.geometry else { return false };
+        let Some(bounds) = object.bounds().filter(|_| scout.visibilities()[i] != Visibility::Seen) else {
+            return false;
+        };
+        let size = bounds.size();
+        let met = |axis: usize, a: u32, b: u32| {
+            let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+            let (mut origin, mut dir) = (bounds.min, Vec3::ZERO);
+            origin[axis] -= size.max_element();
+            origin[u] += size[u] * (a as f32 + 0.5) / 12.0;
+            origin[v] += size[v] * (b as f32 + 0.5) / 12.0;
+            dir[axis] = 1.0;
+            world.hits_of_each(&Ray::new(origin, dir)).any(|hit| hit.object as usize == i)
+        };
+        !(0..3).any(|axis| (0..144).any(|cell| met(axis, cell % 12, cell / 12)))
+    };
+    let few = world.objects().len() <= 100;
+    world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
+}
+
+/// Solids of which nothing is left.
+pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
+    let say = |object: u32| {
+        let diagnostic = Diagnostic::warning(format!("nothing is left of the {}", scout.object(object)))
+            .at(scout.object_span(object))
+            .effect("it is not seen")
+            .help("a part that is taken away covers all of the first, or the parts of an intersection do not meet");
+        Finding::from(diagnostic).whole(scout.seen().next().is_none())
+    };
+    empty_solids(scout).into_iter().map(say).collect()
+}
+
+/// Objects that a transform has made flat, or nearly so.
+pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    for object in scout.world().objects() {
+        let (Some(to_world), Some(bounds)) = (&object.to_world, object.bounds()) else { continue };
+        let stretched = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| to_world.vector(axis).length());
+        let (least, most) =
+            (stretched.iter().copied().fold(f32::MAX, f32::min), stretched.iter().copied().fold(0.0, f32::max));
+        let thin = least < SQUASHED * most && !bounds.is_empty();
+        if !thin && most > 1e-6 {
+            continue;
+        }
+        let what =
+            if thin { format!("{} times thinner than wide", number(most / least)) } else { "next to nothing".into() };
+        let diagnostic = Diagnostic::warning(format!("the transforms around this object make it {what}"))
+            .at(object.span)
+            .effect("it is seen as a line, or not at all")
+            .help("look at the `Scale` and `UniformScale` around it");
+        found.push(Finding::from(diagnostic));
+    }
+    found.extend(
+        scout.subject.scene.root.iter().flat_map(|root| &root.objects).flat_map(|object| squashed_parts(object, false)),
+    );
+    found
+}
+
+/// Parts of solids that a scale of theirs makes next to nothing.
+fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
+    let least = |op: &MatrixOp| match op {
+        MatrixOp::UniformScale(s) => s.abs(),
+        MatrixOp::Scale(v) => v.abs().min_element(),
+        _ => 1.0,
+    };
+    match &object.node {
+        Node::Group(group) => group.objects.iter().flat_map(|inner| squashed_parts(inner, within)).collect(),
+        Node::Solid(_, parts) => parts.iter().flat_map(|part| squashed_parts(part, true)).collect(),
+        Node::Transform(ops, inner) => {
+            let mut found = squashed_parts(inner, within);
+            if within && ops.iter().map(least).product::<f32>() < SQUASHED {
+                let diagnostic = Diagnostic::warning("a scale makes this part of a solid next to nothing")
+                    .at(object.span)
+                    .effect("what is left of the solid is not seen, or the part changes nothing")
+                    .help("look at the `Scale` and `UniformScale` in it");
+                found.push(Finding::from(diagnostic));
+            }
+            found
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// Whether two objects have the same surface.
+pub(super) fn same(a: &Object, b: &Object) -> bool {
+    let placed = a.to_world == b.to_world;
+    placed
+        && match (&a.geometry, &b.geometry) {
+            (Geometry::Primitive(Primitive::Plane(p)), Geometry::Primitive(Primitive::Plane(q))) => {
+                let unit = |plane: &Plane| {
+                    let length = plane.normal.length();
+                    (plane.normal / length, plane.offset / length)
+                };
+                let ((n, d), (m, e)) = (unit(p), unit(q));
+                let near = |m: Vec3, e: f32| (n - m).length() < 1e-6 && (d - e).abs() <= 1e-6 * (1.0 + d.abs());
+                near(m, e) || near(-m, -e)
+            }
+            (Geometry::Primitive(p), Geometry::Primitive(q)) => p == q,
+            (Geometry::Mesh(p), Geometry::Mesh(q)) => Arc::ptr_eq(p, q),
+            _ => false,
+        }
+}
+
+/// Objects that are at the same place twice.
+pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
+    let objects = scout.world().objects();
+    let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
+    let mut found = Vec::new();
+    found.extend(in_plane(scout));
+    // The same surface is told of below; and of one material it does not matter which of two is
+    // seen.
+    let differ =
+        |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
+    let faces = overlapping(scout).into_iter().filter(differ).take(MAX_SOUGHT);
+    found.extend(faces.map(|(a, b)| pair(scout, a, b)));
+    for (i, object) in objects.iter().enumerate() {
+        // What has no end is at one place with all others that have none.
+        let key = object.bounds().map_or([0; 6], |b| {
+            let [x, y, z] = b.min.to_array().map(f32::to_bits);
+            let [u, v, w] = b.max.to_array().map(f32::to_bits);
+            [x, y, z, u, v, w]
+        });
+        let there = places.entry(key).or_default();
+        // Many at one place are told of as pairs with the first ones only.
+        if found.len() >= MAX_SOUGHT {
+            break;
+        }
+        if let Some(&first) = there.iter().take(16).find(|&&first| same(&objects[first], object)) {
+            found.push(pair(scout, first, i));
+        }
+        there.push(i);
+    }
+    found
+}
+
+/// Flat things that lie in a plane, where the two cannot be told apart.
+fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
+    let objects = scout.world().objects();
+    let planes: Vec<(usize, &Plane)> = objects
+        .iter()
+        .enumerate()
+        .filter_map(|(i, object)| match &object.geometry {
+            Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i, plane)),
+            _ => None,
+        })
+        .collect();
+    let mut found = Vec::new();
+    for (i, object) in objects.iter().enumerate() {
+        let corners = match &object.geometry {
+            Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
+            Geometry::Primitive(Primitive::Rectangle(sheet)) => {
+                [sheet.corner, sheet.corner + sheet.edge0, sheet.corner + sheet.edge1]
+            }
+            _ => continue,
+        };
+        let corners = corners.map(|p| object.world_point(p));
+        let lies_in = |plane: &Plane| {
+            let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
+            corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))
+        };
+        if found.len() >= MAX_SOUGHT {
+            break;
+        }
+        if let Some((plane, _)) = planes.iter().take(MAX_SOUGHT).find(|(_, plane)| lies_in(plane)) {
+            found.push(pair(scout, *plane, i));
+        }
+    }
+    found
+}
+
+fn pair(scout: &SceneProbe, first: usize, second: usize) -> Finding {
+    let objects = scout.world().objects();
+    let [a, b]: [Span; 2] = [objects[first].span, objects[second].span];
+    let alike = objects[first].material == objects[second].material;
+    let diagnostic = Diagnostic::warning(format!(
+        "the {} is where the {} is already",
+        scout.object(second as u32),
+        scout.object(first as u32)
+    ))
+    .at(b)
+    .related(a, "the same surface")
+    .effect(match alike {
+        true => "it adds nothing; light through it, if it is of glass, is wrong",
+        false => "of two surfaces at one place, one is seen at random: specks, or the one material only",
+    })
+    .help("leave one out, or move it");
+    Finding::from(diagnostic)
+}

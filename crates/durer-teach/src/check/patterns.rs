@@ -1,0 +1,165 @@
+//! Patterns of which nothing is seen: of one part, or finer than a pixel.
+
+use super::finding::{Finding, MAX_SOUGHT, number, percent};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_render::world::{Geometry, Material, World};
+use durer_scene::dialect::CompatSet;
+use durer_scene::material::{ColorNoise, Solid};
+use durer_scene::math::Vec3;
+use durer_scene::scene::Material as Written;
+
+/// Steps within a pixel in which a pattern is looked at.
+const STEPS: u32 = 24;
+/// So many changes within a pixel are noise.
+const MAX_CHANGES: usize = 3;
+/// Cells this many times wider than all things together make no pattern.
+const COARSEST: f32 = 3.0;
+/// Fewer places tell nothing.
+const FEWEST: usize = 20;
+
+/// What is looked at of a pattern: its share of the first part at a place of the world.
+enum Look<'w> {
+    Solid(&'w Solid, &'w glam::DAffine3, CompatSet),
+    Noise(&'w ColorNoise),
+}
+
+impl Look<'_> {
+    fn of(world: &World, material: u32) -> Option<Look<'_>> {
+        match world.materials().get(material as usize)? {
+            Material::Solid(solid, to_pattern, _) => Some(Look::Solid(solid, to_pattern, world.rules().compat)),
+            Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
+        }
+    }
+
+    fn at(&self, place: Vec3) -> f32 {
+        match self {
+            Look::Solid(solid, to_pattern, compat) => {
+                solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *compat)
+            }
+            Look::Noise(noise) => {
+                let range = noise.color1 - noise.color2;
+                let most = range.abs().max_element().max(1e-6);
+                (noise.color(place) - noise.color2).abs().max_element() / most
+            }
+        }
+    }
+}
+
+/// Patterns of which the picture shows one part, or only noise.
+pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let mut found = Vec::new();
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
+        let Some(look) = Look::of(world, number as u32) else { continue };
+        // Its own hits alone: a pattern inside of another is seen in part.
+        let places: Vec<(Vec3, f32)> = scout
+            .seen()
+            .filter(|(_, seen)| seen.material as usize == number)
+            .map(|(probe, seen)| (probe.ray.at(seen.t), seen.t * probe.ray.dir.length()))
+            .collect();
+        if places.len() < FEWEST {
+            continue;
+        }
+        let shares: Vec<f32> = places.iter().map(|(place, _)| look.at(*place)).collect();
+        let (least, most) = shares.iter().fold((f32::MAX, f32::MIN), |(a, b), s| (a.min(*s), b.max(*s)));
+        let width = pixel(scout);
+        let across = [Vec3::new(0.8, 0.36, 0.48), Vec3::new(-0.48, 0.8, 0.36)];
+        let noisy = |&(place, away): &(Vec3, f32)| {
+            across.iter().all(|way| {
+                let step = |i: u32| look.at(place + *way * (width * away * i as f32 / STEPS as f32)) > 0.5;
+                (1..STEPS).filter(|&i| step(i) != step(i - 1)).count() > MAX_CHANGES
+            })
+        };
+        let fine = places.iter().filter(|place| noisy(place)).count();
+        let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
+            (message, "no pattern is seen: it is of one colour, or of few large patches", help)
+        } else if matches!(look, Look::Solid(Solid::Mix(_), ..)) {
+            continue;
+        } else if most - least < 1e-3 {
+            (
+                "only one part of this pattern is in the picture".to_string(),
+                "no pattern is seen: it is of one colour",
+                match &written.value {
+                    Written::Solid(Solid::Checkerboard(_), _) => {
+                        "its cells are larger than all that is seen: look at the `Scale` of its `Transform`"
+                    }
+                    _ => "look at its `frequency`, `amplitude` and `Transform`",
+                },
+            )
+        } else if fine * 10 > places.len() * 9 {
+            (
+                "this pattern is finer than a pixel".to_string(),
+                "it is noise, or of one colour on the mean",
+                "look at the `Scale` of its `Transform`, or its `frequency`: sizes are in units of the scene",
+            )
+        } else {
+            continue;
+        };
+        let mut diagnostic = Diagnostic::warning(message).at(written.span).effect(effect).help(help);
+        diagnostic = diagnostic.label(format!("on {} of what is seen", percent(places.len(), scout.seen().count())));
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// Why a pattern cannot be seen as one, if what is written tells.
+fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<(String, &'static str)> {
+    let Look::Solid(solid, to_pattern, _) = look else { return None };
+    if let Solid::Mix(mix) = solid {
+        let message = format!("the `share` of this mix is {}", number(mix.share));
+        let help = "the other has no part in it: a `share` between 0 and 1 shows both";
+        let shows_one = mix.share <= 0.0 || mix.share >= 1.0 && mix.share_texture.is_none();
+        return shows_one.then_some((message, help));
+    }
+    if !matches!(solid, Solid::Checkerboard(_)) || !matches!(written, Written::Solid(..)) {
+        return None;
+    }
+    let cell = to_pattern.inverse().matrix3;
+    let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
+    // What has no end is as large as the rest, or as the camera is far from it.
+    let size = match scout.world().bounds() {
+        bounds if bounds.is_empty() => return None,
+        bounds => bounds.size().max_element(),
+    };
+    let message =
+        format!("the cells of this pattern are {} wide, and all things together {}", number(cell), number(size));
+    let help = "its cells are larger than all that is seen: look at the `Scale` of its `Transform`";
+    (cell > COARSEST * size).then_some((message, help))
+}
+
+/// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh
+/// lie at one place of it.
+pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let mut found = Vec::new();
+    for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
+        let Some(Material::Phong(phong)) = world.materials().get(number) else { continue };
+        let Some(texture) = phong.texture.and_then(|texture| world.textures().get(texture as usize)) else { continue };
+        let own = || world.objects().iter().filter(|object| object.material as usize == number);
+        let is_still = |geometry: &Geometry| matches!(geometry, Geometry::Mesh(tree) if tree.mesh.only_uv().is_some());
+        let one_place = own().find(|object| is_still(&object.geometry));
+        let (message, help) = if scout.material_rays()[number] == 0 {
+            continue;
+        } else if texture.is_flat() {
+            (format!("the texture of material {number} is of one colour"), "is it the right picture?")
+        } else if let Some(object) = one_place {
+            let name = scout.text(object.span);
+            let message = format!("all corners of the `{name}` lie at one place of its texture");
+            (message, "the `vt` lines of its file are all the same: export its texture coordinates")
+        } else {
+            continue;
+        };
+        let diagnostic = Diagnostic::warning(message).effect("nothing of a picture is seen on it").help(help);
+        found.push(Finding::from(scout.at_value(diagnostic, written.span, &["texture"])));
+    }
+    found
+}
+
+/// About how wide a pixel is at distance 1.
+fn pixel(scout: &SceneProbe) -> f32 {
+    let [a, b] = [0, scout.probes.len() - 1].map(|i| &scout.probes[i]);
+    let (p, q) = (a.pixel, b.pixel);
+    let apart = (p.0.abs_diff(q.0).pow(2) + p.1.abs_diff(q.1).pow(2)) as f32;
+    (a.ray.dir.normalize_or_zero() - b.ray.dir.normalize_or_zero()).length() / apart.sqrt().max(1.0)
+}

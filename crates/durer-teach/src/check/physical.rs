@@ -1,0 +1,147 @@
+//! Under a path tracer: scenes in which nothing shines, lamps that shine on nothing that is seen or
+//! are enclosed in glass, and words of media without effect.
+
+use super::finding::Finding;
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_formats::scene_format_for;
+use durer_render::integrator::Method;
+use durer_render::world::Material as Compiled;
+use durer_scene::light::Emitter as _;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Material;
+
+/// What is found of local light says nothing of paths.
+const OF_LOCAL_LIGHT: &[&str] = &[
+    "light-divides",
+    "light-inside",
+    "light-blocked",
+    "light-behind",
+    "light-faint",
+    "full-ambient",
+    "pow-zero",
+    "no-exponent",
+    "light-cancelled",
+    "no-bounces",
+    "same-color",
+    "seen-from-behind",
+];
+
+/// What says why a path tracer's picture is black, where it is.
+const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
+
+/// Whether a finding means nothing here, since it is about local light.
+pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
+    let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
+    scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
+}
+
+pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let dark_sky = world.environment().is_none() && world.cube_map().is_none() && world.background() == Color::ZERO;
+    let radiance = |material: &Compiled| match material {
+        Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
+        Compiled::Solid(..) => None,
+    };
+    let of = |material: u32| world.materials().get(material as usize).and_then(radiance).unwrap_or_default();
+    let shines = world.objects().iter().any(|object| of(object.material) != Color::ZERO)
+        || world
+            .objects()
+            .iter()
+            .any(|object| matches!(world.materials().get(object.material as usize), Some(Compiled::Solid(..))))
+            && world.materials().iter().any(|material| radiance(material).is_some());
+    if !scout.is_physical() || !dark_sky || shines || world.lights().iter().any(|light| light.color() != Color::ZERO) {
+        return Vec::new();
+    }
+    // Something was meant to shine.
+    let lamp = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
+        Material::Principled(layers) => layers.emission_luminance > 0.0,
+        _ => false,
+    });
+    if let Some((number, material)) = lamp {
+        let black = of(number as u32) == Color::ZERO;
+        let message = match black {
+            true => format!("nothing shines: the `emissionColor` of material {number} is black"),
+            false => format!("nothing shines: material {number} does, but nothing is made of it"),
+        };
+        let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(match black {
+            true => "it multiplies `emissionLuminance`: `emissionColor 1 1 1` is white light",
+            false => "is a `MaterialIndex` wrong? They count from 0",
+        });
+        let diagnostic = scout.at_value(diagnostic, material.span, &["emissionColor", "emissionLuminance"]);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let ambient = match world.ambient() == Color::ZERO {
+        true => "",
+        false => "; `ambientLight` means nothing to paths",
+    };
+    let format = scout.subject.files.name(0).and_then(scene_format_for);
+    let (surface, help) = match format.and_then(|format| format.shines) {
+        Some(words) => ("surface that shines", format!("{words}; lights that are said to be left out do not shine")),
+        None => (
+            "material with `emissionLuminance`",
+            format!(
+                "give a material `emissionLuminance 10`, add a light, or write `Background {{ color 1 1 1 }}`: what is all around is light too{ambient}"
+            ),
+        ),
+    };
+    let message = format!("nothing shines in this scene: no light, no {surface}, and the background is black");
+    let diagnostic = Diagnostic::warning(message).effect("the picture is black").help(help);
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Lamps without extent inside of glass: no path finds their light outside.
+pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    if !matches!(scout.subject.job.method, Method::Path(_)) {
+        return Vec::new();
+    }
+    let lights = world.lights().iter().enumerate().filter_map(|(number, light)| Some((number, light.place()?.0)));
+    let enclosed = lights.filter_map(|(number, place)| {
+        let glass = world.glass_around(place).find(|&(_, ior)| ior != 1.0)?.0;
+        let message =
+            format!("light {number} is inside the {}: its light comes out by refraction alone", scout.object(glass));
+        let diagnostic = Diagnostic::warning(message)
+            .at(scout.object_span(glass))
+            .effect("paths do not find it: outside it is as if it were not there")
+            .help(
+                "take `--integrator photons`, or a material with `emissionLuminance` on a sphere instead of the light",
+            );
+        Some(Finding::from(diagnostic))
+    });
+    enclosed.collect()
+}
+
+/// Words of scattering inside of a body that change nothing.
+pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
+    if !scout.is_physical() {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for material in &scout.subject.scene.materials {
+        let Material::Principled(m) = &material.value else { continue };
+        let word = if m.transmission_scatter != Vec3::ZERO && m.transmission_depth == 0.0 {
+            Some((
+                "transmissionScatter",
+                "nothing is scattered inside: `transmissionDepth` is 0",
+                "write `transmissionDepth 1`, say: how deep light goes until it has `transmissionColor`",
+            ))
+        } else if m.transmission_scatter != Vec3::ZERO && m.transmission_weight == 0.0 {
+            Some((
+                "transmissionScatter",
+                "no light comes inside: `transmissionWeight` is 0",
+                "write `transmissionWeight 1`, or `subsurfaceWeight 1` for what is not clear",
+            ))
+        } else if m.subsurface_weight > 0.0 && m.transmission_weight == 1.0 {
+            Some(("subsurfaceWeight", "all light is refracted: `transmissionWeight` is 1", "leave one of them out"))
+        } else {
+            None
+        };
+        if let Some((word, effect, help)) = word {
+            let message = format!("`{word}` has no effect in this material");
+            let diagnostic = Diagnostic::warning(message).at(material.span).effect(effect).help(help);
+            found.push(Finding::from(diagnostic));
+        }
+    }
+    found
+}

@@ -1,0 +1,39 @@
+//! Where transforms put things, and where others would.
+
+use super::scene_probe::SceneProbe;
+use durer_diag::Span;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{MatrixOp, Node, Object};
+
+/// Of a scene in which nothing is in the picture: the first transform that in the reverse order, or
+/// left out, would put its object there, and words for that.
+pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
+    let objects = scout.subject.scene.root.iter().flat_map(|root| &root.objects);
+    objects.filter_map(|object| of(scout, object)).next()
+}
+
+fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
+    let Node::Transform(ops, inner) = &object.node else { return None };
+    // The object at the place where its keyword is.
+    let world = scout.world();
+    let own =
+        world.objects().iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;
+    let (to_world, bounds) = (own.to_world.as_ref()?, own.bounds()?);
+    let local = to_world.inverse_point(bounds.center()) + own.center;
+    let by = |ops: &[MatrixOp]| MatrixOp::product(ops, 0).transform_point3(local.as_dvec3()).as_vec3();
+    let aims = |place: Vec3| super::visibility::aims(scout, place);
+    let place = super::finding::vector(bounds.center());
+    let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
+    let other = by(&reversed);
+    if ops.len() > 1 && aims(other) {
+        let words = format!(
+            "its transforms put it at {place}; in the reverse order it would be at {}, in the picture: what is written last \
+             is done first",
+            super::finding::vector(other)
+        );
+        return Some((object.span, words));
+    }
+    aims(local).then(|| {
+        (object.span, format!("its transforms put it at {place}, and without them it would be in the picture"))
+    })
+}

@@ -1,0 +1,260 @@
+//! A coarse look at the picture: a grid of camera rays, and all that made the light of each.
+
+use durer_diag::{Diagnostic, Files, Span};
+use durer_formats::course::place;
+use durer_render::integrator::trace::TermKind;
+use durer_render::integrator::{Method, Settings, Tree};
+use durer_render::render::explain::{Names, explain_ray};
+use durer_render::render::{Job, center_ray, raster};
+use durer_render::world::{Material, World};
+use durer_scene::camera::Raster;
+use durer_scene::dialect::Dialect;
+use durer_scene::material::Pattern as _;
+use durer_scene::math::{Color, Ray};
+use durer_scene::sampler::SampleId;
+use durer_scene::scene::Scene;
+use rayon::prelude::*;
+
+/// Rays along the larger side of the picture; fewer where there are many lights, of each of which
+/// each ray asks.
+const RAYS: u32 = 48;
+const FEWEST_RAYS: u32 = 6;
+const MAX_QUESTIONS: u32 = 1 << 20;
+/// Levels of mirrored and transmitted rays that are looked at, and the least weight of a ray.
+const BOUNCES: u32 = 4;
+const MIN_WEIGHT: f32 = 1.0 / 64.0;
+
+/// What is checked.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The scene as written.
+    pub scene: &'a Scene,
+    /// The same, compiled.
+    pub world: &'a World,
+    /// Its dialect.
+    pub dialect: Dialect,
+    /// The files that were read.
+    pub files: &'a Files,
+    /// The picture that is to be made of it.
+    pub job: &'a Job,
+    /// What multiplies its colours before they are shown.
+    pub exposure: f32,
+    /// A sample of that picture that is known not to be a finite number: column, row, number.
+    pub rejected: Option<(u32, u32, u32)>,
+}
+
+/// What one camera ray found.
+#[derive(Clone, Debug)]
+pub(super) struct Probe {
+    /// The pixel of the picture that it goes through.
+    pub pixel: (u32, u32),
+    pub ray: Ray,
+    pub color: Color,
+    pub seen: Option<ProbeHit>,
+}
+
+/// The surface that a camera ray meets first, and the light on it.
+#[derive(Clone, Debug)]
+pub(super) struct ProbeHit {
+    pub object: u32,
+    pub material: u32,
+    pub t: f32,
+    pub from_behind: bool,
+    /// Whether its back is left black.
+    pub black: bool,
+    pub has_uv: bool,
+    /// What the ambient light adds.
+    pub ambient: Color,
+    pub lit: Vec<Lit>,
+}
+
+/// What one light does at a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lit {
+    pub light: usize,
+    /// N·L, and what arrives if nothing is in the way.
+    pub cosine: f32,
+    pub arrives: Color,
+    /// The first object in the way, where it keeps light off.
+    pub blocker: Option<u32>,
+    /// What it adds to the colour.
+    pub adds: Color,
+}
+
+/// A scene, and what a grid of camera rays found in it.
+#[derive(Debug)]
+pub struct ProbeGrid<'a> {
+    pub(super) subject: Subject<'a>,
+    pub(super) raster: Raster,
+    pub(super) probes: Vec<Probe>,
+}
+
+impl<'a> ProbeGrid<'a> {
+    /// Looks at a scene.
+    pub(super) fn new(subject: &Subject<'a>) -> Self {
+        let Job { width, height, settings, .. } = *subject.job;
+        let larger = width.max(height);
+        let lights = subject.world.lights().len().max(1) as u32;
+        let rays =
+            (FEWEST_RAYS..RAYS).take_while(|rays| rays * rays * lights <= MAX_QUESTIONS).last().unwrap_or(FEWEST_RAYS)
+                + 1;
+        let [columns, rows] =
+            [width, height].map(|side| ((u64::from(side) * u64::from(rays)).div_ceil(larger.into()) as u32).max(1));
+        let raster = raster(subject.world, columns, rows);
+        let job = Job {
+            settings: Settings {
+                bounces: settings.bounces.min(BOUNCES),
+                least_weight: settings.least_weight.max(MIN_WEIGHT),
+                ..settings
+            },
+            // Its terms are what the checks ask for.
+            method: Method::WHITTED,
+            ..subject.job.clone()
+        };
+        let places: Vec<(u32, u32)> = (0..rows).flat_map(|y| (0..columns).map(move |x| (x, y))).collect();
+        let probe = |&place: &(u32, u32)| {
+            let ray = center_ray(subject.world, &raster, place)?;
+            let at =
+                |i: u32, of: u32, size: u32| ((2 * u64::from(i) + 1) * u64::from(size) / (2 * u64::from(of))) as u32;
+            let pixel = (at(place.0, columns, width), at(place.1, rows, height));
+            Some(Probe::of(pixel, ray, &explain_ray(subject.world, &job, &ray, SampleId::default())?))
+        };
+        let probes = places.par_iter().filter_map(probe).collect();
+        ProbeGrid { subject: *subject, raster, probes }
+    }
+
+    /// The larger side of the picture in pixels.
+    pub(super) fn larger(&self) -> f32 {
+        self.subject.job.width.max(self.subject.job.height) as f32
+    }
+
+    pub(super) fn world(&self) -> &'a World {
+        self.subject.world
+    }
+
+    /// The rays that hit something.
+    pub(super) fn seen(&self) -> impl Iterator<Item = (&Probe, &ProbeHit)> {
+        self.probes.iter().filter_map(|probe| Some((probe, probe.seen.as_ref()?)))
+    }
+
+    /// How many rays see each material, or one that is mixed of it.
+    pub(super) fn count_rays(&self) -> Vec<usize> {
+        let materials = self.world().materials();
+        let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
+        self.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
+        for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
+            // A part that is in it several times counts once.
+            let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
+            while let Some(part) = parts.pop() {
+                if std::mem::replace(&mut known[part], true) {
+                    continue;
+                }
+                all[part] += count;
+                if let Material::Solid(solid, ..) = &materials[part] {
+                    parts.extend(solid.materials().map(|inner| inner as usize));
+                }
+            }
+        }
+        all
+    }
+
+    /// Whether the scene's light is a path tracer's.
+    pub(super) fn is_physical(&self) -> bool {
+        self.subject.job.method.transport().is_some()
+    }
+
+    /// Whether light goes through an object.
+    pub(super) fn is_glass(&self, object: u32) -> bool {
+        let world = self.world();
+        let phong =
+            |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0);
+        world.materials().get(world.objects()[object as usize].material as usize).is_some_and(phong)
+    }
+
+    pub(super) fn names(&self) -> Names<'a> {
+        Names { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
+    }
+
+    /// An object's keyword and line; what is a model's, by its name and place.
+    pub(super) fn object(&self, number: u32) -> String {
+        let span = self.object_span(number);
+        let (line, column) = self.subject.files.position(span).unwrap_or_default();
+        match self.names().unworded(number) {
+            Some(name) => format!("{name} at {line}:{column}"),
+            None => format!("`{}` of line {line}", self.text(span)),
+        }
+    }
+
+    pub(super) fn object_span(&self, number: u32) -> Span {
+        self.world().objects()[number as usize].span
+    }
+
+    /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the
+    /// scene has.
+    pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
+        if self.subject.dialect == Dialect::F23 { nodes } else { classic }
+    }
+
+    /// The text at a place.
+    pub(super) fn text(&self, span: Span) -> String {
+        let bytes = self.subject.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
+        String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
+    }
+
+    /// Where the value of a field is written in the block that a keyword begins.
+    pub(super) fn value(&self, block: Span, fields: &[&str]) -> Option<Span> {
+        let bytes = self.subject.files.bytes(block.file)?;
+        fields.iter().find_map(|field| place::value(bytes, block, field))
+    }
+
+    /// A finding at the value of a field, or at the block's keyword where it is not written.
+    pub(super) fn at_value(&self, diagnostic: Diagnostic, block: Span, fields: &[&str]) -> Diagnostic {
+        diagnostic.at(self.value(block, fields).unwrap_or(block))
+    }
+}
+
+impl ProbeHit {
+    /// What a light does here. Lights are told of in their order.
+    pub fn by(&self, light: usize) -> Option<&Lit> {
+        self.lit.get(light).filter(|lit| lit.light == light)
+    }
+}
+
+impl Probe {
+    fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
+        let mut probe = Probe { pixel, ray, color: tree.color(tree.root.value), seen: None };
+        let TermKind::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
+        let mut seen = ProbeHit {
+            object: hit.object,
+            material: hit.material,
+            t: hit.t,
+            from_behind: hit.from_behind,
+            black: hit.black,
+            has_uv: hit.uv.is_some(),
+            ambient: Color::ZERO,
+            lit: Vec::new(),
+        };
+        for term in &tree.root.terms {
+            match &term.what {
+                TermKind::Ambient { .. } => seen.ambient += tree.color(term.contribution()),
+                // A surface of several materials has a term for each.
+                TermKind::Light { light, to_light, shadow, .. } => {
+                    let adds = tree.color(term.contribution());
+                    match seen.lit.last_mut().filter(|lit| lit.light == *light) {
+                        Some(lit) => lit.adds += adds,
+                        None => seen.lit.push(Lit {
+                            light: *light,
+                            cosine: hit.n.dot(*to_light),
+                            arrives: tree.color(term.scale),
+                            blocker: shadow.as_ref().filter(|s| s.share.is(0.0)).and_then(|s| s.blocker).map(|b| b.0),
+                            adds,
+                        }),
+                    }
+                }
+                _ => {}
+            }
+        }
+        probe.seen = Some(seen);
+        probe
+    }
+}

@@ -1,0 +1,42 @@
+//! Edits put into a scene's text.
+
+use super::finding::Finding;
+use durer_diag::Edit;
+
+/// A text with the edits of some findings in it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Repaired {
+    /// The new text.
+    pub bytes: Vec<u8>,
+    /// Which of the findings were mended.
+    pub mended: Vec<usize>,
+}
+
+/// Puts the edits of findings into a file. A finding whose edits meet those of an earlier one, or
+/// lie in another file, is left as it is.
+pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
+    let mut edits: Vec<&Edit> = Vec::new();
+    let mut mended = Vec::new();
+    for (i, finding) in findings.iter().enumerate() {
+        let inside = |edit: &Edit| {
+            let Edit { span, .. } = edit;
+            span.file == file && span.start <= span.end && span.end as usize <= bytes.len()
+        };
+        let mut all = edits.clone();
+        all.extend(&finding.diagnostic.fix);
+        all.sort_by_key(|edit| (edit.span.start, edit.span.end));
+        let apart = all.windows(2).all(|pair| pair[0].span.end < pair[1].span.start);
+        if !finding.diagnostic.fix.is_empty() && apart && finding.diagnostic.fix.iter().all(inside) {
+            edits = all;
+            mended.push(i);
+        }
+    }
+    let (mut text, mut at) = (Vec::with_capacity(bytes.len()), 0);
+    for edit in edits {
+        text.extend_from_slice(&bytes[at..edit.span.start as usize]);
+        text.extend_from_slice(edit.text.as_bytes());
+        at = edit.span.end as usize;
+    }
+    text.extend_from_slice(&bytes[at..]);
+    Repaired { bytes: text, mended }
+}

@@ -1,0 +1,42 @@
+//! Solids: parts that change nothing.
+
+use super::finding::{Finding, MAX_SOUGHT};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_scene::math::Aabb;
+use durer_scene::scene::{Node, Operation, extent};
+
+/// Parts that are cut away where the first is not, as far as boxes tell.
+pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
+    let scene = scout.subject.scene;
+    let mut found = Vec::new();
+    let mut all: Vec<&durer_scene::scene::Object> = scene.root.iter().flat_map(|root| &root.objects).collect();
+    while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
+        match &object.node {
+            Node::Group(group) => all.extend(&group.objects),
+            Node::Transform(_, inner) => all.push(inner),
+            Node::Solid(operation, parts) => {
+                all.extend(parts);
+                let bounds = |part: &durer_scene::scene::Object| {
+                    let mut bounds = Aabb::EMPTY;
+                    extent::of(scene, part, &mut |p| bounds = bounds.with(p.as_vec3()));
+                    Some(bounds).filter(|bounds| !bounds.is_empty())
+                };
+                let Some(first) = parts.first().and_then(bounds).filter(|_| *operation == Operation::Difference) else {
+                    continue;
+                };
+                let apart = |b: &Aabb| b.min.cmpgt(first.max).any() || b.max.cmplt(first.min).any();
+                for part in parts[1..].iter().filter(|part| bounds(part).is_some_and(|b| apart(&b))) {
+                    let diagnostic = Diagnostic::warning("this part is taken away from where nothing is")
+                        .at(part.span)
+                        .related(parts[0].span, "it does not touch this")
+                        .effect("it changes nothing: there is no hole")
+                        .help("move it into the first part: look at its place and the transforms around it");
+                    found.push(Finding::from(diagnostic));
+                }
+            }
+            _ => {}
+        }
+    }
+    found
+}

@@ -1,0 +1,236 @@
+//! What is not in the picture: beside it, hidden, far away, too small, or flat.
+
+use super::finding::{Finding, MAX_SOUGHT, counted, number, vector};
+use super::scene_probe::SceneProbe;
+use super::visibility::{Visibility, pixels};
+use durer_diag::{Diagnostic, Severity, Span};
+use durer_render::world::{Geometry, Object};
+use durer_scene::math::{Aabb, Vec3};
+use durer_scene::scene::Node;
+use durer_scene::shape::Primitive;
+
+/// Of more objects, some may be out of sight.
+const FEW_OBJECTS: usize = 8;
+
+/// Objects of which nothing is in the picture.
+pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
+    let visibilities = scout.visibilities();
+    let nothing: Vec<u32> = nothing_of(scout);
+    // In a large scene something is always beside the picture or behind something.
+    let mut found = far_away(scout);
+    let missing =
+        visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
+    if visibilities.len() > FEW_OBJECTS && missing * 3 < visibilities.len() {
+        return found;
+    }
+    let all = (0..visibilities.len() as u32).filter(|i| !nothing.contains(i));
+    let out: Vec<u32> = all.clone().filter(|&i| visibilities[i as usize] == Visibility::Outside).collect();
+    let hidden: Vec<(u32, u32)> = all
+        .filter_map(|i| match visibilities[i as usize] {
+            // What is behind glass, or in a mirror's sight, is seen.
+            Visibility::Hidden(by) if !scout.is_glass(by) && found.is_empty() => Some((i, by)),
+            _ => None,
+        })
+        // A triangle behind another is the far side of what they are parts of.
+        .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scout, object)))
+        // Two at one place are told of as that.
+        .filter(|&(i, by)| {
+            !super::objects::same(&scout.world().objects()[i as usize], &scout.world().objects()[by as usize])
+        })
+        .collect();
+    // Where most of a small scene is lost, that is no chance.
+    let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
+    let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
+    let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
+    if let Some(&first) = out.first().filter(|_| found.is_empty()) {
+        let message = match out.len() {
+            1 => format!("the {} is not in the picture", scout.object(first)),
+            n => format!(
+                "{} are not in the picture; the first is the {}",
+                counted(n, "object", "objects"),
+                scout.object(first)
+            ),
+        };
+        // What is out of the picture may stand there for its shadow, or its light; not if next to
+        // nothing is left.
+        let own = |(_, seen): &(_, &crate::check::probes::ProbeHit)| {
+            scout.world().objects()[seen.object as usize].bounds().is_some()
+        };
+        let left = scout.seen().filter(own).count() * 50;
+        let severity = if left < scout.probes.len() { severity(out.len()) } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
+            .at(scout.object_span(first))
+            .effect("the camera does not look where it is")
+            .help("look at its place and the transforms around it");
+        found.push(Finding::from(diagnostic));
+    }
+    if let Some(&(first, by)) = hidden.first() {
+        let more =
+            if hidden.len() == 1 { String::new() } else { format!("; {} more are hidden too", hidden.len() - 1) };
+        let inside = holds(scout, by, first);
+        let (a, b) = (scout.object(first), scout.object(by));
+        let message = match inside {
+            true => format!("the {a} is inside the {b}{more}"),
+            false => format!("the {a} is hidden by the {b}{more}"),
+        };
+        let help = match &scout.world().objects()[by as usize].geometry {
+            Geometry::Primitive(Primitive::Plane(_)) => {
+                "it is behind the plane, which stands where p · normal = offset: is the sign of `offset` right?"
+            }
+            _ if inside => "move it out, or make the other smaller, or move that",
+            _ => "is it on the wrong side of the other, or the other in the way?",
+        };
+        // What a thing merely stands behind may be meant.
+        let plane = matches!(&scout.world().objects()[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
+        let one = hidden.iter().all(|(_, other)| *other == by);
+        let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
+        let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
+            .at(scout.object_span(first))
+            .related(scout.object_span(by), if inside { "around it" } else { "in front of it" })
+            .effect("nothing of it is seen")
+            .help(help);
+        let diagnostic = match mirrored(scout, first) {
+            Some((place, text)) => diagnostic
+                .at(place)
+                .help(format!(
+                    "a scale below zero, `{text}`, turns it inside out through its origin: take the sign away"
+                ))
+                .fix(place, text.replace('-', "")),
+            None => diagnostic,
+        };
+        found.push(Finding::from(diagnostic));
+    }
+    found
+}
+
+/// The number of a scale below zero around a thing, and where it is written.
+fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
+    let object = &scout.world().objects()[number as usize];
+    object.to_world.as_ref().filter(|to_world| {
+        to_world.vector(Vec3::X).cross(to_world.vector(Vec3::Y)).dot(to_world.vector(Vec3::Z)) < 0.0
+    })?;
+    let mut all: Vec<(&durer_scene::scene::Object, Option<Span>)> =
+        scout.subject.scene.root.iter().flat_map(|root| &root.objects).map(|object| (object, None)).collect();
+    while let Some((inner, around)) = all.pop() {
+        if inner.span.start == object.span.start && inner.span.file == object.span.file {
+            let value = scout.value(around?, &["UniformScale", "Scale", "scale"])?;
+            return Some((value, scout.text(value)));
+        }
+        match &inner.node {
+            Node::Group(group) => all.extend(group.objects.iter().map(|object| (object, around))),
+            Node::Transform(_, within) => all.push((within, Some(inner.span))),
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Things of which there is nothing: solids that are empty, triangles and meshes without area.
+fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
+    let mut nothing = super::objects::empty_solids(scout);
+    let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
+    let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
+        scout.visibilities()[*i] != Visibility::Seen
+            && match &object.geometry {
+                Geometry::Primitive(Primitive::Triangle(triangle)) => flat(triangle.corners()),
+                Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
+                _ => false,
+            }
+    });
+    nothing.extend(without.map(|(i, _)| i as u32));
+    nothing
+}
+
+/// Whether one object is wholly inside another, as far as its middle tells.
+fn holds(scout: &SceneProbe, outer: u32, inner: u32) -> bool {
+    let middle = scout.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
+    middle.is_some_and(|middle| super::within::around(scout.world(), middle).contains(&outer))
+}
+
+/// Things smaller than a pixel.
+pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
+    let objects = scout.world().objects();
+    let small = |(index, object): (usize, &Object)| {
+        let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        // Nobody makes a mesh of many triangles to be a dot.
+        let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
+        let size = pixels(scout, bounds).filter(|size| *size < least)?;
+        let looked = super::visibility::rays_to(scout, bounds.center());
+        (!looked.is_empty() && scout.visibilities()[index] != Visibility::Outside).then_some((
+            index as u32,
+            size,
+            bounds,
+        ))
+    };
+    let all: Vec<_> = objects.iter().enumerate().take(MAX_SOUGHT).filter_map(small).collect();
+    // A swarm of tiny things is one; and all that is tiny together is told of together.
+    let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
+    if objects.len() > FEW_OBJECTS || all.len() == bounded || scout.seen().next().is_none() {
+        return Vec::new();
+    }
+    let say = |(index, size, bounds): (u32, f32, Aabb)| {
+        let diagnostic = Diagnostic::warning(format!("the {} is {} pixels wide", scout.object(index), number(size)))
+            .at(scout.object_span(index))
+            .effect("nothing of it is seen, or a speck")
+            .help(format!(
+                "its largest side is {}: look at its size and the `{}` around it",
+                number(bounds.size().max_element()),
+                scout.word("Scale", "scale")
+            ));
+        Finding::from(diagnostic)
+    };
+    all.into_iter().map(say).collect()
+}
+
+/// Landscapes without heights.
+pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
+    let mut found = Vec::new();
+    let mut all: Vec<&durer_scene::scene::Object> =
+        scout.subject.scene.root.iter().flat_map(|root| &root.objects).collect();
+    while let Some(object) = all.pop().filter(|_| found.len() < MAX_SOUGHT) {
+        match &object.node {
+            Node::Group(group) => all.extend(&group.objects),
+            Node::Transform(_, inner) => all.push(inner),
+            Node::Solid(_, parts) => all.extend(parts),
+            Node::HeightField(field) => {
+                let size = field.max - field.min;
+                let wide = size.x.max(size.z);
+                if size.y > 0.002 * wide {
+                    continue;
+                }
+                let max = vector(Vec3::new(field.max.x, field.min.y + 0.2 * wide, field.max.z));
+                let diagnostic =
+                    Diagnostic::warning(format!("this landscape is {} wide and {} high", number(wide), number(size.y)))
+                        .effect("it is flat: nothing is seen of its hills")
+                        .help(format!("heights go from `min` to `max` along y: `max {max}`, say"));
+                let diagnostic = diagnostic.fix_at(scout.value(object.span, &["max"]), max);
+                found.push(Finding::from(scout.at_value(diagnostic, object.span, &["max"])));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+fn is_triangle(scout: &SceneProbe, object: u32) -> bool {
+    matches!(scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
+}
+
+/// Objects far from all that is seen: thrown away by a transform, say.
+fn far_away(scout: &SceneProbe) -> Vec<Finding> {
+    let both = || scout.world().objects().iter().zip(scout.visibilities()).enumerate();
+    let seen =
+        both().filter(|(_, (_, sight))| **sight == Visibility::Seen).filter_map(|(_, (object, _))| object.bounds());
+    let core = seen.fold(Aabb::EMPTY, Aabb::union);
+    let far = |bounds: Aabb| (bounds.center() - core.center()).length() > 10.0 * core.size().length();
+    let out = |sight: &Visibility| matches!(sight, Visibility::Outside | Visibility::Hidden(_));
+    let lost = both().find(|(_, (object, sight))| out(sight) && object.bounds().is_some_and(far));
+    let Some((index, (object, _))) = lost.filter(|_| !core.is_empty()) else { return Vec::new() };
+    let place = object.bounds().map_or_else(String::new, |bounds| vector(bounds.center()));
+    let diagnostic =
+        Diagnostic::warning(format!("the {} is far from everything else, at {place}", scout.object(index as u32)))
+            .at(object.span)
+            .effect("it is not seen")
+            .help("look at its place and the transforms around it");
+    vec![Finding::from(diagnostic)]
+}

@@ -1,0 +1,235 @@
+//! What each light does to what is seen, and why it does nothing.
+
+use super::aim::Aim;
+use super::probes::{Lit, ProbeGrid, ProbeHit};
+use super::within::around;
+use durer_render::world::Material;
+use durer_scene::camera::Projection;
+use durer_scene::light::{Emitter as _, Light, PointLight};
+use durer_scene::math::{Color, Ray, Vec3};
+
+/// What adds less than this to a colour is not seen in eight bits.
+pub(super) const VISIBLE: f32 = 1.0 / 512.0;
+/// Of more lights, the rest is taken to work.
+pub(super) const MAX_JUDGED: usize = 500;
+/// A light that adds something to a smaller share of what is seen might as well add nothing.
+const SHARE: f32 = 0.002;
+/// Where more of what faces a light than this is in shadow, the light is kept off.
+const MAX_BLOCKED: f32 = 0.95;
+/// A roof over all things keeps light off so large a share of what faces it.
+const ROOFED: f32 = 0.6;
+/// Where all that arrives of all lights is less than this, nobody sees that there are any.
+const MAX_WEAK: f32 = 0.06;
+/// Below this cosine light hardly falls on a surface, but goes along it.
+pub(super) const GRAZING: f32 = 0.08;
+
+/// What a light does to what is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Verdict {
+    /// It adds to the picture, or there is nothing that it could add to.
+    Works,
+    /// It has no colour.
+    Black,
+    /// It divides by zero, or by less.
+    Divides,
+    /// It is inside this object.
+    Inside(u32),
+    /// This object, more than others, keeps it off what faces it.
+    Blocked(u32),
+    /// What is seen faces away from it.
+    Behind,
+    /// Its beam does not go to what is seen.
+    Missing,
+    /// At most so much of it arrives.
+    Faint(f32),
+    /// What it shines on has none of its colours.
+    Cancelled,
+}
+
+/// The verdict on each light of the world.
+pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
+    let judged = |light| if light < MAX_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
+    let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
+    if let Some(most) = weak_together(grid, &verdicts) {
+        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Faint(most));
+    }
+    if cancelled_together(grid, &verdicts) {
+        verdicts.iter_mut().for_each(|verdict| *verdict = Verdict::Cancelled);
+    }
+    verdicts
+}
+
+/// What arrives of a few lights that work, where all of them together hardly count.
+fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
+    if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
+        return None;
+    }
+    let most = |of: fn(&Lit) -> Color| {
+        let sums = grid.seen().map(|(_, seen)| seen.lit.iter().map(of).sum::<Color>().max_element());
+        sums.fold(0.0, f32::max)
+    };
+    let (arrives, adds) = (most(|lit| lit.arrives), most(|lit| lit.adds));
+    (arrives > 0.0 && arrives < MAX_WEAK && adds < MAX_WEAK).then_some(arrives)
+}
+
+/// Whether what all lights together shine on has none of their colours, on nearly all that they
+/// reach.
+fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
+    let materials = grid.world().materials();
+    if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
+    {
+        return false;
+    }
+    let (mut reached, mut lost) = (0, 0);
+    for (_, seen) in grid.seen() {
+        let Some(Material::Phong(phong)) = materials.get(seen.material as usize) else { return false };
+        let lit = seen.lit.iter().filter(|lit| lit.cosine > 0.05 && lit.blocker.is_none());
+        let arrives: Color = lit.map(|lit| lit.arrives).sum();
+        if arrives.max_element() < 0.1 || phong.diffuse.max_element() < 0.1 || phong.texture.is_some() {
+            continue;
+        }
+        reached += 1;
+        lost += usize::from((arrives * phong.diffuse).max_element() < VISIBLE);
+    }
+    reached > 20 && lost * 10 > reached * 8
+}
+
+fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
+    let light = &grid.world().lights()[number];
+    // Clear glass shows what is behind it, not the light that falls on it.
+    let clear = |seen: &ProbeHit| match &grid.world().materials()[seen.material as usize] {
+        Material::Phong(phong) => phong.transparent.min_element() > 0.5 && phong.diffuse.max_element() < 0.1,
+        Material::Solid(..) => false,
+    };
+    let lit = grid.seen().filter(|(_, seen)| !clear(seen));
+    let all: Vec<&Lit> = lit.filter_map(|(_, seen)| seen.by(number)).collect();
+    if light.color() == Color::ZERO {
+        return Verdict::Black;
+    }
+    let odd =
+        |lit: &&Lit| !lit.arrives.is_finite() || lit.arrives.min_element() < 0.0 && light.color().min_element() >= 0.0;
+    if divisor(light) == Some(Vec3::ZERO) || all.iter().any(odd) {
+        return Verdict::Divides;
+    }
+    if aims[number].is_some() {
+        return Verdict::Missing;
+    }
+    let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
+    // A few lights are each meant to be seen.
+    let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
+    let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+    if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
+        return Verdict::Faint(arrives);
+    }
+    let is_blocked = nearly_blocked(&all) || roofed(grid, number);
+    if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
+        return Verdict::Works;
+    }
+    if let Light::Point(point) = light
+        && let Some(&object) =
+            around(grid.world(), point.position).iter().find(|&&object| keeps_light(grid, object, &all))
+    {
+        return Verdict::Inside(object);
+    }
+    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+    let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
+    if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
+        let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
+        // What lies nearly along the light is dark whatever its colour.
+        let lit = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
+        let (full, lost) = lit
+            .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
+            .fold((0, 0), |(n, lost), lit| (n + 1, lost + usize::from(lit.adds.abs().max_element() <= VISIBLE)));
+        return match most < 4.0 * VISIBLE {
+            true => Verdict::Faint(most),
+            false if full > 4 && lost * 10 > full * 9 => Verdict::Cancelled,
+            false if full > 0 => Verdict::Works,
+            false => Verdict::Behind,
+        };
+    }
+    match main_blocker(grid, number, &blocked)
+        .filter(|_| blocked.len() * 5 > all.len())
+        .or_else(|| behind_plane(grid, light))
+    {
+        Some(object) => Verdict::Blocked(object),
+        None => Verdict::Behind,
+    }
+}
+
+/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be
+/// lit.
+fn nearly_blocked(all: &[&Lit]) -> bool {
+    let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
+    let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
+    blocked as f32 > MAX_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
+}
+
+/// Whether one thing keeps a light off all others that have an end and face it, and off most of the
+/// rest.
+fn roofed(grid: &ProbeGrid, light: usize) -> bool {
+    let objects = grid.world().objects();
+    let facing = || {
+        let all = grid.seen().filter_map(|(_, seen)| Some((seen.object, seen.by(light)?)));
+        all.filter(|(_, lit)| lit.cosine > GRAZING)
+    };
+    let blockers: Vec<u32> = facing().filter_map(|(_, lit)| lit.blocker).collect();
+    let Some(roof) = most_common(&blockers) else { return false };
+    let under = |(_, lit): &(u32, &Lit)| lit.blocker.is_some();
+    let things = || facing().filter(|(object, _)| *object != roof && objects[*object as usize].bounds().is_some());
+    let (count, covered) = (things().count(), things().filter(under).count());
+    let (all, dark) = (facing().count(), facing().filter(|(_, lit)| lit.blocker == Some(roof)).count());
+    count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
+}
+
+/// Of some objects the one that is in the way of a light at the most places; each may be in the way
+/// of another.
+fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
+    let (common, lamp) = (most_common(blocked)?, &grid.world().lights()[light]);
+    let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
+    let mut all = Vec::new();
+    for (probe, seen) in places.step_by((blocked.len() / 60).max(1)) {
+        let place = probe.ray.at(seen.t).as_dvec3();
+        let seen = lamp.illuminate(place);
+        let reach = if seen.distance.is_finite() { seen.distance } else { f32::INFINITY };
+        let ray = Ray { t_min: 1e-3, t_max: 0.999 * reach, ..Ray::new(place.as_vec3(), seen.to_light) };
+        let mut hit: Vec<u32> = grid.world().all_hits(&ray).take(16).map(|hit| hit.object).collect();
+        hit.sort_unstable();
+        hit.dedup();
+        all.extend(hit);
+    }
+    let count = |object: u32| all.iter().filter(|other| **other == object).count();
+    // What is hit first most often is told of, unless something else is in the way at more places.
+    most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
+}
+
+/// The seen plane that is between the camera and a light, if one is first of all.
+fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
+    let Light::Point(point) = light else { return None };
+    let world = grid.world();
+    let way = world.camera().pose().center - point.position;
+    let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
+    let is_seen = grid.seen().any(|(_, seen)| seen.object == hit.object);
+    (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
+}
+
+/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
+/// faces the light.
+fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&Lit]) -> bool {
+    let shadows = grid.subject.job.settings.shadows;
+    let blocks = all.iter().any(|lit| lit.blocker == Some(object));
+    blocks || !shadows || all.iter().all(|lit| lit.cosine <= 1e-3)
+}
+
+pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
+    let mut sorted = objects.to_vec();
+    sorted.sort_unstable();
+    sorted.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
+}
+
+/// What the light of a point is divided by: its three factors.
+pub(super) fn divisor(light: &Light) -> Option<Vec3> {
+    match light {
+        Light::Point(PointLight { attenuation, .. }) => *attenuation,
+        _ => None,
+    }
+}

@@ -1,0 +1,324 @@
+//! Where the camera stands and looks.
+
+use super::finding::{Finding, number, vector};
+use super::hidden::{ground, plane_before};
+use super::lights::all_fail;
+use super::scene_probe::SceneProbe;
+use super::verdict::Verdict;
+use super::visibility::{Visibility, aims, has_eye, pixels};
+use super::within::around;
+use durer_diag::{Diagnostic, Severity};
+use durer_formats::course::place::section;
+use durer_render::world::{Geometry, Material, Object};
+use durer_scene::camera::{Camera, Projection};
+use durer_scene::math::{Aabb, Color, Vec3, fp};
+use durer_scene::scene::{Group, Node};
+use durer_scene::shape::Primitive;
+
+/// A scene in which nothing is.
+pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
+    // Solids of which nothing is left are told of as that.
+    let solid = |object: &Node| matches!(object, Node::Solid(..));
+    let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
+    let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
+    // Models and scenes as JSON have no such word.
+    let file = scout.subject.scene.camera_span.file;
+    let group = scout.subject.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
+    let diagnostic = match group && root.objects.is_empty() {
+        true => Diagnostic::warning("the scene has no objects: its group is empty").help("write some into the `Group`"),
+        false => Diagnostic::warning("nothing is to be seen: there are no surfaces"),
+    };
+    vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
+}
+
+/// Objects that are no room for others, but around the eye.
+pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
+    if !has_eye(scout) {
+        return Vec::new();
+    }
+    let pose = scout.world().camera().pose();
+    let (rays, physical) = (scout.probes.len(), scout.is_physical());
+    let mut found = Vec::new();
+    for object in around(scout.world(), pose.center) {
+        let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
+        // A room has things in it, and light.
+        let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
+        // Walls that are seen from behind where backs are not shaded are no room's.
+        let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
+        let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
+        if own * 100 < rays * 99 && !dark && !walls {
+            continue;
+        }
+        let Some(bounds) = scout.world().objects()[object as usize].bounds() else { continue };
+        let name = scout.object(object);
+        let outside = leave(bounds, pose.center, -pose.direction);
+        let diagnostic = Diagnostic::warning(format!("the camera is inside the {name}"))
+            .label("this place is inside it")
+            .related(scout.object_span(object), "around the camera")
+            .effect(match dark {
+                _ if walls && own * 100 < rays * 99 => "its walls are seen from behind: no light falls on that side",
+                true => "it keeps the light out; all that is seen is in its shadow",
+                false => "all that is seen is the inside of it",
+            })
+            .help(match super::extent::times_larger(scout, object) {
+                Some(times) => format!(
+                    "it is {} times larger than what else there is: make it smaller, or move the camera out, to `center {}`",
+                    number(times),
+                    vector(outside)
+                ),
+                None => format!(
+                    "move the camera out of it: against its direction it is outside at `center {}`",
+                    vector(outside)
+                ),
+            });
+        let diagnostic = scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"]);
+        found.push(Finding::from(diagnostic).whole(true));
+    }
+    found
+}
+
+/// The first place beyond a box on the way from a point inside it, with a little room.
+fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
+    let direction = direction.normalize_or(Vec3::Z);
+    let way = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
+    from + 1.5 * way * direction
+}
+
+/// What the camera should see: the box around all that has an end, else the nearest place of a
+/// plane.
+pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
+    let (world, eye) = (scout.world(), scout.world().camera().pose().center);
+    let bounds = world.bounds();
+    if !bounds.is_empty() {
+        return Some(bounds);
+    }
+    let foot = |object: &Object| match &object.geometry {
+        Geometry::Primitive(Primitive::Plane(plane)) => {
+            let n = plane.normal.normalize_or(Vec3::Y);
+            let on = n * (plane.offset / plane.normal.length().max(f32::MIN_POSITIVE));
+            let (on, n) = (object.world_point(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
+            Some(eye + (on - eye).dot(n) * n)
+        }
+        _ => None,
+    };
+    world.objects().iter().find_map(foot).map(|place| Aabb::around([place]))
+}
+
+/// Whether there are things with an end and none of them is in the picture, or nothing is at all.
+fn all_outside(scout: &SceneProbe) -> bool {
+    let world = scout.world();
+    let bounded = || {
+        world
+            .objects()
+            .iter()
+            .zip(scout.visibilities())
+            .filter(|(object, _)| object.bounds().is_some_and(|b| !b.is_empty()))
+    };
+    let none = scout.seen().next().is_none();
+    match bounded().next() {
+        Some(_) => bounded().all(|(_, sight)| *sight == Visibility::Outside),
+        None => none && !world.objects().is_empty(),
+    }
+}
+
+/// The camera looks past everything, and the middle of things is not in the picture.
+pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
+    let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
+    let (world, span) = (scout.world(), scout.subject.scene.camera_span);
+    let (pose, center) = (world.camera().pose(), bounds.center());
+    let mut ended = world.objects().iter().filter(|object| object.bounds().is_some()).peekable();
+    let behind = has_eye(scout) && ended.peek().is_some() && ended.all(|object| plane_before(scout, object).is_some());
+    if aims(scout, center) || behind {
+        return Vec::new();
+    }
+    // A picture that is far too small looks past things too.
+    if aims_widely(scout, center) && !super::extent::too_narrow(scout).is_empty() {
+        return Vec::new();
+    }
+    if let Some(diagnostic) = super::lens::shifted(scout, center) {
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let hits = scout.seen().count();
+    let effect = match hits {
+        0 => "every ray misses; the whole picture is background".to_string(),
+        _ => format!("only {} is seen", only_seen(scout)),
+    };
+    let mut diagnostic = Diagnostic::warning("the camera looks past everything").effect(effect);
+    if !has_eye(scout) {
+        let off = center - pose.center;
+        let forward = world.camera_frame().forward;
+        let across = off - off.dot(forward) * forward;
+        let place = pose.center + across;
+        diagnostic.message += &format!(": the middle of the scene lies {} beside its axis", number(across.length()));
+        diagnostic = diagnostic.help(format!("{}move it there: `center {}`", nearest(scout), vector(place)));
+        let diagnostic = mended(scout, diagnostic, "center", place);
+        return vec![Finding::from(diagnostic).whole(true)];
+    }
+    let to = center - pose.center;
+    let angle = degrees(pose.direction, to);
+    // With an `up` that says nothing the picture may be turned any way; far from its middle that
+    // does not matter.
+    let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
+    if turned && angle < 60.0 {
+        return Vec::new();
+    }
+    diagnostic.message += &format!(": the middle of the scene lies {angle:.0} degrees off its direction");
+    let moved = super::places::moved(scout);
+    let first = moved.as_ref().map_or_else(|| nearest(scout), |(_, words)| words.clone() + "; or ");
+    let mut help = format!("{first}turn it: `direction {}`", vector(to));
+    let as_point = pose.direction - pose.center;
+    if degrees(as_point, to) < 20.0 && angle > 20.0 {
+        help += "; `direction` is a direction, not the point to look at";
+    }
+    let diagnostic = match (moved, scout.value(span, &["direction"])) {
+        // Which of the two is wrong nobody knows.
+        (Some((place, _)), _) => diagnostic.help(help).at(place).related(span, "the camera"),
+        (None, Some(_)) => mended(scout, diagnostic.help(help), "direction", to),
+        (None, None) => diagnostic.help(help).at(span),
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Whether a camera of usual width would see a place.
+fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
+    let world = scout.world();
+    let to = place - world.camera().pose().center;
+    match world.camera() {
+        Camera::Perspective(_) => degrees(world.camera().pose().direction, to) < 20.0,
+        Camera::Orthographic(_) => {
+            let across = to - to.dot(world.camera_frame().forward) * world.camera_frame().forward;
+            across.length() < 0.7 * world.bounds().size().max_element()
+        }
+        _ => false,
+    }
+}
+
+/// A vector of the camera is to be another.
+fn mended(scout: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
+    let span = scout.subject.scene.camera_span;
+    match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
+        Some(place) => diagnostic.at(place).fix(place, vector(value)),
+        None => diagnostic.at(span),
+    }
+}
+
+fn degrees(a: Vec3, b: Vec3) -> f32 {
+    let (a, b) = (a.normalize_or_zero(), b.normalize_or_zero());
+    fp::atan2(a.cross(b).length(), a.dot(b)).to_degrees()
+}
+
+/// The names of what is seen instead.
+fn only_seen(scout: &SceneProbe) -> String {
+    let mut objects: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
+    objects.sort_unstable();
+    objects.dedup();
+    match &objects[..] {
+        [one] => format!("the {}", scout.object(*one)),
+        all => format!("{} objects without an end", all.len()),
+    }
+}
+
+/// By how much the ray that comes nearest misses the ball around an object.
+fn nearest(scout: &SceneProbe) -> String {
+    let world = scout.world();
+    let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
+        let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
+        Some((i as u32, bounds.center(), 0.5 * bounds.size().length()))
+    });
+    let misses = balls.take(500).flat_map(|(i, center, radius)| {
+        scout.probes.iter().map(move |probe| {
+            let to = center - probe.ray.origin;
+            let along = to.dot(probe.ray.dir).max(probe.ray.t_min);
+            (i, (to - along * probe.ray.dir).length() - radius)
+        })
+    });
+    match misses.min_by(|a, b| a.1.total_cmp(&b.1)) {
+        Some((object, by)) if by > 0.0 => {
+            format!("the nearest ray passes {} beside the {}; ", number(by), scout.object(object))
+        }
+        _ => String::new(),
+    }
+}
+
+/// The picture is empty although the camera looks at things: they are too small, or there is
+/// nothing of them.
+pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    if scout.seen().next().is_some() || world.objects().is_empty() {
+        return Vec::new();
+    }
+    // What is too small for the grid of rays is no hole.
+    let hit = scout.visibilities().contains(&Visibility::Seen);
+    let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
+    let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
+        .effect("the whole picture is background")
+        .at(scout.subject.scene.camera_span);
+    let size = pixels(scout, bounds);
+    diagnostic.help = Some(match size {
+        Some(size) if size < 12.0 => return Vec::new(),
+        _ => format!("{}is there a hole in the middle, or is it seen from its edge?", nearest(scout)),
+    });
+    vec![Finding::from(diagnostic).last()]
+}
+
+/// Planes that pass through the middle of most things: a floor with another axis for its normal,
+/// say.
+pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let boxes: Vec<[Vec3; 8]> =
+        world.objects().iter().filter_map(|o| Some(o.bounds()?.corners())).take(super::finding::MAX_SOUGHT).collect();
+    let through = |&number: &u32| {
+        let Some((n, d)) = ground(scout, number) else { return false };
+        let clear = match world.materials().get(world.objects()[number as usize].material as usize) {
+            Some(Material::Phong(phong)) => phong.transparent != Color::ZERO,
+            _ => false,
+        };
+        let is_cut = |corners: &&[Vec3; 8]| {
+            let reach =
+                corners.iter().map(|p| p.dot(n) - d).fold((f32::MAX, f32::MIN), |(a, b), x| (a.min(x), b.max(x)));
+            reach.0 < -0.25 * (reach.1 - reach.0) && reach.1 > 0.25 * (reach.1 - reach.0)
+        };
+        let cut = boxes.iter().filter(is_cut).count();
+        !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
+    };
+    let say = |number: u32| {
+        // Things may well be sunk into a floor.
+        let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
+        let severity = if floor { Severity::Note } else { Severity::Warning };
+        let message = format!("the {} passes through the middle of most things", scout.object(number));
+        let diagnostic = Diagnostic { severity, ..Diagnostic::warning(message) }
+            .at(scout.object_span(number))
+            .effect("only what is before it is seen of them")
+            .help("a floor lies below things: which axis is up? ProbeGrid at its `normal` and `offset`, and what turns it");
+        Finding::from(diagnostic)
+    };
+    (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
+}
+
+/// A camera whose `up` points into the ground on which all things stand.
+pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let (eye, things) = (world.camera().pose().center, world.bounds());
+    let mut planes = (0..world.objects().len() as u32).filter_map(|i| Some((i, ground(scout, i)?)));
+    let (Some((number, (n, d))), None) = (planes.next(), planes.next()) else { return Vec::new() };
+    let (n, d) = if eye.dot(n) < d { (-n, -d) } else { (n, d) };
+    let height = |p: &Vec3| p.dot(n) - d;
+    let size = things.size().max_element();
+    let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
+    let pose = world.camera().pose();
+    let seen = scout.seen().any(|(_, seen)| seen.object == number);
+    // A ceiling from which things hang is as good as a ground; that things stand on it tells which
+    // it is.
+    let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
+    if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
+        return Vec::new();
+    }
+    let turned = vector(if pose.up.dot(n) < -0.5 { -pose.up } else { n });
+    let span = scout.subject.scene.camera_span;
+    let diagnostic = Diagnostic::warning("the picture is upside down: the camera's `up` points into the ground")
+        .related(scout.object_span(number), "the ground")
+        .effect("things hang from it")
+        .help(format!("`up` is where the upper edge of the picture is: `up {turned}`"))
+        .fix_at(scout.value(span, &["up"]), turned);
+    vec![Finding::from(scout.at_value(diagnostic, span, &["up"]))]
+}

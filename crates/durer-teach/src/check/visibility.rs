@@ -1,0 +1,127 @@
+//! How each object is seen: in the picture, behind another, or not at all.
+
+use super::probes::ProbeGrid;
+use durer_render::world::{Geometry, Object};
+use durer_scene::camera::{Camera, CameraSample, Projection};
+use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
+use durer_scene::shape::Primitive;
+
+/// How an object is seen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Visibility {
+    /// Some of it is in the picture.
+    Seen,
+    /// Some of it would be, but for another object.
+    Hidden(u32),
+    /// None of it lies in the picture.
+    Outside,
+    /// It has no end, or there is nothing of it that could be aimed at.
+    Unknown,
+}
+
+/// Objects beyond this number are not looked for one by one.
+const MAX_OBJECTS: usize = 200;
+/// Corners of a mesh that are looked for.
+const MAX_CORNERS: usize = 40;
+
+/// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
+/// at.
+pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
+    let objects = grid.world().objects();
+    let mut visibilities = vec![Visibility::Unknown; objects.len()];
+    grid.seen().for_each(|(_, seen)| visibilities[seen.object as usize] = Visibility::Seen);
+    for (i, object) in objects.iter().enumerate().take(MAX_OBJECTS) {
+        if visibilities[i] != Visibility::Seen {
+            visibilities[i] = sight(grid, i as u32, object);
+        }
+    }
+    visibilities
+}
+
+fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
+    let points = points(object);
+    if points.is_empty() {
+        return Visibility::Unknown;
+    }
+    let mut sight = Visibility::Outside;
+    for ray in points.iter().flat_map(|&point| rays_to(grid, point)) {
+        match grid.world().closest(&ray, &mut ()) {
+            Some(hit) if hit.object == number => return Visibility::Seen,
+            Some(hit) => sight = Visibility::Hidden(hit.object),
+            None => {}
+        }
+    }
+    sight
+}
+
+/// The camera's rays to a point that lies in the picture.
+pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
+    let (world, mut places) = (grid.world(), Vec::new());
+    world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
+    let corner = corner(grid);
+    let inside = places.into_iter().filter(|place| place.abs().cmple(corner).all());
+    inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
+}
+
+/// The upper right corner of the picture in the square that the camera covers.
+pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
+    grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
+}
+
+/// Points of an object in the world: corners of triangles and their middles, else a grid through
+/// its box.
+pub(super) fn points(object: &Object) -> Vec<Vec3> {
+    let to_world = |p: Vec3| object.world_point(p);
+    match &object.geometry {
+        Geometry::Primitive(Primitive::Triangle(triangle)) => within(triangle.corners()).map(to_world).to_vec(),
+        Geometry::Mesh(tree) => {
+            let count = tree.mesh.len();
+            let each = (0..count).step_by((count / MAX_CORNERS).max(1));
+            each.map(|i| to_world(within(tree.mesh.corners(i as u32))[0])).collect()
+        }
+        _ => {
+            let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
+            let (center, half) = (bounds.center(), 0.5 * bounds.size());
+            // Not the corners themselves: round things have nothing there.
+            let steps = [0.0, -0.95, 0.95, -0.5, 0.5];
+            let grid = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| Vec3::new(*x, *y, z))));
+            grid.map(|at| center + at * half).collect()
+        }
+    }
+}
+
+/// The middle of a triangle, and points near its corners.
+fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
+    let middle = (a + b + c) / 3.0;
+    [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
+}
+
+/// Whether the camera sees a place, if nothing is in front of it.
+pub(super) fn aims(grid: &ProbeGrid, place: Vec3) -> bool {
+    !rays_to(grid, place).is_empty()
+}
+
+/// How many pixels of the picture a box spans.
+pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
+    let (world, job) = (grid.world(), grid.subject.job);
+    let mut around: Option<(Vec2, Vec2)> = None;
+    let mut unseen = 0;
+    for point in bounds.corners() {
+        let mut places = Vec::new();
+        world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
+        unseen += usize::from(places.len() != 1);
+        for place in places {
+            let (min, max) = around.unwrap_or((place, place));
+            around = Some((min.min(place), max.max(place)));
+        }
+    }
+    let (min, max) = around.filter(|_| unseen == 0)?;
+    // The larger side of the picture spans 2.
+    Some((max - min).max_element() / (2.0 * corner(grid).max_element()) * job.width.max(job.height) as f32)
+}
+
+/// Whether the camera's rays all start at its place and go one way: those that run both ways see
+/// what is behind as well.
+pub(super) fn has_eye(grid: &ProbeGrid) -> bool {
+    !matches!(grid.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
+}

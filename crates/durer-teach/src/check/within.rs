@@ -1,0 +1,39 @@
+//! In which objects a place lies.
+
+use durer_render::world::World;
+use durer_scene::math::{Ray, Ray64, Vec3};
+
+/// Directions in which no edge of a thing that was made by hand is likely to run.
+const DIRECTIONS: [Vec3; 5] = [
+    Vec3::new(0.532, 0.741, 0.411),
+    Vec3::new(-0.613, 0.274, 0.741),
+    Vec3::new(0.317, -0.831, 0.457),
+    Vec3::new(-0.443, -0.389, -0.808),
+    Vec3::new(0.687, 0.173, -0.706),
+];
+
+/// The objects with an end in which a point lies: a ray to any side leaves them once more than it
+/// enters them.
+pub(super) fn around(world: &World, point: Vec3) -> Vec<u32> {
+    let boxed = |object: &u32| {
+        let bounds = world.objects()[*object as usize].bounds();
+        bounds.is_some_and(|b| b.holds(point))
+    };
+    let mut inside: Vec<u32> = (0..world.objects().len() as u32).filter(boxed).collect();
+    for direction in DIRECTIONS {
+        if inside.is_empty() {
+            break;
+        }
+        // Each by itself: where two surfaces lie in one another, one of them alone is met by a ray.
+        inside.retain(|&object| {
+            let mut rest = Ray64::from(Ray::new(point, direction));
+            let crossings = std::iter::from_fn(|| {
+                let t = world.hit_of(object, &rest)?.t;
+                rest.rounded.t_min = t;
+                Some(t)
+            });
+            crossings.count() % 2 == 1
+        });
+    }
+    inside
+}

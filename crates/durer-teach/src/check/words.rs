@@ -1,0 +1,154 @@
+//! What the reader and the compiler report, with what comes of it in the picture, and the edits
+//! that only the whole scene tells.
+
+use super::finding::{Finding, vector};
+use super::scene_probe::SceneProbe;
+use durer_diag::{Severity, Span};
+use durer_formats::course::place;
+use durer_scene::camera::Projection;
+use durer_scene::dialect::Dialect;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Material;
+
+/// Adds what is known of a finding when the scene is compiled.
+pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
+    match finding.diagnostic.code {
+        "no-light" => no_light(scout, finding),
+        "black-light" => {
+            finding.whole = super::lights::all_fail(scout);
+            finding.diagnostic.effect = Some(match finding.whole {
+                true => "no light reaches what is seen".into(),
+                false => "it adds nothing to the picture".into(),
+            });
+            if let Some(value) = finding.diagnostic.span.and_then(|span| scout.value(span, &["color"])) {
+                finding.diagnostic.span = Some(value);
+                finding.diagnostic.help.get_or_insert("white light is `color 1 1 1`".into());
+            }
+        }
+        "no-falloff" => finding.whole = true,
+        "no-objects" => {
+            finding.whole = true;
+            finding.diagnostic.effect = Some("every ray misses; the whole picture is background".into());
+        }
+        "empty-solid" => {
+            finding.diagnostic.effect.get_or_insert("it is not seen".into());
+            finding
+                .diagnostic
+                .help
+                .get_or_insert("move its parts into one another: an intersection is what all have in common".into());
+        }
+        "foreign-word" => foreign_in_nodes(scout, finding),
+        "up-parallel" => up_parallel(scout, finding),
+        "material-index" => material_index(scout, finding),
+        "no-material" => no_material(scout, finding),
+        "mesh-file" | "comment" => finding.diagnostic.severity = Severity::Note,
+        _ => {}
+    }
+}
+
+/// What other years write in a thing, the year of nodes writes around it.
+fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
+    finding.diagnostic.severity = Severity::Note;
+    let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
+    if scout.subject.dialect == Dialect::F23
+        && finding.diagnostic.help.is_none()
+        && ["center", "position"].contains(&word.as_str())
+    {
+        finding.diagnostic.help =
+            Some("the `Node` around it moves it: `Node { Transform { translate 1 2 3 } ... }`".into());
+    }
+}
+
+/// A scene may do without lights if it has no use for them: flat colours, and no other light that
+/// they would go with.
+fn no_light(scout: &SceneProbe, finding: &mut Finding) {
+    let scene = scout.subject.scene;
+    let plain = |material: &Material| match material {
+        Material::Phong(phong, _) => phong.specular_color == Vec3::ZERO && phong.reflective_color == Vec3::ZERO,
+        Material::Principled(..) | Material::Hair(..) => false,
+        Material::Solid(..) => true,
+    };
+    let flat = scene.lights.is_none()
+        && scene.background.ambient_light == Vec3::ZERO
+        && scene.materials.iter().all(|material| plain(&material.value));
+    if flat {
+        finding.diagnostic.severity = Severity::Note;
+    }
+    finding.whole = true;
+    finding.diagnostic.effect = Some("every surface has one flat colour; no shading and no shadow is seen".into());
+    finding.diagnostic.help = Some(
+        match scout.subject.dialect {
+            Dialect::F23 => {
+                "add a node, as in `Node { Component<Light> { type directional direction -1 -2 -1 color 0.9 0.9 0.9 } }`"
+            }
+            _ => "add some, as in `Lights { numLights 1 DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.9 } }`",
+        }
+        .into(),
+    );
+}
+
+fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
+    finding.diagnostic.effect = Some("the picture is turned as chance has it".into());
+    let direction = scout.world().camera().pose().direction.normalize_or_zero();
+    let up = if direction.y.abs() < 0.9 { Vec3::Y } else { Vec3::Z };
+    if let Some(value) = scout.value(scout.subject.scene.camera_span, &["up"]) {
+        finding.diagnostic.span = Some(value);
+        finding.diagnostic.help = Some(format!("choose another `up`, as `{}`", vector(up)));
+        finding.diagnostic = finding.diagnostic.clone().fix(value, vector(up));
+    }
+}
+
+/// One too many means that materials were counted from 1; with one material alone, it can only be
+/// that.
+fn material_index(scout: &SceneProbe, finding: &mut Finding) {
+    finding.diagnostic.effect = finding.diagnostic.help.take();
+    let count = scout.subject.scene.materials.len();
+    let Some(span) = finding.diagnostic.span else { return };
+    let text = scout.text(span);
+    let Some((word, index)) = text.rsplit_once(char::is_whitespace) else { return };
+    if count == 0 {
+        finding.diagnostic.help = Some("write the `Materials`".into());
+        return;
+    }
+    if from_one(scout, finding, count) {
+        return;
+    }
+    let meant = index.parse::<usize>().map_or(0, |index| if index == count { count - 1 } else { 0 });
+    finding.diagnostic.help = Some(match count {
+        1 => "materials are counted from 0: write 0".into(),
+        n => format!("materials are counted from 0: the last of {n} is {}", n - 1),
+    });
+    let only = count == 1 || index.parse() == Ok(count);
+    if only {
+        finding.diagnostic = finding.diagnostic.clone().fix(span, format!("{} {meant}", word.trim_end()));
+    }
+}
+
+/// Where no object has material 0 and one has the material after the last, all were counted from 1.
+fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
+    let span = finding.diagnostic.span.unwrap_or_default();
+    let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
+    let uses: Vec<(Span, usize)> =
+        uses.into_iter().flatten().filter_map(|value| Some((value, scout.text(value).parse().ok()?))).collect();
+    if count < 2 || uses.iter().any(|(_, index)| *index == 0) || !uses.iter().any(|(_, index)| *index == count) {
+        return false;
+    }
+    finding.diagnostic.help =
+        Some("materials are counted from 0, and these from 1: take 1 off each `MaterialIndex`".into());
+    for (value, index) in uses {
+        finding.diagnostic = finding.diagnostic.clone().fix(value, (index - 1).to_string());
+    }
+    true
+}
+
+fn no_material(scout: &SceneProbe, finding: &mut Finding) {
+    finding.diagnostic.effect = Some("it has not the colour that was meant".into());
+    let scene = scout.subject.scene;
+    let first = scene.root.iter().flat_map(|root| &root.objects).next();
+    let nodes = scout.subject.dialect == durer_scene::dialect::Dialect::F23;
+    // At the top of the group it holds for all that follow without one of their own.
+    if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
+        let place = Span { end: first.span.start, ..first.span };
+        finding.diagnostic = finding.diagnostic.clone().fix(place, "MaterialIndex 0 ");
+    }
+}

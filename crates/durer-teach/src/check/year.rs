@@ -1,0 +1,305 @@
+//! What a year's program makes of a scene that others would show as it was meant: its quirks, where
+//! they are on.
+
+use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
+use super::scene_probe::SceneProbe;
+use durer_diag::Diagnostic;
+use durer_scene::camera::Projection;
+use durer_scene::dialect::{Compat, Highlight};
+use durer_scene::light::Emitter as _;
+use durer_scene::material::PhongMaterial;
+use durer_scene::math::Color;
+use durer_scene::scene::{Material as Written, Spanned};
+
+/// Lengths of a camera's `up` that nobody sees in the picture.
+const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
+/// Cosines between `up` and `direction` beyond which the picture is seen to be skewed.
+const SKEW: f32 = 0.6;
+/// Sides of a picture that differ by less look equal.
+const SQUARE: f32 = 1.05;
+
+/// The Phong materials that are seen, as they are written.
+fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
+    let rays = scout.material_rays().to_vec();
+    let all = scout.subject.scene.materials.iter().enumerate();
+    all.filter_map(move |(i, written)| match &written.value {
+        Written::Phong(phong, _) if rays[i] > 0 => Some((i, written, &**phong)),
+        _ => None,
+    })
+}
+
+/// A highlight without sharpness: 0 to the power of 0 is 1.
+pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
+    let rules = scout.world().rules();
+    if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
+        return blunt(scout);
+    }
+    let all = scout.seen().count();
+    let chalk = |phong: &PhongMaterial| {
+        phong.specular_color.max_element() > 0.02 && phong.shininess.or(phong.exponent).unwrap_or(0.0) == 0.0
+    };
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let missing = phong.shininess.is_none();
+        let count = scout.material_rays()[i];
+        let message = match missing {
+            true => format!("material {i} has a `specularColor` and no `shininess`, which is 0 then"),
+            false => format!("the `shininess` of material {i} is 0"),
+        };
+        let message = message.replace("specularColor", scout.word("specularColor", "specular"));
+        let diagnostic = Diagnostic::warning(message)
+            .label(format!("on {} of what is seen", percent(count, all)))
+            .effect("its highlight is everywhere, as on chalk: 0 to the power of 0 is 1")
+            .help("write a `shininess`, 20 say; the higher, the sharper");
+        let value = scout.value(written.span, &["shininess"]);
+        let diagnostic = match value {
+            Some(value) => diagnostic.at(value).fix(value, "20"),
+            None => scout.at_value(diagnostic, written.span, &["specularColor", "specular"]),
+        };
+        Finding::from(diagnostic).whole(count * 2 > all)
+    };
+    let found: Vec<Finding> = seen(scout).filter(|(.., phong)| chalk(phong)).map(say).take(MAX_SOUGHT).collect();
+    if found.is_empty() { blunt(scout) } else { found }
+}
+
+/// The exponent of a material's highlight, and the word for it that is written.
+fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
+    match (phong.exponent, phong.shininess) {
+        (Some(exponent), _) => Some(("exponent", exponent)),
+        (None, shininess) => Some(("shininess", shininess?)),
+    }
+}
+
+/// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
+/// meant.
+fn blunt(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
+        return Vec::new();
+    }
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let (word, exponent) = sharpness(phong)?;
+        if exponent >= BLUNT || phong.specular_color.max_element() < 0.02 || phong.refraction_index.is_some() {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
+            .effect("its highlight is nearly everywhere, as on chalk")
+            .help(format!("the higher, the sharper: 20 is that of plastic: `{word} 20`, say"));
+        let value = scout.value(written.span, &[word]);
+        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "20"), written.span, &[word])))
+    };
+    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
+}
+
+/// Exponents beyond this make highlights smaller than a pixel.
+const SHARPEST: f32 = 2e4;
+/// And below this, what is no highlight any more.
+const BLUNT: f32 = 0.7;
+
+/// Highlights smaller than a pixel.
+pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
+    if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
+        return Vec::new();
+    }
+    let say = |(i, written, phong): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let (word, exponent) = sharpness(phong)?;
+        if exponent <= SHARPEST || phong.specular_color.max_element() < 0.02 {
+            return None;
+        }
+        let diagnostic = Diagnostic::warning(format!("the `{word}` of material {i} is {}", number(exponent)))
+            .effect("its highlight is smaller than a pixel: it is not seen")
+            .help(format!("20 is that of plastic, 200 that of polished metal: `{word} 100`, say"));
+        let value = scout.value(written.span, &[word]);
+        Some(Finding::from(scout.at_value(diagnostic.fix_at(value, "100"), written.span, &[word])))
+    };
+    seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
+}
+
+/// A highlight's colour without its exponent, which is 1 then.
+pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
+    if !matches!(scout.world().rules().highlight, Highlight::Blinn | Highlight::ByKeyword) {
+        return Vec::new();
+    }
+    let bare = |phong: &PhongMaterial| {
+        phong.specular_color.max_element() > 0.02
+            && phong.shininess.is_none()
+            && phong.exponent.is_none()
+            && phong.refraction_index.is_none()
+    };
+    let say = |(i, written, _): (usize, &Spanned<Written>, &PhongMaterial)| {
+        let diagnostic =
+            Diagnostic::warning(format!("material {i} has a `specularColor` and no `exponent`, which is 1 then"))
+                .effect("its highlight is spread over all of it, pale as chalk")
+                .help("write an `exponent`, 20 say; the higher, the sharper");
+        Finding::from(scout.at_value(diagnostic, written.span, &["specularColor"]))
+    };
+    seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
+}
+
+/// A camera's `up` that is used as it is written, and has not the length 1.
+pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
+    let up = scout.world().camera().pose().up;
+    let length = up.length();
+    let rules = scout.world().rules();
+    if !rules.has(Compat::RawUp) {
+        return skew_up(scout).filter(|_| rules.has(Compat::SkewUp)).into_iter().collect();
+    }
+    if UNIT.contains(&length) {
+        return skew_up(scout).into_iter().collect();
+    }
+    let (how, word) = if length > 1.0 { (length, "flattened") } else { (1.0 / length, "stretched upwards") };
+    let unit = vector(up / length);
+    let diagnostic =
+        Diagnostic::warning(format!("the camera's `up` has the length {}, and is used as it is", number(length)))
+            .effect(format!("the picture is {word}, {} times", number(how)))
+            .help(format!("give it the length 1: `up {unit}`"));
+    let span = scout.subject.scene.camera_span;
+    let diagnostic = match scout.value(span, &["up"]) {
+        Some(value) => diagnostic.at(value).fix(value, unit),
+        None => diagnostic.at(span),
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// The same with an `up` far from being at right angles to `direction`.
+fn skew_up(scout: &SceneProbe) -> Option<Finding> {
+    let pose = scout.world().camera().pose();
+    let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
+    let off = up.dot(forward);
+    if off.abs() < SKEW || off.abs() > 0.999 {
+        return None;
+    }
+    let right = (up - off * forward).normalize_or_zero();
+    let text = vector(right);
+    let diagnostic =
+        Diagnostic::warning("the camera's `up` is not at right angles to its `direction`, and is used as it is")
+            .effect(format!("the picture is skewed, and {} times too flat", number(1.0 / (1.0 - off * off).sqrt())))
+            .help(format!("at right angles it is `up {text}`"));
+    let span = scout.subject.scene.camera_span;
+    let value = scout.value(span, &["up"]);
+    Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
+}
+
+/// A picture that is not square, under a program that stretches it.
+pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
+    let job = scout.subject.job;
+    let (width, height) = (job.width as f32, job.height as f32);
+    let ratio = width.max(height) / width.min(height);
+    if !scout.world().rules().has(Compat::Stretch) || ratio < SQUARE {
+        return Vec::new();
+    }
+    let way = if width > height { "wide" } else { "high" };
+    let side = job.width.max(job.height);
+    let diagnostic = Diagnostic::warning(format!("the picture of {} x {} pixels is not square", job.width, job.height))
+        .at(scout.subject.scene.camera_span)
+        .effect(format!("this year's program stretches it: everything is {} times too {way}", number(ratio)))
+        .help(format!(
+            "ask for a square one, as `--size {side}x{side}` (in the course's programs `-size {side} {side}`)"
+        ));
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Faces of more than three corners, of which the year's program reads three.
+pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
+    if !scout.world().rules().is_official() {
+        return Vec::new();
+    }
+    let say = |(name, count, all, face): (&str, usize, usize, durer_diag::Span)| {
+        let diagnostic =
+            Diagnostic::warning(format!("{count} of the {all} faces of `{name}` have more than three corners"))
+                .at(face)
+                .label("the first of them")
+                .effect("this year's program reads three corners of each, and shows holes, or stops")
+                .help("cut them into triangles: `f 1 2 3 4` is `f 1 2 3` and `f 1 3 4`");
+        Finding::from(diagnostic)
+    };
+    super::mesh::large_faces(scout).into_iter().map(say).collect()
+}
+
+/// Patterns of which both parts are the same.
+pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
+    use durer_scene::material::Pattern;
+    let materials = &scout.subject.scene.materials;
+    let say = |(i, material): (usize, &Spanned<Written>)| {
+        if let Written::Phong(_, Some(noise)) = &material.value {
+            return (noise.color1 == noise.color2 && scout.material_rays()[i] > 0).then(|| {
+                let diagnostic =
+                    Diagnostic::warning(format!("both colours of this noise are {}", vector(noise.color1)))
+                        .effect("no pattern is seen: it is of one colour")
+                        .help("give its two `color` two different colours");
+                Finding::from(diagnostic.at(material.span))
+            });
+        }
+        let Written::Solid(solid, _) = &material.value else { return None };
+        let [first, second] = solid.materials();
+        let of = |index: u32| materials.get(index as usize).map(|part| &part.value);
+        if first != second && of(first) != of(second) || scout.material_rays()[i] == 0 {
+            return None;
+        }
+        let message = match first == second {
+            true => format!("both parts of this pattern are material {first}"),
+            false => format!("the two parts of this pattern, materials {first} and {second}, are equal"),
+        };
+        let diagnostic = Diagnostic::warning(message)
+            .at(material.span)
+            .effect("no pattern is seen: it is of one colour")
+            .help("give its two `materialIndex` two different materials before it");
+        Some(Finding::from(diagnostic))
+    };
+    materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
+}
+
+/// Ambient light that leaves nothing to the lamps.
+pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
+    let world = scout.world();
+    let ambient = world.ambient();
+    let lamps: Color = world.lights().iter().map(|light| light.color()).sum();
+    if ambient.min_element() < 0.8 || ambient.max_element() > 2.0 || lamps.max_element() <= 0.0 {
+        return Vec::new();
+    }
+    let word = scout.word("ambientLight", "ambient_light");
+    let diagnostic =
+        Diagnostic::warning(format!("the ambient light is {}: that is all the light there should be", vector(ambient)))
+            .effect("shadows and shading are washed out: surfaces have their full colour without any lamp")
+            .help(format!("0.1 to 0.3 is usual: `{word} 0.2 0.2 0.2`"));
+    let diagnostic = match super::colors::background_span(scout).and_then(|block| scout.value(block, &[word])) {
+        Some(value) => diagnostic.at(value).fix(value, "0.2 0.2 0.2"),
+        None => diagnostic,
+    };
+    vec![Finding::from(diagnostic).whole(true)]
+}
+
+/// Planes whose normal has not the length 1, where that moves them.
+pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
+    use durer_render::world::{Geometry, Object};
+    use durer_scene::shape::Primitive;
+    let say = |object: &Object| {
+        let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+        let length = plane.normal.length();
+        let rules = scout.world().rules();
+        let counts = rules.has(Compat::RawNormals) && !rules.has(Compat::UnitLight);
+        if (0.98..=1.02).contains(&length) || plane.offset == 0.0 && !counts {
+            return None;
+        }
+        let unit = vector(plane.normal / length);
+        let diagnostic = Diagnostic::warning(format!("the normal of this plane has the length {}", number(length)))
+            .effect(match plane.offset == 0.0 {
+                true => format!("this year's program takes it as it is: light counts {} times", number(length)),
+                false => format!(
+                    "the plane stands where p · normal = offset: {} from the origin, not {}",
+                    number(plane.offset.abs() / length),
+                    number(plane.offset.abs())
+                ),
+            })
+            .help(match counts {
+                true => format!("give it the length 1: `normal {unit}`; light counts {} times here", number(length)),
+                false => format!("give it the length 1: `normal {unit}`"),
+            });
+        // The plane stays where it is.
+        let offset = number(plane.offset / length);
+        let diagnostic = match (scout.value(object.span, &["normal"]), scout.value(object.span, &["offset"])) {
+            (Some(value), Some(place)) => diagnostic.at(value).fix(value, unit).fix(place, offset),
+            _ => diagnostic.at(object.span),
+        };
+        Some(Finding::from(diagnostic))
+    };
+    scout.world().objects().iter().filter_map(say).take(MAX_SOUGHT).collect()
+}

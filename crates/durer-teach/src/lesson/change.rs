@@ -1,0 +1,72 @@
+//! How two pictures of one scene differ.
+
+use super::stage::{Stage, percent};
+use durer_image::{Image, Layer, LayerKind, Transfer};
+use durer_scene::math::Vec3;
+
+/// Differences of this much in a channel, of 255, are rounding.
+const ROUNDING: i32 = 1;
+/// A step is seen if it changes so many of the pixels.
+const MIN_SHARE: f64 = 0.001;
+
+/// The difference of two pictures.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// Grey where nothing changes, lighter where it gets lighter and darker where it gets darker:
+    /// half the difference of the eight bits.
+    pub picture: Layer,
+    /// All pixels, those that change, and of those the ones that get lighter.
+    pub pixels: usize,
+    /// Pixels that change.
+    pub changed: usize,
+    /// Pixels of those that get lighter.
+    pub lighter: usize,
+    /// The pixel that changes most, and by how much of 255 in a channel.
+    pub most: ((u32, u32), i32),
+    light: bool,
+}
+
+impl Change {
+    pub(super) fn new(before: &Layer, after: &Layer, transfer: Transfer) -> Self {
+        let light = after.kind == LayerKind::Color;
+        let transfer = if light { transfer } else { Transfer::Linear };
+        let eight = |layer: &Layer, i: usize| transfer.encode_pixel(layer.image.pixels[i]).map(i32::from);
+        let (width, height) = (after.image.width, after.image.height);
+        let (mut changed, mut lighter, mut most) = (0, 0, ((0, 0), 0));
+        let mut pixels = Vec::with_capacity(after.image.pixels.len());
+        for i in 0..after.image.pixels.len() {
+            let (a, b) = (eight(before, i), eight(after, i));
+            let difference: [i32; 3] = std::array::from_fn(|c| b[c] - a[c]);
+            let largest = difference.iter().map(|d| d.abs()).max().unwrap_or(0);
+            if largest > ROUNDING {
+                changed += 1;
+                lighter += usize::from(difference.iter().sum::<i32>() > 0);
+            }
+            if largest > most.1 {
+                most = ((i as u32 % width, i as u32 / width), largest);
+            }
+            pixels.push(Vec3::from(difference.map(|d| (128 + d / 2) as f32)) / 255.0);
+        }
+        let picture = Layer::data("change", Image { width, height, pixels });
+        Change { picture, pixels: after.image.pixels.len(), changed, lighter, most, light }
+    }
+
+    /// Whether there is anything to see.
+    pub(super) fn is_seen(&self) -> bool {
+        self.changed as f64 >= MIN_SHARE * self.pixels as f64 && self.changed > 0
+    }
+
+    /// It in words.
+    pub(super) fn words(&self, stage: &Stage) -> String {
+        let (share, ((x, y), by)) = (percent(self.changed, self.pixels), self.most);
+        let [lighter, darker] = [self.lighter, self.changed - self.lighter].map(|n| percent(n, self.pixels));
+        let ways = match (self.light, self.lighter, self.changed) {
+            (false, ..) => String::new(),
+            (_, 0, _) => ", all of them darker".into(),
+            (_, a, b) if a == b => ", all of them lighter".into(),
+            _ => format!(": {lighter} lighter, {darker} darker"),
+        };
+        let what = stage.object_at((x, y));
+        format!("{share} of the pixels change{ways}. Pixel {x},{y} changes most, by {by} of 255: {what}.")
+    }
+}

@@ -1,0 +1,311 @@
+//! A scene that can be shown with parts of its light left out, and with usual mistakes.
+
+use super::topics::{Carriage, Glass, Look, Shot};
+use crate::mistakes::{Variant, of_name};
+use durer_diag::{Diagnostics, Files};
+use durer_formats::Decoder;
+use durer_formats::course::{self, ReadOptions};
+use durer_image::{Image, Layer};
+use durer_render::compile::{AccelKind, Resources, compile};
+use durer_render::film::aov::Aov;
+use durer_render::film::{Filter, luminance_of};
+use durer_render::integrator::{Method, PhotonParameters, Settings, Transport};
+use durer_render::render::explain::Names;
+use durer_render::render::{Control, Job, RenderError, Sampling, center_ray, raster, render};
+use durer_render::world::{Material, World};
+use durer_scene::camera::Raster;
+use durer_scene::dialect::{Dialect, Highlight, Rules, Secondary};
+use durer_scene::light::Light;
+use durer_scene::math::{Color, Vec3};
+use durer_scene::scene::Scene;
+use durer_scene::source::Source;
+use std::sync::Arc;
+
+/// A scene of ours in which every step can be seen, and the name of its file.
+pub const OWN_SCENE: &str = include_str!("scene.txt");
+/// The name under which messages know it.
+pub const OWN_SCENE_NAME: &str = "our-scene.txt";
+
+/// Samples a pixel where the job has one only.
+const SAMPLES: u32 = 16;
+
+/// Pictures that are kept for later steps.
+const KEPT: usize = 4;
+
+/// A picture, and the values that it shows.
+#[derive(Clone, Debug)]
+pub(super) struct Shown {
+    pub(super) layer: Layer,
+    pub(super) values: Image,
+    /// Of light at random, the error of its pixels as a share of its luminance.
+    pub(super) noise: Option<f64>,
+}
+
+/// A scene, its world, and the job whose picture the lesson ends with.
+#[derive(Debug)]
+pub struct Stage {
+    scene: Scene,
+    files: Files,
+    pub(super) world: World,
+    pub(super) job: Job,
+    /// The world's own light, materials and rules.
+    lights: Vec<Light>,
+    ambient: Color,
+    materials: Vec<Material>,
+    rules: Rules,
+    /// What was made already: what one step ends with, the next begins with.
+    made: Vec<(Shot, Shown)>,
+}
+
+impl Stage {
+    /// A scene that was read and compiled. Of the job, the whole picture is shown, in colour.
+    pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
+        let (lights, ambient) = (world.lights().to_vec(), world.ambient());
+        let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
+        let job = Job { crop: None, color: true, aovs: Vec::new(), ..job };
+        Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
+    }
+
+    /// Our own scene, in pictures of a size.
+    pub(super) fn ours((width, height): (u32, u32)) -> Self {
+        let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+        let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
+        let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
+        let source = Source::folder(".");
+        let scene = course::read(OWN_SCENE.as_bytes(), file, options, &mut diagnostics).unwrap_or_default();
+        let resources = Resources::new(&source, &Decoder, &mut files);
+        let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics);
+        let world = world.expect("the lesson's own scene is sound");
+        Stage::new(scene, files, world, Job { width, height, ..Job::default() })
+    }
+
+    /// Why a step cannot show anything in this scene whatever it holds, if its year's program has
+    /// nothing of it.
+    pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
+        let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
+        match topic {
+            "specular" if highlights == Highlight::None => Some("this year's program has no highlights at all"),
+            "reflection" | "refraction" | "fresnel" if secondary == Secondary::None => {
+                Some("this year's program traces no mirrored or transmitted rays")
+            }
+            "refraction" | "fresnel" if secondary == Secondary::Specular => {
+                Some("this year's program has mirrors, but no glass")
+            }
+            "fresnel" if secondary == Secondary::Colors => {
+                Some("this year's program does not divide light by Fresnel's law")
+            }
+            _ => None,
+        }
+    }
+
+    pub(super) fn size(&self) -> (u32, u32) {
+        (self.job.width, self.job.height)
+    }
+
+    pub(super) fn raster(&self) -> Raster {
+        raster(&self.world, self.job.width, self.job.height)
+    }
+
+    /// The picture of a shot.
+    pub(super) fn show(&mut self, shot: &Shot, control: &Control) -> Result<Shown, RenderError> {
+        let same = |made: &&(Shot, Shown)| (made.0.value, made.0.look) == (shot.value, shot.look);
+        if let Some((_, shown)) = self.made.iter().find(same) {
+            return Ok(shown.clone());
+        }
+        let shown = match shot.value {
+            Some("rays") => self.directions()?,
+            value => {
+                self.arrange(&shot.look);
+                let color = value.is_none();
+                let noise = shot.look.paths.map(|_| "variance");
+                let aovs: Vec<_> = value.into_iter().chain(noise).filter_map(Aov::from_name).collect();
+                let settings = self.settings(&shot.look);
+                let sampling = self.sampling(&shot.look);
+                let method = self.method(&shot.look);
+                let mut job = Job { color, aovs, settings, sampling, method, ..self.job.clone() };
+                let mut rendered = render(&self.world, &job, control)?;
+                if value == Some("depth") && job.depth_range.is_none() {
+                    job.depth_range = depth_range(&rendered.layers[0].image);
+                    rendered = render(&self.world, &job, control)?;
+                }
+                let noise = noise.and_then(|_| noise_of(&rendered.layers[0].image, &rendered.layers[1].image));
+                Shown {
+                    layer: rendered.pictures.swap_remove(0),
+                    values: Arc::unwrap_or_clone(rendered.layers.swap_remove(0).image),
+                    noise,
+                }
+            }
+        };
+        // Those that are long past do not come again.
+        self.made.drain(..self.made.len().saturating_sub(KEPT - 1));
+        self.made.push((*shot, shown.clone()));
+        Ok(shown)
+    }
+
+    /// Gives the world the light, the materials and the mistakes of a look.
+    fn arrange(&mut self, look: &Look) {
+        let (lights, ambient) = match look.lights {
+            true => (self.lights.clone(), self.ambient),
+            false => (Vec::new(), Color::ONE),
+        };
+        let own = self.world.edit();
+        (own.lights, own.ambient, own.rules) = (lights, ambient, self.rules.clone());
+        // The lesson's mistakes are those that change the rules.
+        if let Some(mistake) = look.mistake.and_then(of_name) {
+            let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
+            (mistake.make)(&mut variant, 0.0);
+            self.world.edit().rules = variant.world.rules().clone();
+        }
+        let own = self.world.edit();
+        own.materials = self.materials.clone();
+        for material in &mut own.materials {
+            let Material::Phong(phong) = material else { continue };
+            phong.highlight = phong.highlight.filter(|_| look.highlights);
+            // Flat colour is that of textures too, whatever the dialect's ambient light knows of
+            // them.
+            phong.ambient = phong.ambient.filter(|_| look.lights);
+            if phong.fresnel && look.glass != Glass::Fresnel {
+                (phong.fresnel, phong.reflective) = (false, Color::ZERO);
+            }
+            if let (Some(own), Some(Carriage { disperses: false, .. })) = (&mut phong.principled, look.paths) {
+                Arc::make_mut(own).written.transmission_dispersion_scale = 0.0;
+            }
+        }
+    }
+
+    fn settings(&self, look: &Look) -> Settings {
+        let all = self.job.settings;
+        Settings {
+            bounces: look.bounces.min(all.bounces),
+            shadows: look.shadows && all.shadows,
+            refraction: all.refraction && look.glass != Glass::None,
+            ..all
+        }
+    }
+
+    /// Whitted's light, or paths with what the picture's own have.
+    fn method(&self, look: &Look) -> Method {
+        let Some(carriage) = look.paths else { return Method::WHITTED };
+        let own = self.job.method.transport().unwrap_or_default();
+        let transport = Transport { direct: carriage.direct, color: carriage.color, ..own };
+        match (carriage.photons, self.job.method) {
+            (false, _) => Method::Path(transport),
+            (true, Method::Photons(photons)) => {
+                Method::Photons(PhotonParameters { transport, corrected: false, ..photons })
+            }
+            (true, _) => Method::Photons(PhotonParameters { transport, ..PhotonParameters::default() }),
+        }
+    }
+
+    /// Whether the picture is made by paths.
+    pub(super) fn has_paths(&self) -> bool {
+        self.job.method.transport().is_some()
+    }
+
+    fn sampling(&self, look: &Look) -> Sampling {
+        match (look.sampled, self.job.sampling) {
+            (false, _) => Sampling::Center,
+            (true, Sampling::Center) => Sampling::Filtered { samples: SAMPLES, filter: Filter::default() },
+            (true, sampling) => sampling,
+        }
+    }
+
+    /// The directions of the rays through the pixels' centres, as colours between 0 and 1; black
+    /// where there are none.
+    fn directions(&self) -> Result<Shown, RenderError> {
+        let (raster, (width, height)) = (self.raster(), self.size());
+        let rays: Vec<Option<Vec3>> =
+            self.job.whole().places().map(|place| Some(center_ray(&self.world, &raster, place)?.dir)).collect();
+        let coverage = rays.iter().map(|dir| f32::from(u8::from(dir.is_some()))).collect();
+        let pixels = rays.iter().map(|dir| dir.map_or(Vec3::ZERO, |dir| 0.5 * (dir + 1.0))).collect();
+        let values = rays.iter().map(|dir| dir.unwrap_or(Vec3::ZERO)).collect();
+        let layer = Layer::data("rays", Image::from_pixels(width, height, pixels)?).with_coverage(coverage);
+        Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
+    }
+
+    /// What a picture shows that is compared with no other, in a sentence; `None` if it shows
+    /// nothing.
+    pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
+        let values = &shown.values.pixels;
+        match shot.value {
+            Some("rays") => {
+                let middle = values[self.size().0 as usize * (self.size().1 / 2) as usize + self.size().0 as usize / 2];
+                let seen = values.iter().filter(|dir| **dir != Vec3::ZERO);
+                let widest = seen.map(|dir| middle.cross(*dir).length().min(1.0)).fold(0.0, f32::max);
+                Some(match widest < 1e-6 {
+                    true => "All rays are parallel here, so that the picture is of one colour: they differ by their origins.".into(),
+                    false => "Red, green and blue are x, y and z of the direction, from -1 (dark) to 1 (bright).".into(),
+                })
+            }
+            Some("depth") => {
+                let hits: Vec<f32> = values.iter().map(|value| value.x).filter(|t| t.is_finite()).collect();
+                let least = hits.iter().copied().reduce(f32::min)?;
+                let most = hits.iter().copied().reduce(f32::max)?;
+                let share = percent(hits.len(), values.len());
+                Some(format!("{share} of the rays hit something, at distances from {least:.2} to {most:.2}."))
+            }
+            Some("normals") => {
+                let seen: Vec<Vec3> = values.iter().copied().filter(|n| *n != Vec3::ZERO).collect();
+                let (raster, places) = (self.raster(), self.job.whole().places());
+                let away = |((x, y), n): ((u32, u32), &Vec3)| {
+                    center_ray(&self.world, &raster, (x, y)).is_some_and(|ray| ray.dir.dot(*n) > 0.0)
+                };
+                let behind = places.zip(values).filter(|pixel| away(*pixel)).count();
+                let share = percent(behind, values.len());
+                (!seen.is_empty()).then(|| match behind {
+                    0 => "All normals that are seen point to the eye's side.".into(),
+                    _ => format!(
+                        "{share} of the pixels show a surface from behind: its normal points away from the eye."
+                    ),
+                })
+            }
+            _ => {
+                let mut colors: Vec<_> =
+                    shown.layer.image.pixels.iter().map(|p| p.to_array().map(f32::to_bits)).collect();
+                colors.sort_unstable();
+                colors.dedup();
+                let count = colors.len();
+                (count > 1)
+                    .then(|| format!("The picture has {count} different colours, that of the background among them."))
+            }
+        }
+    }
+
+    /// What is seen at a pixel's centre: an object's keyword and its place in the scene file.
+    pub(super) fn object_at(&self, pixel: (u32, u32)) -> String {
+        let hit = center_ray(&self.world, &self.raster(), pixel).and_then(|ray| self.world.closest(&ray, &mut ()));
+        let names = Names { files: &self.files, scene: &self.scene, world: &self.world };
+        hit.map_or("the background".into(), |hit| {
+            let name = names.object(hit.object);
+            // Where the file lies is no matter of the lesson.
+            match name.split_once(' ') {
+                Some((keyword, place)) => format!("{keyword} {}", place.rsplit(['/', '\\']).next().unwrap_or(place)),
+                None => name,
+            }
+        })
+    }
+}
+
+/// Depths whose greys tell something of a scene whose ground goes on for ever: from the least to
+/// three times as far from it as the middle one.
+fn depth_range(depths: &Image) -> Option<(f32, f32)> {
+    let mut depths: Vec<f32> = depths.pixels.iter().map(|depth| depth.x).filter(|depth| depth.is_finite()).collect();
+    depths.sort_by(f32::total_cmp);
+    let (least, most) = (*depths.first()?, *depths.last()?);
+    let end = most.min(least + 3.0 * (depths[depths.len() / 2] - least));
+    (end > least).then_some((least, end))
+}
+
+/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of
+/// their means. Nothing counts as brighter than white, or the edges of lamps would be all of it.
+/// `None` where nothing shines.
+fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
+    let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
+    let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();
+    Some(errors / light).filter(|noise| noise.is_finite())
+}
+
+/// A part of some pixels for people.
+pub(super) fn percent(part: usize, all: usize) -> String {
+    format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
+}

@@ -1,0 +1,143 @@
+//! The steps of the lesson.
+
+use super::*;
+use durer::{LoadOptions, load};
+use durer_render::compile::AccelKind;
+use durer_render::film::Filter;
+use durer_render::integrator::{Method, PhotonParameters};
+use durer_render::render::{Job, Sampling, render};
+use durer_scene::dialect::{Compat, Dialect};
+use durer_scene::math::{Ray, Vec3};
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn stage(scene: &str, size: u32) -> Stage {
+    let (mut files, mut findings) = Default::default();
+    let options = LoadOptions { accel: AccelKind::Bvh, ..LoadOptions::default() };
+    let loaded = load(&root().join("scenes").join(scene), &options, &mut files, &mut findings).unwrap().unwrap();
+    let world = loaded.compile(&options, &mut files, &mut findings).unwrap();
+    let sampling = Sampling::Filtered { samples: 4, filter: Filter::default() };
+    Stage::new(loaded.scene, files, world, Job { width: size, height: size, sampling, ..Job::default() })
+}
+
+fn lesson(stage: Stage) -> Vec<Step> {
+    let mut teacher = Teacher::new(stage, Transfer::Srgb);
+    TOPICS.iter().flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
+}
+
+#[test]
+fn our_own_scene_shows_every_topic() {
+    let mut ours = Stage::ours((64, 48));
+    for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
+        let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
+        // Mirrors are seen in mirrors, and those in mirrors again.
+        let least = if topic.name == "reflection" { 3 } else { 1 };
+        assert!(steps.len() >= least, "{}: {}", topic.name, steps.len());
+        assert!(steps.iter().all(|step| step.words.ends_with('.')));
+    }
+}
+
+#[test]
+fn a_lesson_ends_with_the_picture_itself_and_is_the_same_each_time() {
+    let bits = |steps: &[Step]| -> Vec<u32> {
+        let pixels = steps.iter().flat_map(|step| &step.after.layer.image.pixels);
+        pixels.flat_map(|pixel| pixel.to_array().map(f32::to_bits)).collect()
+    };
+    let steps = lesson(stage("whitted.txt", 40));
+    let whitted = stage("whitted.txt", 40);
+    let picture = render(&whitted.world, &whitted.job, &Control::default()).unwrap();
+    assert_eq!(steps.last().unwrap().after.layer.image, picture.layers[0].image);
+    assert_eq!(bits(&steps), bits(&lesson(whitted)));
+    // What a step begins with is what an earlier one ended with.
+    let specular = steps.iter().find(|step| step.topic.name == "specular").unwrap();
+    let diffuse = steps.iter().find(|step| step.topic.name == "diffuse").unwrap();
+    assert_eq!(specular.before.as_ref().unwrap().layer, diffuse.after.layer);
+}
+
+#[test]
+fn what_a_scene_cannot_show_is_shown_in_ours() {
+    let ours = |scene: &str| -> Vec<&str> {
+        let steps = lesson(stage(scene, 48));
+        steps.iter().filter(|step| step.ours).map(|step| step.topic.name).collect()
+    };
+    assert_eq!(ours("whitted.txt"), ["transforms"]);
+    let transforms = ours("transforms.txt");
+    assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
+}
+
+/// The steps of paths of a scene, in small pictures.
+fn of_paths(scene: &str) -> Vec<Step> {
+    let mut stage = stage(scene, 40);
+    stage.job.method =
+        Method::Photons(PhotonParameters { count: 20_000, radius: Some(0.1), ..PhotonParameters::default() });
+    stage.job.sampling = Sampling::Filtered { samples: 8, filter: Filter::default() };
+    let mut teacher = Teacher::new(stage, Transfer::Srgb);
+    let topics = TOPICS.iter().filter(|topic| topic.is_of_paths());
+    topics.flat_map(|topic| teacher.steps(topic, &Control::default()).unwrap()).collect()
+}
+
+#[test]
+fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
+    let names = |steps: &[Step]| {
+        let mut names: Vec<&str> = steps.iter().map(|step| step.topic.name).collect();
+        names.dedup();
+        names
+    };
+    let cornell = of_paths("cornell-box.txt");
+    assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
+    assert!(cornell.iter().all(|step| !step.ours && step.words.contains("Its noise")));
+    // A bounce more only adds light.
+    let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
+    assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));
+    assert_eq!(names(&of_paths("caustic.txt")), ["soft-shadows", "bounces", "mis", "caustic"]);
+    // Sunlight has no extent that could be seen.
+    assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
+    // Whitted's light has none of these steps.
+    assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
+}
+
+#[test]
+fn points_and_directions_weighed_have_less_noise_than_either() {
+    let mut plates = stage("plates.txt", 48);
+    (plates.job.method, plates.job.sampling) =
+        (Method::PATH, Sampling::Filtered { samples: 64, filter: Filter::default() });
+    let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
+    let noise: Vec<f64> =
+        topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
+    // Points alone are bad by rare bright samples, of which a few samples have none.
+    assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
+}
+
+#[test]
+fn acne_is_dark_specks_where_light_falls() {
+    let mut ours = Stage::ours((64, 48));
+    let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
+    let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
+    let change = steps[0].change.as_ref().unwrap();
+    // Away with it, and it only gets lighter.
+    assert!(change.changed > 100 && change.lighter == change.changed, "{change:?}");
+}
+
+/// The image of a sphere's normal by the matrix itself, beside that by its inverse transpose.
+#[test]
+fn moved_normals_are_those_of_the_matrix_itself() {
+    let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
+        Group { Transform { Scale 2 0.5 1 Sphere { center 0 0 0 radius 1 } } }";
+    for (quirk, expected) in [(false, Vec3::new(0.3, 0.8, 0.0)), (true, Vec3::new(1.2, 0.2, 0.0))] {
+        let mut rules = Dialect::Durer.rules().clone();
+        rules.compat = if quirk { Compat::MovedNormals.bit() } else { 0 };
+        let folder = Path::new(".");
+        let (world, _) = durer_render::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
+        // The sphere's point (0.6, 0.4, z) in its own space is (1.2, 0.2, z) in the world's.
+        let ray = Ray::new(Vec3::new(1.2, 0.2, 9.0), Vec3::NEG_Z);
+        let world = world.unwrap();
+        let surface = world.intersect(&ray, &mut ()).unwrap().surface;
+        let z = (1.0f32 - 0.36 - 0.16).sqrt();
+        let expected = Vec3::new(expected.x, expected.y, z).normalize();
+        assert!((surface.n_shade - expected).length() < 1e-6, "{quirk}: {}", surface.n_shade);
+        assert!((surface.n_geo - Vec3::new(0.3, 0.8, z).normalize()).length() < 1e-6);
+    }
+}

@@ -1,0 +1,513 @@
+//! Which mistake made a picture: the table's rows are rendered, alone and in pairs.
+
+use super::habits::Turn;
+use super::pictures::View;
+use super::search::{Fit, difference, differing, fit, sampled};
+use super::table::{Formulas, MISTAKES, Mistake, Values};
+use super::{Variant, speckles};
+use durer_image::Transfer;
+use durer_image::compare::{Picture, Scale};
+use durer_render::render::Job;
+use durer_render::world::World;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Scene;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Pixels at which all mistakes are tried, and those that are left over.
+const FEW: usize = 400;
+const COARSE: usize = 1600;
+const FULL: usize = 16_000;
+/// Pixels at which pairs are tried first, and how many pairs are tried at the next number of pixels
+/// each time.
+const FEWEST: usize = 72;
+const KEPT: [usize; 3] = [200, 30, 8];
+/// So many mistakes are tried at more pixels than a few.
+const MAX_SINGLES: usize = 60;
+/// Larger pictures are not looked at as a whole.
+const WHOLE: usize = 160_000;
+/// So many of the best are looked at closely, and paired with all others.
+const BEST: usize = 12;
+/// What explains less than this at some pixels is not tried at all of them, beside so many of the
+/// best.
+const CLOSE: f64 = 0.8;
+const CLOSEST: usize = 5;
+/// Where the scene's own picture differs from the reference at a larger share of the pixels,
+/// nothing is said.
+const MAX_OFF: f64 = 0.25;
+/// Half a step of eight bits, and how many pixels must be rounded otherwise.
+const HALF: f32 = 0.5 / 255.0;
+const FEWEST_ROUNDED: usize = 30;
+/// The largest number of pairs that are tried.
+const MAX_PAIRS: usize = 3000;
+
+/// Two pictures, and the scene of which the reference was made.
+#[derive(Clone, Copy, Debug)]
+pub struct Question<'a> {
+    /// The scene as written.
+    pub scene: &'a Scene,
+    /// The same, compiled with the rules of the reference.
+    pub world: &'a World,
+    /// How the reference was made; of the pictures' size, and whole.
+    pub job: &'a Job,
+    /// What makes eight bits of light.
+    pub transfer: Transfer,
+    /// The picture that is right.
+    pub reference: &'a Picture,
+    /// The picture to judge.
+    pub test: &'a Picture,
+}
+
+/// Mistakes that together make a picture.
+#[derive(Clone, Debug)]
+pub struct Named {
+    /// Each with its value.
+    pub mistakes: Vec<(&'static Mistake, f32)>,
+    /// The share of the squared difference that they explain, rounding left out.
+    pub explained: f64,
+    /// Of the pixels that differ, the share that comes out as it is.
+    pub matched: f64,
+}
+
+/// What came of the trials.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnosis {
+    /// The share of the pixels in which the scene's own picture is not the reference.
+    pub off: f64,
+    /// What makes the picture; more than one where several make the same of this scene. Empty where
+    /// nothing does.
+    pub named: Vec<Named>,
+    /// What came nearest, whether it is named or not.
+    pub tried: Vec<Named>,
+    /// The formulas in which mistakes are told.
+    pub formulas: Formulas,
+}
+
+impl Diagnosis {
+    /// Whether the scene and the options make the reference at all.
+    pub fn is_of_scene(&self) -> bool {
+        self.off <= MAX_OFF
+    }
+}
+
+/// A trial: mistakes, the picture that they make, and how well it fits.
+#[derive(Clone, Debug)]
+struct Trial {
+    mistakes: Vec<(&'static Mistake, f32)>,
+    made: Vec<Vec3>,
+    fit: Fit,
+}
+
+/// Some pixels of the three pictures.
+struct Pixels {
+    places: Vec<(u32, u32)>,
+    reference: Vec<Vec3>,
+    test: Vec<Vec3>,
+    base: Vec<Vec3>,
+}
+
+impl Trial {
+    fn named(&self) -> Named {
+        let Fit { explained, matched } = self.fit;
+        Named { mistakes: self.mistakes.clone(), explained, matched }
+    }
+}
+
+impl Named {
+    fn fit(&self) -> Fit {
+        Fit { explained: self.explained, matched: self.matched }
+    }
+}
+
+impl Pixels {
+    /// Leaves out those that are not to be kept.
+    fn keep(&mut self, kept: &[bool]) {
+        fn of<T>(list: &mut Vec<T>, kept: &[bool]) {
+            let mut keep = kept.iter();
+            list.retain(|_| *keep.next().unwrap_or(&true));
+        }
+        of(&mut self.places, kept);
+        [&mut self.reference, &mut self.test, &mut self.base].into_iter().for_each(|list| of(list, kept));
+    }
+}
+
+struct Search<'a> {
+    question: &'a Question<'a>,
+    view: View<'a>,
+    base: Variant<'a>,
+}
+
+/// The values of a picture on a scale.
+fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
+    let pixels = picture.image.pixels.iter();
+    match picture.scale == scale {
+        true => pixels.map(|v| if v.is_finite() { *v } else { Vec3::ZERO }).collect(),
+        false => pixels.map(|light| Vec3::from(transfer.encode_pixel(*light).map(f32::from)) / 255.0).collect(),
+    }
+}
+
+/// The reference's values, how pictures are looked at, and the scene without mistakes.
+fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
+    let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
+    let scale = if screen { Scale::Display } else { Scale::Linear };
+    let base = Variant::new(question.scene, question.world.clone(), question.job.settings);
+    let view = View { job: question.job, scale, transfer: question.transfer, brightest: 1.0 };
+    (values(question.reference, scale, question.transfer), view, base)
+}
+
+/// Tries all mistakes. `told` hears how far the work is, from 0 to 1.
+pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
+}
+
+fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
+    let (width, height) = (question.job.width, question.job.height);
+    let (reference, view, base) = prepared(question);
+    let test = values(question.test, view.scale, question.transfer);
+    // A picture of one colour is explained by anything that leaves none.
+    if test.iter().all(|pixel| *pixel == test[0]) {
+        return Diagnosis { off: off(question), ..Diagnosis::default() };
+    }
+    let mut search = Search { question, view, base };
+
+    let pixels = |search: &Search, most: usize| -> Pixels {
+        let chosen = sampled(width, &reference, &test, most);
+        let places: Vec<(u32, u32)> = chosen.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
+        let base = search.view.picture(&search.base, &places);
+        let of = |pixels: &[Vec3]| chosen.iter().map(|&i| pixels[i]).collect();
+        Pixels { places, reference: of(&reference), test: of(&test), base }
+    };
+    let all: Vec<(u32, u32)> = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).collect();
+    let light = match all.len() <= WHOLE {
+        true => search.view.light(&search.base, &all),
+        false => Vec::new(),
+    };
+    search.view.brightest = light.iter().map(|light| light.max_element()).fold(0.0, f32::max).max(1e-6);
+    let mut full = pixels(&search, FULL);
+    let steady = search.steady(&full);
+    full.keep(&steady);
+    let off = differing(&full.base, &full.reference) as f64 / full.base.len().max(1) as f64;
+    told(0.1);
+    if off > MAX_OFF {
+        return Diagnosis { off, ..Diagnosis::default() };
+    }
+    if difference(&full.reference, &full.test) == 0.0 {
+        return Diagnosis { off, named: search.rounding(&full).into_iter().collect(), ..Diagnosis::default() };
+    }
+    let few = |most: usize| {
+        let mut pixels = pixels(&search, most);
+        let steady = search.steady(&pixels);
+        pixels.keep(&steady);
+        pixels
+    };
+    let (some, coarse) = (few(FEW), few(COARSE));
+    let mut singles = search.trials(search.singles(), &some);
+    // What changes nothing in this scene explains nothing.
+    singles.retain(|trial| differing(&trial.made, &some.base) > 0);
+    told(0.2);
+    let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
+    sort(&mut better);
+    told(0.3);
+    let refined = better.iter().take(BEST).map(|trial| search.refined(trial, &some, &coarse));
+    let close = refined.chain(best_matched(&better).map(|trial| trial.mistakes.clone())).collect();
+    let mut close = search.trials(close, &coarse);
+    sort(&mut close);
+    close.dedup_by(|a, b| same(&a.mistakes, &b.mistakes));
+    let close = close.into_iter().enumerate().filter(|(i, trial)| *i < CLOSEST || trial.fit.explained > CLOSE);
+    let trials = search.trials(close.map(|(_, trial)| trial.mistakes).collect(), &full);
+    told(0.5);
+    let tried = tried(&trials);
+    let single = decided(trials, &full, &Bars::SINGLE);
+    if single.first().is_some_and(|named| Bars::CLEAR.passes(&named.fit())) {
+        return Diagnosis { off, named: single, tried, ..Diagnosis::default() };
+    }
+    if let Some(share) = search.acne(&all, &reference, &test) {
+        return Diagnosis { off, named: vec![share], tried, ..Diagnosis::default() };
+    }
+    told(0.6);
+    let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
+    told(1.0);
+    // Two mistakes explain more than one; they must explain far more.
+    let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
+    let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
+    Diagnosis { off, named, tried: [tried, tried_pairs].concat(), ..Diagnosis::default() }
+}
+
+/// What was tried at all pixels, the best first.
+fn tried(trials: &[Trial]) -> Vec<Named> {
+    let mut all: Vec<Named> = trials.iter().map(Trial::named).collect();
+    all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    all.truncate(8);
+    all
+}
+
+/// The share of the reference's pixels that the scene with the options of the question makes
+/// otherwise: looked at in some.
+pub fn off(question: &Question) -> f64 {
+    let (reference, view, base) = prepared(question);
+    let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
+    let width = question.job.width;
+    let chosen: Vec<(u32, u32)> = places.iter().map(|&i| (i as u32 % width, i as u32 / width)).collect();
+    let of: Vec<Vec3> = places.iter().map(|&i| reference[i]).collect();
+    differing(&view.picture(&base, &chosen), &of) as f64 / of.len().max(1) as f64
+}
+
+impl<'a> Search<'a> {
+    /// All mistakes alone, with all values.
+    fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
+        let lights = self.base.world.lights().len();
+        let rows = MISTAKES.iter().copied().flatten();
+        rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
+    }
+
+    /// Pixels in which the scene's picture does not hang on rounding: a little aside, or with
+    /// another epsilon, it is the same.
+    fn steady(&self, pixels: &Pixels) -> Vec<bool> {
+        let aside = |by: f32| {
+            let mut variant = self.base.clone();
+            variant.aim.place += by;
+            variant
+        };
+        let mut other = self.base.clone();
+        other.world.edit().rules.epsilon =
+            other.world.rules().epsilon.map_or(Some(1e-4), |epsilon| Some(8.0 * epsilon));
+        let mut steady = vec![true; pixels.places.len()];
+        for variant in [aside(0.004), aside(-0.004), other] {
+            let made = self.view.picture(&variant, &pixels.places);
+            for ((steady, made), base) in steady.iter_mut().zip(&made).zip(&pixels.base) {
+                *steady &= differing(&[*made], &[*base]) == 0;
+            }
+        }
+        // In a picture of nothing but edges, all pixels count.
+        if steady.iter().filter(|s| **s).count() * 2 < steady.len() { vec![true; steady.len()] } else { steady }
+    }
+
+    fn trials(&self, all: Vec<Vec<(&'static Mistake, f32)>>, pixels: &Pixels) -> Vec<Trial> {
+        all.into_par_iter().map(|mistakes| self.trial(mistakes, pixels)).collect()
+    }
+
+    /// Makes mistakes and looks at what comes of it.
+    fn trial(&self, mistakes: Vec<(&'static Mistake, f32)>, pixels: &Pixels) -> Trial {
+        let mut variant = self.base.clone();
+        for (mistake, value) in &mistakes {
+            (mistake.make)(&mut variant, *value);
+        }
+        let mut made = self.view.picture(&variant, &pixels.places);
+        // Where the reference was made a little otherwise, what counts is what the mistake changes.
+        if variant.turn == Turn::default() {
+            for ((made, base), reference) in made.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
+                if differing(&[*base], &[*reference]) > 0 {
+                    *made = *reference + (*made - *base);
+                }
+            }
+        }
+        let fit = fit(&pixels.reference, &pixels.test, &made);
+        Trial { mistakes, made, fit }
+    }
+
+    /// The mistakes of a trial with the value at which it fits best: sought at few pixels, and
+    /// rounded if more allow it.
+    fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
+        let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
+        if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
+            return trial.mistakes.clone();
+        }
+        let explained = |value: f32, pixels: &Pixels| self.trial(vec![(mistake, value)], pixels).fit.explained;
+        let (mut best, mut at, mut step) = (explained(value, few), value, 1.5_f32);
+        for _ in 0..7 {
+            for tried in [at / step, at * step] {
+                let explained = explained(tried, few);
+                if explained > best {
+                    (best, at) = (explained, tried);
+                }
+            }
+            step = step.sqrt();
+        }
+        // A round number that fits as well is meant.
+        let round = (at * 20.0).round() / 20.0;
+        let fits = |tried| explained(tried, more) >= explained(at, more) - 0.002;
+        vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
+    }
+
+    /// Pairs of the best with all others: at a few pixels, then the best of them at more, and so
+    /// on.
+    fn pairs(&self, best_of: &[Trial], singles: &[Trial], rounds: [&Pixels; 4]) -> (Vec<Named>, Vec<Named>) {
+        let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
+        first.dedup_by_key(|trial| trial.mistakes[0].0.name);
+        let mut known = BTreeSet::new();
+        let mut pairs: Vec<Vec<(&'static Mistake, f32)>> = Vec::new();
+        for a in first {
+            for b in singles {
+                let (a, b) = (a.mistakes[0], b.mistakes[0]);
+                let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
+                let pair = (key(a).min(key(b)), key(a).max(key(b)));
+                // What hangs on rounding goes with anything, and explains nothing.
+                let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
+                if a.0.name != b.0.name && !shaky && known.insert(pair) {
+                    pairs.push(vec![a, b]);
+                }
+            }
+        }
+        pairs.truncate(MAX_PAIRS);
+        let full = rounds[3];
+        for (pixels, kept) in rounds.into_iter().zip(KEPT) {
+            pairs = best(&mut self.trials(pairs, pixels), kept);
+        }
+        let alone = |mistakes: &[(&'static Mistake, f32)]| {
+            let of = |one: &(&'static Mistake, f32)| self.trial(vec![*one], full).fit.explained;
+            mistakes.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let trials = self.trials(pairs, full);
+        let tried = tried(&trials);
+        let mut named = decided(trials, full, &Bars::PAIR);
+        // Each of the two must be needed.
+        named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
+        (named, tried)
+    }
+
+    /// Whether values that differ by one of 255 are those that are rounded otherwise.
+    fn rounding(&self, pixels: &Pixels) -> Option<Named> {
+        let mistake = super::table::of_name("other-rounding")?;
+        let made = self.trial(vec![(mistake, 0.0)], pixels).made;
+        let differs = |a: &Vec3, b: &Vec3| (*a - *b).abs().max_element() > HALF;
+        let (mut either, mut agree) = (0_usize, 0_usize);
+        for ((r, t), m) in pixels.reference.iter().zip(&pixels.test).zip(&made) {
+            if differs(r, t) || differs(r, m) {
+                either += 1;
+                agree += usize::from(!differs(t, m));
+            }
+        }
+        let share = agree as f64 / either.max(1) as f64;
+        let told = self.view.scale == Scale::Display && agree >= FEWEST_ROUNDED && share > Bars::FITTED.matched;
+        told.then(|| Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
+    }
+
+    /// Whether rays hit the surface that they leave.
+    fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
+        let lights = self.base.world.lights().len();
+        if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
+            return None;
+        }
+        let width = self.question.job.width as usize;
+        let differ = speckles::speckled(reference, test, width)?;
+        let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
+        // Where mirrored rays begin in their own surface, they bring nothing, or what is there once
+        // more.
+        let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
+        let dark = |of: u32| {
+            let (off, way) = (of / bounces, of % bounces);
+            let mut variant = self.base.clone();
+            match way {
+                0 => {}
+                1 => variant.settings.bounces = 0,
+                _ => variant.habits.bounces.epsilon = Some(-1e-3),
+            }
+            variant.world.edit().lights =
+                (0..lights).filter(|i| off >> i & 1 == 0).map(|i| variant.world.lights()[i].clone()).collect();
+            self.view.picture(&variant, &places)
+        };
+        let shadowed: Vec<Vec<Vec3>> = (1..bounces << lights).map(dark).collect();
+        let share = speckles::share(test, &differ, &shadowed)?;
+        let mistake = super::table::of_name("epsilon-0")?;
+        Some(Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
+    }
+}
+
+fn sort(trials: &mut [Trial]) {
+    trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
+}
+
+/// The mistakes of the best trials: three in four by the squared difference, one by the pixels that
+/// agree.
+fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
+    sort(trials);
+    let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
+    others.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
+    first.iter().chain(others.iter().take(count / 4)).map(|trial| trial.mistakes.clone()).collect()
+}
+
+/// Those that agree at most pixels: a few that are far off spoil the squared difference.
+fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
+    let mut sorted: Vec<&Trial> = trials.iter().collect();
+    sorted.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
+    sorted.into_iter().take(4)
+}
+
+/// How well a picture must be explained to be named.
+struct Bars {
+    explained: f64,
+    matched: f64,
+}
+
+impl Bars {
+    // The right name leaves nothing but what rounding makes of edges; what leaves more is another
+    // mistake.
+    const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
+    const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
+    /// With a number that was fitted.
+    const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
+    /// No more is sought.
+    const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
+    /// As good as can be.
+    const PERFECT: Bars = Bars { explained: 0.998, matched: 0.995 };
+
+    fn passes(&self, fit: &Fit) -> bool {
+        fit.explained >= self.explained && fit.matched >= self.matched
+    }
+}
+
+/// The trial that makes the picture, with those that make the same one; nothing where none does, or
+/// two different ones do nearly as well.
+fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
+    sort(&mut trials);
+    trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
+    let passes = |trial: &Trial| {
+        let is_fitted = trial.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+        if is_fitted { Bars::FITTED.passes(&trial.fit) } else { bars.passes(&trial.fit) }
+    };
+    let Some(best) = trials.iter().find(|trial| passes(trial)) else { return Vec::new() };
+    let total = difference(&pixels.reference, &pixels.test);
+    let equal = |other: &Trial| {
+        differing(&best.made, &other.made) * 2000 <= pixels.places.len()
+            && difference(&best.made, &other.made) <= 0.01 * total
+    };
+    let rest = |trial: &Trial| 1.0 - trial.fit.explained;
+    // What fits as well as can be gives way only to what does so too.
+    let (slack, off) = if Bars::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
+    let rival = |other: &&Trial| {
+        !equal(other)
+            && rest(other) < 2.0 * rest(best) + slack
+            && other.fit.matched > best.fit.matched - off
+            // Another value of the same mistake is no rival.
+            && !one_kind(&other.mistakes, &best.mistakes)
+    };
+    let rivals: Vec<&Trial> = trials.iter().filter(rival).collect();
+    if rivals.len() > 2 || rivals.iter().any(|rival| !passes(rival)) {
+        return Vec::new();
+    }
+    let mut named: Vec<Named> = Vec::new();
+    for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
+        // One mistake with two values is one.
+        if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
+            named.push(trial.named());
+        }
+    }
+    // What needs a number to fit it is no mistake where another needs none.
+    let plain = |named: &Named| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
+    if named.iter().any(plain) {
+        named.retain(plain);
+    }
+    named
+}
+
+/// Whether mistakes are the same but for their values.
+fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
+    // Another light is another mistake.
+    let alike =
+        |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
+    a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))
+}
+
+fn same(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
+    a.iter().zip(b).all(|(a, b)| a.0.name == b.0.name && a.1 == b.1)
+}

@@ -1,0 +1,129 @@
+//! Pixels of a variant's picture.
+
+use super::habits::{Output, Rays};
+use super::{Pupil, Variant};
+use durer_image::Transfer;
+use durer_image::compare::{Scale, linear_to_srgb, srgb_to_linear};
+use durer_render::render::{Job, sample_places};
+use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
+use rayon::prelude::*;
+
+/// Where pictures are looked at, and how.
+#[derive(Clone, Debug)]
+pub(super) struct View<'j> {
+    /// Columns and rows of the picture, and its samples.
+    pub job: &'j Job,
+    /// Whether values are of a screen or of light.
+    pub scale: Scale,
+    /// What makes a screen's values.
+    pub transfer: Transfer,
+    /// The brightest value of the right picture.
+    pub brightest: f32,
+}
+
+impl View<'_> {
+    /// The light of some pixels.
+    pub fn light(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Color> {
+        let raster = variant.raster(self.job.width, self.job.height);
+        let pupil = Pupil::new(&variant.world, variant.settings, &variant.habits);
+        let samples = sample_places(&variant.world, self.job);
+        let pixel = |&(x, y): &(u32, u32)| {
+            let (mut sum, mut weights) = (Color::ZERO, 0.0);
+            let mut add = |place: Vec2, lens: Vec2, weight: f32| {
+                if let Some(ray) = variant.ray(&raster, (x, y), place, lens) {
+                    sum += weight * pupil.radiance(&ray);
+                }
+                weights += weight;
+            };
+            let corner = Vec2::new(x as f32, y as f32);
+            match variant.aim.rays {
+                Rays::Right => samples(x, y, &mut add),
+                Rays::One => add(corner + 0.5, Vec2::splat(0.5), 1.0),
+                Rays::Sixteen => (0..16_u8).for_each(|i| {
+                    let part = Vec2::new(f32::from(i % 4), f32::from(i / 4));
+                    add(corner + (part + 0.5) / 4.0, Vec2::splat(0.5), 1.0);
+                }),
+            }
+            sum / weights
+        };
+        places.par_iter().with_min_len(16).map(pixel).collect()
+    }
+
+    /// What a picture's file has of some light.
+    pub fn values(&self, output: Output, light: &[Color]) -> Vec<Vec3> {
+        light.iter().map(|&light| self.value(output, light)).collect()
+    }
+
+    /// The values of some pixels of a variant's picture.
+    pub fn picture(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Vec3> {
+        let (width, height) = (self.job.width, self.job.height);
+        let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
+        let mut values = self.values(variant.output, &self.light(variant, &sources));
+        for (value, place) in values.iter_mut().zip(places) {
+            if variant.turn.is_empty(width, height, *place) {
+                *value = Vec3::ZERO;
+            }
+        }
+        if variant.turn.bgr {
+            values.iter_mut().for_each(|value| *value = Vec3::new(value.z, value.y, value.x));
+        }
+        values
+    }
+
+    fn value(&self, output: Output, light: Color) -> Vec3 {
+        // Values beyond all measure are white, whatever an old program's whole numbers made of
+        // them.
+        let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
+        let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
+        let light = match output {
+            Output::Scaled => light / self.brightest,
+            Output::Times(factor) => light * factor,
+            Output::Negative => Color::ONE - light.clamp(Color::ZERO, Color::ONE),
+            Output::Grey(how) => Color::splat(grey(how, light.clamp(Color::ZERO, Color::ONE))),
+            Output::Steps(steps) => {
+                let n = steps as f32;
+                light.map(|v| (v.clamp(0.0, 1.0) * n).floor().min(n - 1.0) / (n - 1.0).max(1.0))
+            }
+            _ => light,
+        };
+        if self.scale == Scale::Linear {
+            return light;
+        }
+        let transfer = match (output, self.transfer) {
+            (Output::OtherRounding, Transfer::Course) => Transfer::Linear,
+            (Output::OtherRounding, Transfer::Linear) => Transfer::Course,
+            // Who leaves the curve out writes what is there.
+            (Output::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
+            (_, transfer) => transfer,
+        };
+        if output == Output::Wrapped && transfer != Transfer::Srgb {
+            let half = if transfer == Transfer::Linear { 0.5 } else { 0.0 };
+            return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
+        }
+        let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
+        // A curve on top of what the transfer makes is reckoned from values that are not cut to
+        // eight bits yet.
+        let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
+        let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
+        match output {
+            Output::CurveMore(0.0) => eight(plain, light.map(|v| linear_to_srgb(curved(v)))),
+            Output::CurveMore(power) => eight(plain, light.map(|v| fp::pow(curved(v), 1.0 / power))),
+            Output::CurveLess(power) if power > 0.0 => eight(plain, light.map(|v| fp::pow(curved(v), power))),
+            Output::CurveLess(_) if self.transfer != Transfer::Srgb => {
+                eight(plain, light.map(|v| srgb_to_linear(curved(v))))
+            }
+            _ => eight(transfer, light),
+        }
+    }
+}
+
+/// A colour as grey.
+fn grey(how: u32, color: Color) -> f32 {
+    match how {
+        0 => (color.x + color.y + color.z) / 3.0,
+        1 => color.dot(Vec3::new(0.299, 0.587, 0.114)),
+        2 => color.dot(LUMINANCE),
+        3 => color.max_element(),
+        channel => color[(channel as usize - 4).min(2)],
+    }
+}

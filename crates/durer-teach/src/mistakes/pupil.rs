@@ -1,0 +1,528 @@
+//! A pupil's tracer: Whitted's algorithm once more, with any of the usual mistakes.
+//!
+//! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it
+//! gives the same colours, to the bit: a test holds the two together.
+
+use super::habits::{
+    Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
+};
+use durer_render::integrator::media::Media;
+use durer_render::integrator::media::Passage;
+use durer_render::integrator::spawn::{spawn_ray, to_light};
+use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
+use durer_render::integrator::{Settings, Whitted, refract};
+use durer_render::world::{Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
+use durer_scene::dialect::Compat;
+use durer_scene::light::{Emitter, Illumination, Light};
+use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
+use durer_scene::shape::{Primitive, Surface};
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// The tracer.
+#[derive(Clone, Copy, Debug)]
+pub struct Pupil<'w> {
+    world: &'w World,
+    settings: Settings,
+    habits: &'w Habits,
+    right: Whitted<'w>,
+}
+
+/// What a ray carries from bounce to bounce.
+#[derive(Clone)]
+struct Path {
+    bounces: u32,
+    media: Media,
+    weight: f32,
+    first: bool,
+}
+
+impl<'w> Pupil<'w> {
+    /// For a world, with settings and habits.
+    pub fn new(world: &'w World, settings: Settings, habits: &'w Habits) -> Self {
+        Pupil { world, settings, habits, right: Whitted { world, settings, cancel: None } }
+    }
+
+    /// The light that comes along a camera ray.
+    pub fn radiance(&self, ray: &Ray) -> Color {
+        let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0, first: true };
+        self.trace(&ray.into(), path)
+    }
+
+    fn trace(&self, ray: &Ray64, mut path: Path) -> Color {
+        let mut rest = *ray;
+        // Some habits find the same hidden surface again.
+        for _ in 0..64 {
+            let behind = self.habits.behind.is_some_and(|rays| rays == Behind::All || path.first);
+            let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
+            let reaching = Ray64 { rounded: Ray { t_min: from, ..rest.rounded }, ..rest };
+            let Some((hit, t)) = self.closest(&reaching) else { break };
+            let at = self.world.interaction(ray, hit);
+            match self.right.passage(&at, &path.media) {
+                Some(Passage { hidden: true, behind, .. }) => (path.media, rest.rounded.t_min) = (behind, hit.t),
+                passage => {
+                    let color = self.shade(&self.met(at, t), passage, path);
+                    let clamped = self.habits.clamped_rays;
+                    return if clamped { color.clamp(Color::ZERO, Color::ONE) } else { color };
+                }
+            }
+        }
+        match self.habits.sky.filter(|(_, all)| path.first || *all) {
+            Some((color, _)) => color,
+            None if self.habits.bounces.black_sky && !path.first => Color::ZERO,
+            None => self.world.sky(ray.dir()),
+        }
+    }
+
+    /// The hit, and the `t` at which the pupil takes it to be.
+    fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
+        if self.habits.local_unit {
+            let mut whole = *ray;
+            whole.rounded.t_max = f32::INFINITY;
+            let hits = self.world.hits_of_each(&whole);
+            let seen = hits.map(|hit| (hit, self.own_t(ray, &hit)));
+            return seen.filter(|(_, t)| *t < ray.rounded.t_max).min_by(|a, b| a.1.total_cmp(&b.1));
+        }
+        let hit = match self.habits.pick {
+            Pick::Nearest => self.world.closest(ray, &mut ()),
+            Pick::Last => self.world.all_hits(ray).last(),
+            Pick::FarthestObject => self.world.hits_of_each(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
+            Pick::LastWritten => self.world.hits_of_each(ray).max_by_key(|hit| hit.object),
+            Pick::FirstWritten => self.world.hits_of_each(ray).min_by_key(|hit| hit.object),
+            Pick::FarthestTriangle => self.faces(ray).max_by(|a, b| a.t.total_cmp(&b.t)),
+            Pick::LastTriangle => self.faces(ray).max_by_key(|hit| (hit.object, hit.part)),
+            Pick::NearRoots => self.world.all_hits(ray).find(|hit| !self.leaves_sphere(ray, hit)),
+            Pick::FarSpheres => {
+                let far = |hit: Hit| {
+                    let object = &self.world.objects()[hit.object as usize].geometry;
+                    let sphere = matches!(object, Geometry::Primitive(Primitive::Sphere(_)));
+                    let mut rest = *ray;
+                    rest.rounded.t_min = hit.t;
+                    let beyond = |hit: &Hit| self.world.hits_of_each(&rest).find(|other| other.object == hit.object);
+                    sphere.then(|| beyond(&hit)).flatten().unwrap_or(hit)
+                };
+                self.world.hits_of_each(ray).map(far).min_by(|a, b| a.t.total_cmp(&b.t))
+            }
+        };
+        hit.map(|hit| (hit, hit.t))
+    }
+
+    /// The nearest hit of each object, and of meshes all.
+    fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
+        let mut known = SmallVec::<[u32; 16]>::new();
+        self.world.all_hits(ray).filter(move |hit| {
+            let is_mesh = matches!(self.world.objects()[hit.object as usize].geometry, Geometry::Mesh(_));
+            let is_new = !known.contains(&hit.object);
+            known.push(hit.object);
+            is_mesh || is_new
+        })
+    }
+
+    /// Whether a ray comes from inside of a sphere that it hits.
+    fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
+        let object = &self.world.objects()[hit.object as usize].geometry;
+        matches!(object, Geometry::Primitive(Primitive::Sphere(_))) && self.world.interaction(ray, *hit).inside()
+    }
+
+    /// The length of the way to a hit in the object's own space.
+    fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
+        let to_world = self.world.objects()[hit.object as usize].to_world.as_ref();
+        hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
+    }
+
+    fn occluded(&self, ray: &Ray64) -> bool {
+        if self.habits.local_unit || self.habits.pick == Pick::NearRoots {
+            return self.closest(ray).is_some();
+        }
+        let mut ray = *ray;
+        if self.habits.behind == Some(Behind::All) {
+            ray.rounded.t_min = f32::NEG_INFINITY;
+        }
+        self.world.occluded(&ray, &mut ())
+    }
+
+    /// What a ray met, with the pupil's place and normals.
+    fn met(&self, mut at: Interaction, t: f32) -> Interaction {
+        let (habits, object) = (self.habits, &self.world.objects()[at.hit.object as usize]);
+        let Interaction { ray, hit, surface, .. } = &mut at;
+        if t != hit.t {
+            (surface.position, surface.rest) = (ray.rounded.at(t), Vec3::ZERO);
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.long_mixed)
+            && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
+        {
+            // Transforms that turn and scale evenly keep the share of its length that it lost.
+            surface.n_shade *= mixed.length();
+        }
+        if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.mixed_otherwise > 0) {
+            const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 2, 0], [2, 0, 1], [1, 0, 2], [0, 2, 1], [2, 1, 0]];
+            let weights = [1.0 - hit.uv.x - hit.uv.y, hit.uv.x, hit.uv.y];
+            let [_, u, v] = ORDERS[habits.mixed_otherwise.min(5)].map(|i| weights[i]);
+            if let Some(mixed) = tree.mesh.mixed_normal(hit.part, Vec2::new(u, v)) {
+                let world = object.to_world.as_ref().map_or(mixed, |to_world| to_world.long_normal(mixed));
+                surface.n_shade = world.normalize_or(surface.n_shade);
+            }
+        }
+        if habits.flat {
+            surface.n_shade = surface.n_geo;
+        }
+        if let (Some(to_world), true) = (&object.to_world, habits.normals != Normals::Right) {
+            let local = to_world.local_normal(surface.n_shade);
+            surface.n_shade = match habits.normals {
+                Normals::Right => surface.n_shade,
+                Normals::Local => local,
+                Normals::Long => to_world.long_normal(local),
+                Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
+            };
+        }
+        let triangle = matches!(object.geometry, Geometry::Mesh(_) | Geometry::Primitive(Primitive::Triangle(_)));
+        let sphere = matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)));
+        let plane = matches!(object.geometry, Geometry::Primitive(Primitive::Plane(_)));
+        if habits.triangles_turned && triangle || habits.spheres_turned && sphere || habits.planes_turned && plane {
+            (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
+        }
+        at
+    }
+
+    fn shade(&self, at: &Interaction, passage: Option<Passage>, path: Path) -> Color {
+        let (world, habits) = (self.world, self.habits);
+        let Interaction { ray, surface, .. } = at;
+        let from_behind = self.right.sees_back(at);
+        let black = from_behind && !self.settings.shade_back && world.rules().has(Compat::BlackBacks);
+        let turned = from_behind && (self.settings.shade_back || habits.faced);
+        let n = if turned { -surface.n_shade } else { surface.n_shade };
+        let n = if world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let parts = world.parts(at);
+        let (mut color, mut blocked) = (Color::ZERO, false);
+        if !black || habits.faced {
+            let diffuse: SmallVec<[Color; 2]> =
+                parts.iter().map(|p| self.world.diffuse_color(p.phong, surface)).collect();
+            let rounds = if habits.ambient == Ambient::EachLight { world.lights().len() } else { 1 };
+            let mut ambient_seen = Color::ZERO;
+            for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                let met = part.phong.ambient.unwrap_or(diffuse);
+                let met = if habits.ambient == Ambient::Bare { Color::ONE } else { met };
+                for _ in 0..rounds {
+                    let ambient = part.share * world.ambient();
+                    color += ambient * met;
+                    ambient_seen += ambient * met;
+                }
+            }
+            let mut any = world.lights().is_empty();
+            for (number, light) in world.lights().iter().enumerate() {
+                let seen = self.illuminated(light, surface.point());
+                let casts = habits.shadows.only_light.is_none_or(|only| only == number);
+                let visible = if casts { self.visible(surface, &seen, path.first) } else { Color::ONE };
+                let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
+                blocked |= visible == Color::ZERO;
+                let visible = visible.max(Color::splat(habits.shadows.left));
+                let visible = if habits.shadows.inverted { Color::ONE - visible } else { visible };
+                any |= visible != Color::ZERO;
+                let replaced = habits.sum == Sum::LastSeen && visible != Color::ZERO;
+                if habits.sum == Sum::LastOnly || replaced {
+                    color = ambient_seen;
+                }
+                for (part, &diffuse) in parts.iter().zip(&diffuse) {
+                    let direct = |diffuse| self.direct(part.phong, diffuse, n, ray.dir(), light, &seen);
+                    if visible != Color::ZERO {
+                        let light = part.share * visible * direct(diffuse);
+                        let alone = habits.sum == Sum::ClampedLight;
+                        color += if alone { light.clamp(Color::ZERO, Color::ONE) } else { light };
+                    }
+                    if habits.shadows.highlights_left && visible != Color::ONE {
+                        color += part.share * (Color::ONE - visible) * direct(Color::ZERO);
+                    }
+                }
+                if habits.sum == Sum::ClampedEach {
+                    color = color.clamp(Color::ZERO, Color::ONE);
+                }
+            }
+            if habits.shadows.ambient_too && !any || habits.shadows.ambient_of_any && blocked {
+                color -= ambient_seen;
+            }
+        }
+        if habits.sum == Sum::ClampedLocal {
+            color = color.clamp(Color::ZERO, Color::ONE);
+        }
+        match habits.shadows.black {
+            Some(true) if blocked => return Color::ZERO,
+            Some(false) if blocked => color = Color::ZERO,
+            _ => {}
+        }
+        if habits.bounces.instead && path.bounces > 0 && Blend::of(&parts).reflective != Color::ZERO {
+            color = Color::ZERO;
+        }
+        if habits.bounces.mixed && path.bounces > 0 {
+            color *= Color::ONE - Blend::of(&parts).reflective;
+        }
+        if path.bounces > 0 {
+            let rounds = if habits.bounces.each_light { world.lights().len() } else { 1 };
+            let secondary = self.secondary(at, &parts, passage.unwrap_or_default(), path);
+            for _ in 0..rounds {
+                color += secondary;
+            }
+        }
+        color
+    }
+
+    /// What arrives of a light, as the pupil reckons it.
+    fn illuminated(&self, light: &Light, point: DVec3) -> Illumination {
+        let mut seen = light.illuminate(point);
+        if self.habits.lamps.all_negated {
+            seen.to_light = -seen.to_light;
+        }
+        match light {
+            Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
+            Light::Point(point) => {
+                let d = seen.distance;
+                match self.habits.lamps.fading {
+                    Fading::Right => {}
+                    Fading::Multiplied => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color * (a.x + a.y * d + a.z * d * d);
+                    }
+                    Fading::Linear => seen.color = point.color / d,
+                    Fading::Square => seen.color = point.color / (d * d),
+                    Fading::SquaredTwice => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d * d + a.z * d * d * d * d);
+                    }
+                    Fading::Root => {
+                        let a = point.attenuation.unwrap_or(Vec3::X);
+                        seen.color = point.color / (a.x + a.y * d + a.z * d * d).sqrt();
+                    }
+                }
+                match self.habits.lamps.points {
+                    PointLamp::Right => {}
+                    PointLamp::Negated => seen.to_light = -seen.to_light,
+                    PointLamp::Position => seen.to_light = point.position.normalize_or(seen.to_light),
+                    PointLamp::PositionAlone => {
+                        let (a, d) = (point.attenuation.unwrap_or(Vec3::X), point.position.length());
+                        seen.to_light = point.position.normalize_or(seen.to_light);
+                        (seen.color, seen.distance) = (point.color / (a.x + a.y * d + a.z * d * d), d);
+                    }
+                    PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
+                }
+            }
+            _ => {}
+        }
+        seen
+    }
+
+    /// The vector to a light as it enters products: of length 1, but for mistakes.
+    fn lamp(&self, light: &Light, seen: &Illumination) -> Vec3 {
+        match light {
+            Light::Directional(lamp) if self.habits.lamps.long => seen.to_light * lamp.direction.length(),
+            Light::Point(_) if self.habits.lamps.long_points => seen.to_light * seen.distance,
+            _ => seen.to_light,
+        }
+    }
+
+    /// Diffuse term and highlight of one light.
+    fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &Illumination) -> Color {
+        let habits = self.habits.highlights;
+        let lamp = self.lamp(light, seen);
+        let view = if habits.eye_negated { -view } else { view };
+        let cosine = n.dot(lamp);
+        let factor = match self.habits.cosine {
+            Cosine::Clamped => cosine.max(0.0),
+            Cosine::TwoSided => cosine.abs(),
+            Cosine::Signed => cosine,
+            Cosine::One => 1.0,
+            Cosine::None => 0.0,
+            Cosine::Squared => cosine.max(0.0) * cosine.max(0.0),
+            Cosine::Half => 0.5 * cosine + 0.5,
+            Cosine::Step => f32::from(cosine > 0.0),
+            Cosine::OverPi => cosine.max(0.0) / std::f32::consts::PI,
+        };
+        let factor = factor * self.habits.diffuse_factor.unwrap_or(1.0);
+        let plain = self.habits.plain_diffuse && diffuse != Color::ZERO;
+        let mut color = factor * if plain { Color::ONE } else { diffuse };
+        if self.habits.diffuse_lightless {
+            // What is divided here is multiplied again below.
+            color /= seen.color.max(Color::splat(1e-6));
+        }
+        if let Some((specular, exponent, model)) = phong.highlight {
+            let half = |sum: Vec3| match habits.half {
+                Half::Unit => sum.normalize_or_zero(),
+                Half::Sum => sum,
+                Half::Mean => 0.5 * sum,
+            };
+            let base = match model {
+                HighlightModel::Blinn => (cosine > 0.0 || habits.everywhere).then(|| n.dot(half(lamp - view))),
+                HighlightModel::Phong { behind } => (behind || cosine > 0.0).then(|| reflect(view, n).dot(lamp)),
+            };
+            if let Some(base) = base {
+                let base = if habits.two_sided { base.abs() } else { base.max(0.0) };
+                let mut strength = fp::pow(base, exponent);
+                if habits.times_cosine {
+                    strength *= cosine.max(0.0);
+                }
+                strength *= habits.factor.unwrap_or(1.0);
+                let specular = if habits.bare { Color::ONE } else { specular };
+                let specular = if habits.times_diffuse { specular * diffuse } else { specular };
+                if habits.lightless {
+                    return color * seen.color + strength * specular;
+                }
+                color += strength * specular;
+            }
+        }
+        color * seen.color
+    }
+
+    /// The share of a light that arrives.
+    fn visible(&self, surface: &Surface, seen: &Illumination, first: bool) -> Color {
+        let habits = self.habits.shadows;
+        let unshadowed = self.habits.bounces.unshadowed && !first;
+        if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
+            return Color::ONE;
+        }
+        let rules = self.world.rules();
+        let reach = match (habits.endless, rules.is_official()) {
+            (true, _) => f32::INFINITY,
+            (false, true) => seen.distance,
+            (false, false) => seen.distance * (1.0 - gamma(16)),
+        };
+        let reach = if habits.short && seen.distance.is_infinite() { 1.0 } else { reach };
+        let epsilon = habits.epsilon.or(rules.epsilon);
+        let way = match habits.way {
+            ShadowWay::Light => seen.to_light,
+            ShadowWay::Away => -seen.to_light,
+            ShadowWay::Normal => surface.n_shade,
+        };
+        let mut ray = to_light(surface, way, reach, epsilon);
+        if habits.no_glass {
+            return self.visible_through_glass(ray, epsilon);
+        }
+        if rules.has(Compat::ShadowFronts) {
+            let nearest = self.closest(&ray).map(|(hit, _)| self.world.interaction(ray, hit));
+            let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
+            return if blocked { Color::ZERO } else { Color::ONE };
+        }
+        if !self.settings.transparent_shadows {
+            return if self.occluded(&ray) { Color::ZERO } else { Color::ONE };
+        }
+        let mut share = Color::ONE;
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return share };
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
+            share *= parts.iter().map(|part| part.share * part.phong.transparent).sum::<Color>();
+            if share == Color::ZERO {
+                break;
+            }
+            ray = spawn_ray(&blocker.surface, seen.to_light, ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
+    /// Whether only things that let light through are in the way.
+    fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<f32>) -> Color {
+        for _ in 0..64 {
+            let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
+            let blocker = self.world.interaction(ray, hit);
+            let parts = self.world.parts(&blocker);
+            if parts.iter().all(|part| part.phong.transparent == Color::ZERO) {
+                return Color::ZERO;
+            }
+            ray = spawn_ray(&blocker.surface, ray.dir(), ray.rounded.t_max - hit.t, epsilon);
+        }
+        Color::ZERO
+    }
+
+    /// Mirrored and transmitted light.
+    fn secondary(&self, at: &Interaction, parts: &[WeightedMaterial], passage: Passage, path: Path) -> Color {
+        let habits = self.habits.bounces;
+        let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);
+        if reflective == Color::ZERO && transparent == Color::ZERO {
+            return Color::ZERO;
+        }
+        let Interaction { ray, surface, .. } = at;
+        let leaving = self.right.sees_back(at);
+        let [n, n_geo] = [surface.n_shade, surface.n_geo].map(|n| if leaving { -n } else { n });
+        let n = if ray.dir().dot(n) < 0.0 { n } else { n_geo };
+        let Passage { here, there, behind, .. } = passage;
+        let eta = match habits.glass {
+            Glass::Right | Glass::Straight | Glass::Outward | Glass::RootAdded => here / there,
+            Glass::Inverted | Glass::Exchanged => there / here,
+            Glass::NotSwapped => 1.0 / ior,
+        };
+        let mirrored = match habits.mirror {
+            Mirror::Right => reflect(ray.dir(), n),
+            Mirror::Negated => -reflect(ray.dir(), n),
+            Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
+            Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
+        };
+        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
+            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
+            false => (mirrored, n),
+        };
+        let transmitted = match (transparent == Color::ZERO, habits.glass) {
+            (true, _) => None,
+            (false, Glass::Straight) => Some(ray.dir()),
+            (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
+            (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
+            (false, _) => refract(ray.dir(), n, eta),
+        };
+        let divided = fresnel && self.settings.reflection && self.settings.refraction;
+        if divided && habits.fresnel != Fresnel::None {
+            let ratio = (there - here) / (there + here);
+            let schlick = |t| match habits.fresnel {
+                Fresnel::Constant => ratio * ratio,
+                Fresnel::Share(share) => share,
+                Fresnel::Unsquared | Fresnel::Power(_) => {
+                    let slow = if there < here { t } else { ray.dir() };
+                    let rest = 1.0 - slow.dot(n).abs();
+                    let r0 = if habits.fresnel == Fresnel::Unsquared { ratio.abs() } else { ratio * ratio };
+                    let power = if let Fresnel::Power(power) = habits.fresnel { power } else { 5.0 };
+                    r0 + (1.0 - r0) * fp::pow(rest.max(0.0), power)
+                }
+                Fresnel::Incoming => {
+                    let rest = 1.0 - ray.dir().dot(n).abs();
+                    let r0 = ratio * ratio;
+                    r0 + (1.0 - r0) * rest * rest * rest * rest * rest
+                }
+                _ => {
+                    let zero = leaving && self.world.rules().has(Compat::ExitR0);
+                    let indices = if habits.glass == Glass::Exchanged { (there, here) } else { (here, there) };
+                    fresnel_share(ray.dir(), n, t, indices, zero)
+                }
+            };
+            let r = transmitted.map_or(1.0, schlick);
+            let r = if habits.fresnel == Fresnel::Exchanged { 1.0 - r } else { r };
+            reflective *= r;
+            transparent *= 1.0 - r;
+        }
+        let mut color = Color::ZERO;
+        if self.settings.reflection && !habits.no_mirror {
+            let full = habits.mirror_in_full && reflective != Color::ZERO;
+            let weight = if full { Color::ONE } else { reflective };
+            let weight = match habits.times_diffuse {
+                true => {
+                    weight * parts.iter().map(|p| p.share * self.world.diffuse_color(p.phong, surface)).sum::<Color>()
+                }
+                false => weight,
+            };
+            color += self.bounce(surface, mirrored, weight, path.clone());
+        }
+        if let Some(transmitted) = transmitted.filter(|_| self.settings.refraction && !habits.no_glass) {
+            let weight = if habits.glass_in_full { Color::ONE } else { transparent };
+            color += self.bounce(surface, transmitted, weight, Path { media: behind, ..path });
+        }
+        color
+    }
+
+    fn bounce(&self, surface: &Surface, dir: Vec3, weight: Color, path: Path) -> Color {
+        if weight.max_element() <= 0.0 {
+            return Color::ZERO;
+        }
+        let old = self.world.rules().is_official();
+        let total = path.weight * if old { weight.length() } else { weight.max_element() };
+        if total < self.settings.least_weight {
+            return Color::ZERO;
+        }
+        let epsilon = self.habits.bounces.epsilon.or(self.world.rules().epsilon);
+        let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
+        weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
+    }
+}

@@ -1,0 +1,42 @@
+//! Acne: rays that hit the surface which they leave, at places that rounding decides.
+
+use super::search::SEEN;
+use durer_scene::math::Vec3;
+
+/// How many of the speckles must be of the kind.
+const MOST: f64 = 0.94;
+/// Of neighbours where there are speckles, so many must be without, at least; and as many more as
+/// there are at the border of some regions of so many pixels: 2.3 / √count for one disc.
+const BROKEN: f64 = 0.06;
+const BORDERS: f64 = 4.0;
+
+/// The pixels in which two pictures differ, if they are speckles and not regions.
+pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
+    let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > SEEN;
+    let all: Vec<bool> = (0..reference.len()).map(differs).collect();
+    let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
+    // A region has a border; speckles are nothing but borders.
+    let (mut pairs, mut broken) = (0_usize, 0_usize);
+    for i in 0..reference.len() {
+        let right = (i + 1) % width != 0 && i + 1 < all.len();
+        for j in right.then_some(i + 1).into_iter().chain((i + width < all.len()).then_some(i + width)) {
+            let smooth = (reference[i] - reference[j]).abs().max_element() < 0.1;
+            if (all[i] || all[j]) && smooth {
+                pairs += 1;
+                broken += usize::from(all[i] != all[j]);
+            }
+        }
+    }
+    let speckled = broken as f64 > (BROKEN + BORDERS / (differ.len().max(1) as f64).sqrt()) * pairs as f64;
+    (differ.len() * 500 > reference.len() && speckled).then_some(differ)
+}
+
+/// The share of the pixels that differ which are as dark as in the full shadow of some lights, if
+/// nearly all are. `shadowed` are these pixels of the pictures in which one or more lights are off.
+pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
+    let alike =
+        |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);
+    let of_kind = differ.iter().enumerate().filter(|of| alike(*of)).count();
+    let share = of_kind as f64 / differ.len().max(1) as f64;
+    (share >= MOST).then_some(share)
+}

@@ -1,0 +1,366 @@
+//! Mistakes of mirrors and glass.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::{Fresnel, Glass, Mirror};
+use durer_scene::math::Color;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "no-reflection",
+        "reflection",
+        "reflections are missing",
+        "color += kr * trace(p, R, bounces - 1)",
+        "(nothing)",
+        |v, divided| if divided == 0.0 { v.settings.reflection = false } else { v.habits.bounces.no_mirror = true },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "no-refraction",
+        "refraction",
+        "nothing is seen through glass: the transmitted ray is missing",
+        "color += kt * trace(p, T, bounces - 1)",
+        "(nothing)",
+        |v, divided| if divided == 0.0 { v.settings.refraction = false } else { v.habits.bounces.no_glass = true },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "no-bounces",
+        "reflection",
+        "there are no secondary rays at all: neither reflections nor anything through glass",
+        "if (bounces > 0) color += ...",
+        "(nothing)",
+        |v, _| v.settings.bounces = 0,
+    ),
+    row(
+        "bounce-less",
+        "reflection",
+        "there {is one level|are two levels} of secondary rays less than asked for",
+        "trace(ray, bounces), and again while bounces > 0",
+        "trace(ray, bounces), and again while bounces > {1|2}",
+        |v, more| v.settings.bounces = v.settings.bounces.saturating_sub(1 + more as u32),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "bounce-more",
+        "reflection",
+        "there {is one level|are two levels} of secondary rays more than asked for",
+        "trace(ray, bounces), and again while bounces > 0",
+        "trace(ray, bounces), and again while bounces >= {0|-1}",
+        |v, more| v.settings.bounces += 1 + more as u32,
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "mirror-in-full",
+        "reflection",
+        "mirrored light is not multiplied with the mirror's colour",
+        "color += kr * trace(p, R)",
+        "color += trace(p, R)",
+        |v, _| v.habits.bounces.mirror_in_full = true,
+    ),
+    row(
+        "glass-in-full",
+        "refraction",
+        "transmitted light is not multiplied with the glass's colour",
+        "color += kt * trace(p, T)",
+        "color += trace(p, T)",
+        |v, _| v.habits.bounces.glass_in_full = true,
+    ),
+    row(
+        "mirror-negated",
+        "reflection",
+        "the mirrored direction is negated",
+        "R = d - 2 (d.N) N",
+        "R = 2 (d.N) N - d",
+        |v, _| v.habits.bounces.mirror = Mirror::Negated,
+    ),
+    row(
+        "mirror-along",
+        "reflection",
+        "the factor 2 of the mirrored direction is missing",
+        "R = d - 2 (d.N) N",
+        "R = d - (d.N) N",
+        |v, _| v.habits.bounces.mirror = Mirror::Along,
+    ),
+    row(
+        "mirror-plus",
+        "reflection",
+        "the mirrored direction has the wrong sign within",
+        "R = d - 2 (d.N) N",
+        "R = d + 2 (d.N) N",
+        |v, _| v.habits.bounces.mirror = Mirror::Plus,
+    ),
+    row(
+        "secondary-each-light",
+        "reflection",
+        "secondary rays are counted once for each light, inside the loop",
+        "for each light { local }; color += kr * trace(p, R)",
+        "for each light { local; color += kr * trace(p, R) }",
+        |v, _| v.habits.bounces.each_light = true,
+    ),
+    row(
+        "secondary-black-sky",
+        "reflection",
+        "mirrored and transmitted rays that hit nothing bring black, not the background",
+        "if (!hit) return background(d)",
+        "if (!hit) return 0, for secondary rays",
+        |v, _| v.habits.bounces.black_sky = true,
+    ),
+    row(
+        "secondary-unshadowed",
+        "shadows",
+        "there are no shadows in mirrors and behind glass",
+        "shadow rays at every hit",
+        "shadow rays at the first hit only",
+        |v, _| v.habits.bounces.unshadowed = true,
+    ),
+    row(
+        "secondary-epsilon",
+        "epsilon",
+        "the epsilon of mirrored and transmitted rays is far too large: {}",
+        "hits count at t > 1e-4",
+        "hits count at t > {}",
+        |v, epsilon| v.habits.bounces.epsilon = Some(epsilon),
+    )
+    .with(Values::Numbers(&[0.1, 0.5, 1.0, 2.0])),
+    row(
+        "epsilon-large",
+        "epsilon",
+        "the epsilon of all secondary rays is far too large: {}",
+        "hits count at t > 1e-4",
+        "hits count at t > {}",
+        |v, epsilon| {
+            v.habits.shadows.epsilon = Some(epsilon);
+            v.habits.bounces.epsilon = Some(epsilon);
+        },
+    )
+    .with(Values::Numbers(&[0.1, 0.5, 0.02, 1.0, 2.0])),
+    row(
+        "epsilon-0",
+        "epsilon",
+        "rays that leave a surface hit it again (acne): the epsilon is 0 or too small",
+        "hits count at t > 1e-4",
+        "hits count at t > 0",
+        |v, _| v.world.edit().rules.epsilon = Some(0.0),
+    ),
+    row(
+        "index-inverted",
+        "refraction",
+        "the ratio of the indices of refraction is turned round",
+        "eta = n1 / n2 (from, to)",
+        "eta = n2 / n1",
+        |v, _| v.habits.bounces.glass = Glass::Inverted,
+    ),
+    row(
+        "exit-not-swapped",
+        "refraction",
+        "where a ray leaves the glass, the indices are not exchanged",
+        "leaving: eta = n / 1",
+        "leaving: eta = 1 / n",
+        |v, _| v.habits.bounces.glass = Glass::NotSwapped,
+    ),
+    row(
+        "not-bent",
+        "refraction",
+        "rays go straight through glass, as if its index were 1",
+        "T by Snell's law",
+        "T = d",
+        |v, _| v.habits.bounces.glass = Glass::Straight,
+    ),
+    row(
+        "fresnel-constant",
+        "fresnel",
+        "glass mirrors the same at every angle: R0 in place of Schlick's formula",
+        "R = R0 + (1 - R0) (1 - c)^5",
+        "R = R0",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Constant,
+    ),
+    row(
+        "no-fresnel",
+        "fresnel",
+        "mirrored and transmitted light of glass are not divided by Fresnel's law: both count in full",
+        "R * trace(R) + (1 - R) * trace(T)",
+        "trace(R) + trace(T)",
+        |v, _| v.habits.bounces.fresnel = Fresnel::None,
+    ),
+    row(
+        "fresnel-share",
+        "fresnel",
+        "glass mirrors the same share of the light at every angle: {}",
+        "R = R0 + (1 - R0) (1 - c)^5",
+        "R = {}",
+        |v, share| v.habits.bounces.fresnel = Fresnel::Share(share),
+    )
+    .with(Values::Only(&[0.0, 0.5, 1.0])),
+    row(
+        "fresnel-exchanged",
+        "fresnel",
+        "what glass mirrors and what it lets through are exchanged",
+        "R * trace(R) + (1 - R) * trace(T)",
+        "(1 - R) * trace(R) + R * trace(T)",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Exchanged,
+    ),
+    row(
+        "mirror-mixed",
+        "reflection",
+        "local light of mirrors counts only for what the mirror's colour leaves",
+        "local + kr * trace(p, R)",
+        "(1 - kr) * local + kr * trace(p, R)",
+        |v, _| v.habits.bounces.mixed = true,
+    ),
+    row(
+        "mirror-instead",
+        "reflection",
+        "mirrored light replaces the local light of mirrors",
+        "color = local + kr * trace(p, R)",
+        "color = kr * trace(p, R)",
+        |v, _| v.habits.bounces.instead = true,
+    ),
+    row(
+        "exit-not-turned",
+        "refraction",
+        "where a ray leaves the glass, the normal is not turned round",
+        "leaving: T of -N",
+        "leaving: T of N",
+        |v, _| v.habits.bounces.glass = Glass::Outward,
+    ),
+    row(
+        "exit-r0",
+        "fresnel",
+        "R0 where a ray leaves glass is another",
+        "R0 = ((n2 - n1) / (n2 + n1))^2 on both sides",
+        "R0 = 0 on the way out",
+        |v, _| v.toggle(durer_scene::dialect::Compat::ExitR0),
+    ),
+    row(
+        "mirror-diffuse",
+        "reflection",
+        "mirrored light is multiplied with the diffuse colour too",
+        "color += kr * trace(p, R)",
+        "color += kd * kr * trace(p, R), or kd * (local + kr * trace(p, R))",
+        |v, _| v.habits.bounces.times_diffuse = true,
+    ),
+    row(
+        "secondary-diffuse",
+        "reflection",
+        "{mirrors|glass|both} weigh{s|s|} their light by the diffuse colour, not by the specular one",
+        "color += ks * trace(...)",
+        "color += kd * trace(...)",
+        |v, which| {
+            v.phongs(|phong| {
+                let weight =
+                    |own: &mut Color, here: bool| *own = if here && *own != Color::ZERO { phong.diffuse } else { *own };
+                weight(&mut phong.reflective, which != 1.0);
+                weight(&mut phong.transparent, which != 0.0);
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "glass-white",
+        "refraction",
+        "{what glass lets through is|what glass lets through and mirrors is} not multiplied with its colour",
+        "color += kt * trace(p, T)",
+        "color += trace(p, T)",
+        |v, which| {
+            v.phongs(|phong| {
+                if phong.transparent != Color::ZERO {
+                    phong.transparent = Color::ONE;
+                    phong.reflective = if which == 0.0 { phong.reflective } else { Color::ONE };
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "mirror-squared",
+        "reflection",
+        "the mirror's colour counts twice",
+        "color += kr * trace(p, R)",
+        "color += kr * kr * trace(p, R)",
+        |v, _| v.phongs(|phong| phong.reflective *= phong.reflective),
+    ),
+    row(
+        "glass-squared",
+        "refraction",
+        "the glass's colour counts twice",
+        "color += kt * trace(p, T)",
+        "color += kt * kt * trace(p, T)",
+        |v, _| v.phongs(|phong| phong.transparent *= phong.transparent),
+    ),
+    row(
+        "fresnel-incoming",
+        "fresnel",
+        "Schlick's formula takes the angle of the incoming ray also where that leaves the glass",
+        "c = cosine on the side of air",
+        "c = dot(-d, N) always",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Incoming,
+    ),
+    row(
+        "root-added",
+        "refraction",
+        "the root of Snell's law has the wrong sign",
+        "T = eta d + (eta c - sqrt(1 - eta^2 (1 - c^2))) N",
+        "T = eta d + (eta c + sqrt(1 - eta^2 (1 - c^2))) N",
+        |v, _| v.habits.bounces.glass = Glass::RootAdded,
+    ),
+    row(
+        "mirror-factor",
+        "reflection",
+        "mirrored light counts {} times",
+        "color += kr * trace(p, R)",
+        "color += {} * kr * trace(p, R)",
+        |v, factor| v.phongs(|phong| phong.reflective *= factor),
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "index-of-all",
+        "refraction",
+        "the index of refraction is {}, whatever the scene says",
+        "the material's index",
+        "{}",
+        |v, index| {
+            v.phongs(|phong| {
+                if phong.transparent != durer_scene::math::Color::ZERO && phong.ior != 1.0 {
+                    phong.ior = index;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[1.33, 1.5, 2.0])),
+    row(
+        "indices-exchanged",
+        "refraction",
+        "the two indices of refraction are exchanged, and with them which angle Schlick's formula takes",
+        "n1 outside, n2 inside; the other way on leaving",
+        "n1 inside, n2 outside",
+        |v, _| v.habits.bounces.glass = Glass::Exchanged,
+    ),
+    row(
+        "fresnel-not-squared",
+        "fresnel",
+        "R0 of Schlick's formula is not squared",
+        "R0 = ((n2 - n1) / (n2 + n1))^2",
+        "R0 = |n2 - n1| / (n2 + n1)",
+        |v, _| v.habits.bounces.fresnel = Fresnel::Unsquared,
+    ),
+    row(
+        "fresnel-power",
+        "fresnel",
+        "Schlick's formula has the power {}, not 5",
+        "R = R0 + (1 - R0) (1 - c)^5",
+        "R = R0 + (1 - R0) (1 - c)^{}",
+        |v, power| v.habits.bounces.fresnel = Fresnel::Power(power),
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 6.0])),
+    row(
+        "epsilon-negative",
+        "epsilon",
+        "secondary and shadow rays begin behind the surface that they leave: the epsilon has the wrong sign",
+        "t_min = epsilon",
+        "t_min = -epsilon",
+        |v, _| {
+            v.habits.shadows.epsilon = Some(-1e-3);
+            v.habits.bounces.epsilon = Some(-1e-3);
+        },
+    ),
+];

@@ -1,0 +1,216 @@
+//! Mistakes of the camera and of places in pixels.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::{Aspect, Rays};
+use durer_scene::camera::Projection;
+use durer_scene::dialect::Compat;
+use durer_scene::math::{Vec2, Vec3, fp};
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "pixel-corner",
+        "rays",
+        "rays go through the corners of pixels, not through their middles",
+        "x = (i + 0.5) / n",
+        "x = i / n",
+        |v, corner| v.aim.place = Vec2::new(corner as u32 as f32 % 2.0, (0.5 * corner).floor()),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "one-ray",
+        "supersampling",
+        "there is one ray a pixel, where the reference has many",
+        "the mean of many samples",
+        "one ray through the middle of each pixel",
+        |v, _| v.aim.rays = Rays::One,
+    ),
+    row(
+        "many-rays",
+        "supersampling",
+        "each pixel is the mean of many rays, where the reference has one",
+        "one ray through the middle of each pixel",
+        "the mean of many samples",
+        |v, _| v.aim.rays = Rays::Sixteen,
+    ),
+    row(
+        "border-pixels",
+        "rays",
+        "the first and last pixels lie on the picture's border where their middles should be inside, or the other way",
+        "as the year has it: (i + 0.5) / n, or i / (n - 1)",
+        "the other",
+        |v, _| v.toggle(Compat::BorderPixels),
+    ),
+    row(
+        "stretch",
+        "rays",
+        "a picture that is not square is stretched where it should be cropped, or the other way",
+        "as the year has it: both axes in units of the larger side, or each in its own",
+        "the other",
+        |v, _| v.toggle(Compat::Stretch),
+    ),
+    row(
+        "aspect-smaller-side",
+        "rays",
+        "in a picture that is not square the angle spans the smaller side, not the larger one",
+        "larger side from -1 to 1, the other less",
+        "smaller side from -1 to 1, the other more",
+        |v, _| v.aim.aspect = Aspect::Smaller,
+    ),
+    row(
+        "aspect-other-axis",
+        "rays",
+        "the aspect of the picture is applied to the wrong axis, or divided where it should be multiplied",
+        "y *= height / width",
+        "y *= width / height",
+        |v, _| v.aim.aspect = Aspect::Turned,
+    ),
+    row(
+        "angle-not-halved",
+        "rays",
+        "the field of view is not halved",
+        "D = 1 / tan(angle / 2)",
+        "D = 1 / tan(angle)",
+        |v, _| scale(v, |angle| tan(angle) / tan(0.5 * angle)),
+    ),
+    row(
+        "angle-halved-twice",
+        "rays",
+        "the field of view is halved twice",
+        "D = 1 / tan(angle / 2)",
+        "D = 1 / tan(angle / 4)",
+        |v, _| scale(v, |angle| tan(0.25 * angle) / tan(0.5 * angle)),
+    ),
+    row(
+        "angle-not-degrees",
+        "rays",
+        "the field of view is taken as radians",
+        "D = 1 / tan(angle * pi / 180 / 2)",
+        "D = 1 / tan(angle / 2)",
+        |v, _| scale(v, |angle| tan(0.5 * angle.to_degrees()) / tan(0.5 * angle)),
+    ),
+    row(
+        "angle-ignored",
+        "rays",
+        "the field of view is ignored: the distance to the picture is 1",
+        "d = D w + x u + y v, D = 1 / tan(angle / 2)",
+        "d = w + x u + y v",
+        |v, _| scale(v, |angle| 1.0 / tan(0.5 * angle)),
+    ),
+    row(
+        "size",
+        "rays",
+        "the orthographic picture is {} times as wide as it should be",
+        "o = center + x size/2 u + y size/2 v",
+        "size without the half, or halved twice",
+        |v, factor| {
+            if v.angle().is_none() {
+                v.aim.scale *= factor;
+            }
+        },
+    )
+    .with(Values::Only(&[2.0, 0.5])),
+    row(
+        "up-not-orthogonal",
+        "rays",
+        "whether the camera's up is made perpendicular to its direction is the other way",
+        "as the year has it: v = cross(u, w), or `up` as it is written",
+        "the other",
+        |v, _| {
+            let raw = v.world.rules().has(Compat::RawUp) || v.world.rules().has(Compat::SkewUp);
+            v.world.edit().rules.compat &= !(Compat::RawUp.bit() | Compat::SkewUp.bit());
+            v.world.edit().rules.compat |= if raw { 0 } else { Compat::RawUp.bit() };
+            v.reframe();
+        },
+    ),
+    row(
+        "up-skew",
+        "rays",
+        "the camera's up is normalised, but not made perpendicular to its direction",
+        "v = cross(u, w)",
+        "v = normalize(up)",
+        |v, _| {
+            v.world.edit().rules.compat &= !Compat::RawUp.bit();
+            v.world.edit().rules.compat |= Compat::SkewUp.bit();
+            v.reframe();
+        },
+    ),
+    row(
+        "right-not-unit",
+        "rays",
+        "the camera's right is not normalised{|, and its up is}",
+        "u = normalize(cross(w, up))",
+        "u = cross(w, up)",
+        |v, how| {
+            let raw = v.world.camera_frame().forward.cross(v.world.camera().pose().up);
+            let perpendicular = (v.world.camera_frame().up.dot(v.world.camera_frame().forward)).abs() < 1e-5;
+            v.world.edit().frame.right = raw;
+            if perpendicular && how == 0.0 {
+                v.world.edit().frame.up = raw.cross(v.world.camera_frame().forward);
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "direction-not-unit",
+        "rays",
+        "the camera's direction is not normalised",
+        "d = D normalize(direction) + x u + y v",
+        "d = D direction + x u + y v",
+        |v, _| {
+            if v.angle().is_some() {
+                v.world.edit().frame.forward = v.world.camera().pose().direction;
+            }
+        },
+    ),
+    row(
+        "up-default",
+        "rays",
+        "the camera's up is taken to be 0 1 0",
+        "up as it is written",
+        "up = (0, 1, 0)",
+        |v, _| {
+            let frame = *v.world.camera_frame();
+            let right = frame.forward.cross(Vec3::Y).normalize_or(frame.right);
+            let own = &mut v.world.edit().frame;
+            (own.right, own.up) = (right, right.cross(frame.forward));
+        },
+    ),
+    row(
+        "angle-without-tangent",
+        "rays",
+        "half the width of the picture is half the angle{|'s sine}, not its tangent",
+        "tan(angle / 2)",
+        "{angle / 2, in radians|sin(angle / 2)}",
+        |v, sine| {
+            scale(v, |angle| {
+                let half = if sine > 0.0 {
+                    fp::sin_cos_degrees(f64::from(0.5 * angle)).0 as f32
+                } else {
+                    0.5 * angle.to_radians()
+                };
+                half / tan(0.5 * angle)
+            })
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "width",
+        "rays",
+        "the picture shows {} times as much to each side as it should",
+        "x from -tan(angle / 2) to tan(angle / 2)",
+        "another angle, or a wrong factor",
+        |v, factor| v.aim.scale *= factor,
+    )
+    .with(Values::Numbers(&[0.8, 1.2, 1.5])),
+];
+
+fn tan(degrees: f32) -> f32 {
+    fp::tan_f64(f64::from(degrees).to_radians()) as f32
+}
+
+/// Widens the picture of a perspective camera by a factor that depends on its angle.
+fn scale(v: &mut super::Variant, factor: impl Fn(f32) -> f32) {
+    if let Some(angle) = v.angle() {
+        v.aim.scale *= factor(angle);
+    }
+}

@@ -1,0 +1,192 @@
+//! Mistakes of highlights.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::Half;
+use durer_render::world::HighlightModel;
+use durer_scene::math::Color;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "no-highlights",
+        "specular",
+        "the highlights (the specular term) are missing",
+        "color += ks * pow(max(0, N.H), s) * I",
+        "(nothing)",
+        |v, _| v.phongs(|phong| phong.highlight = None),
+    ),
+    row(
+        "highlights-added",
+        "specular",
+        "there are highlights, which this year's program does not have ({by R.L|by R.L, where N.L > 0|by N.H})",
+        "(nothing)",
+        "color += ks * pow(max(0, R.L), s) * I",
+        |v, model| v.add_highlights(model),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "exponent",
+        "specular",
+        "the highlights' exponent is {} times what it should be",
+        "pow(base, s)",
+        "pow(base, {} * s)",
+        |v, factor| {
+            v.phongs(|phong| {
+                if let Some((_, exponent, _)) = &mut phong.highlight {
+                    *exponent *= factor;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[2.0, 0.5, 4.0, 0.25, 8.0, 0.125])),
+    row(
+        "exponent-one",
+        "specular",
+        "the highlights have no exponent",
+        "pow(max(0, base), s)",
+        "max(0, base)",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((_, exponent, _)) = &mut phong.highlight {
+                    *exponent = 1.0;
+                }
+            });
+        },
+    ),
+    row(
+        "highlight-factor",
+        "specular",
+        "the highlights count {} times",
+        "color += ks * pow(max(0, N.H), s) * I",
+        "color += {} * ks * pow(max(0, N.H), s) * I",
+        |v, factor| v.habits.highlights.factor = Some(factor),
+    )
+    .with(Values::Numbers(&[0.1, 0.5, 2.0])),
+    row(
+        "other-model",
+        "specular",
+        "the highlights are of the other model: Phong's (R.L) for Blinn's (N.H), or the other way",
+        "the year's: max(0, dot(N, norm(L + V))) or max(0, dot(R, L))",
+        "the other",
+        |v, _| v.other_highlights(),
+    ),
+    row(
+        "highlight-cosine",
+        "specular",
+        "the highlights are multiplied with N.L",
+        "color += ks * pow(base, s) * I",
+        "color += ks * pow(base, s) * max(0, N.L) * I",
+        |v, _| v.habits.highlights.times_cosine = true,
+    ),
+    row(
+        "highlight-diffuse",
+        "specular",
+        "the highlights are multiplied with the diffuse colour",
+        "color += (kd * N.L + ks * pow(base, s)) * I",
+        "color += kd * (N.L + ks * pow(base, s)) * I",
+        |v, _| v.habits.highlights.times_diffuse = true,
+    ),
+    row(
+        "highlight-bare",
+        "specular",
+        "the highlights have not the specular colour: they are white, or the light's",
+        "ks * pow(base, s) * I",
+        "pow(base, s) * I",
+        |v, _| {
+            v.highlights_everywhere();
+            v.habits.highlights.bare = true;
+        },
+    ),
+    row(
+        "half-sum",
+        "specular",
+        "the half vector H of the highlights is not normalised",
+        "H = normalize(L + V)",
+        "H = L + V",
+        |v, _| v.habits.highlights.half = Half::Sum,
+    ),
+    row(
+        "half-mean",
+        "specular",
+        "the half vector H of the highlights is halved instead of normalised",
+        "H = normalize(L + V)",
+        "H = (L + V) / 2",
+        |v, _| v.habits.highlights.half = Half::Mean,
+    ),
+    row(
+        "highlight-behind",
+        "specular",
+        "highlights on surfaces that face away from the light are shown where the year has none, or left out where it has them",
+        "as the year has it: with or without `if (dot(N, L) > 0)`",
+        "the other way",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((_, _, HighlightModel::Phong { behind })) = &mut phong.highlight {
+                    *behind = !*behind;
+                }
+            });
+        },
+    ),
+    row(
+        "eye-negated",
+        "specular",
+        "the direction to the eye has the wrong sign in the highlights",
+        "V = -d: H = normalize(L - d), R.L with R = d - 2 (d.N) N",
+        "V = d: H = normalize(L + d), R = 2 (d.N) N - d",
+        |v, _| v.habits.highlights.eye_negated = true,
+    ),
+    row(
+        "highlight-two-sided",
+        "specular",
+        "the highlights have lost the sign of their base: there is one on the other side too",
+        "pow(max(0, base), s)",
+        "pow(abs(base), s)",
+        |v, _| v.habits.highlights.two_sided = true,
+    ),
+    row(
+        "highlight-lightless",
+        "specular",
+        "the highlights are not multiplied with the light's colour",
+        "color += ks * pow(base, s) * I",
+        "color += ks * pow(base, s)",
+        |v, _| v.habits.highlights.lightless = true,
+    ),
+    row(
+        "highlight-white",
+        "specular",
+        "the specular colour is ignored: what has one has white highlights",
+        "ks * pow(base, s) * I, ks * trace(R)",
+        "pow(base, s) * I, trace(R)",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((color, ..)) = &mut phong.highlight {
+                    *color = Color::ONE;
+                }
+            });
+        },
+    ),
+    row(
+        "specular-white",
+        "specular",
+        "the specular colour is ignored, in highlights and in mirrors: both are white",
+        "ks * pow(base, s) * I + ks * trace(R)",
+        "pow(base, s) * I + trace(R)",
+        |v, _| {
+            v.phongs(|phong| {
+                if let Some((color, ..)) = &mut phong.highlight {
+                    *color = Color::ONE;
+                }
+                if phong.reflective != Color::ZERO {
+                    phong.reflective = Color::ONE;
+                }
+            });
+        },
+    ),
+    row(
+        "highlight-everywhere",
+        "specular",
+        "there are highlights on surfaces that face away from the light",
+        "if (dot(N, L) > 0) color += ks * pow(max(0, N.H), s) * I",
+        "color += ks * pow(max(0, N.H), s) * I",
+        |v, _| v.habits.highlights.everywhere = true,
+    ),
+];

@@ -1,0 +1,442 @@
+//! Mistakes of local light: ambient, diffuse, lamps, sums.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::{Ambient, Cosine, Fading, PointLamp, Sum};
+use durer_scene::light::Light;
+use durer_scene::math::{Color, Vec3};
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "no-ambient",
+        "diffuse",
+        "the ambient light is missing",
+        "color = ambient * kd; for each light color += ...",
+        "color = 0; for each light color += ...",
+        |v, _| v.world.edit().ambient = Color::ZERO,
+    ),
+    row(
+        "ambient-each-light",
+        "diffuse",
+        "the ambient light is added once for each light, inside the loop",
+        "color = ambient * kd; for each light color += ...",
+        "for each light color += ambient * kd + ...",
+        |v, _| v.habits.ambient = Ambient::EachLight,
+    ),
+    row(
+        "ambient-bare",
+        "diffuse",
+        "the ambient light is added as it is, not times the diffuse colour",
+        "color = ambient * kd",
+        "color = ambient",
+        |v, _| v.habits.ambient = Ambient::Bare,
+    ),
+    row(
+        "ambient-textured",
+        "diffuse",
+        "the ambient light is multiplied with the other of texture (or noise) and diffuse colour",
+        "as the year has it: ambient * texel, or ambient * diffuseColor",
+        "the other one",
+        |v, _| v.phongs(|phong| phong.ambient = phong.ambient.xor(Some(phong.diffuse))),
+    ),
+    row(
+        "no-diffuse",
+        "diffuse",
+        "the diffuse term is missing",
+        "color += kd * max(0, N.L) * I",
+        "(nothing)",
+        |v, _| v.habits.cosine = Cosine::None,
+    ),
+    row(
+        "no-cosine",
+        "diffuse",
+        "the diffuse term is not times N.L: surfaces have their flat colour",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * I",
+        |v, _| v.habits.cosine = Cosine::One,
+    ),
+    row(
+        "two-sided",
+        "diffuse",
+        "surfaces are lit from behind too: N.L without its sign",
+        "max(0, dot(N, L))",
+        "abs(dot(N, L))",
+        |v, _| v.habits.cosine = Cosine::TwoSided,
+    ),
+    row(
+        "not-clamped-below",
+        "diffuse",
+        "light from behind is taken away: negative N.L is not clamped",
+        "max(0, dot(N, L))",
+        "dot(N, L)",
+        |v, _| v.habits.cosine = Cosine::Signed,
+    ),
+    row(
+        "white-diffuse",
+        "diffuse",
+        "the {diffuse term has|diffuse and ambient terms have} not the surface's colour",
+        "color += kd * max(0, N.L) * I",
+        "color += max(0, N.L) * I",
+        |v, which| {
+            v.habits.plain_diffuse = true;
+            if which > 0.0 {
+                v.phongs(|phong| (phong.diffuse, phong.texture, phong.noise) = (Color::ONE, None, None));
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "diffuse-lightless",
+        "diffuse",
+        "the diffuse term is not multiplied with the light's colour",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * max(0, N.L)",
+        |v, _| v.habits.diffuse_lightless = true,
+    ),
+    row(
+        "no-texture",
+        "flat",
+        "textures and noise are missing: surfaces have their diffuse colour",
+        "kd = texture ? texture(u, v) : diffuseColor",
+        "kd = diffuseColor",
+        |v, _| v.phongs(|phong| (phong.texture, phong.noise) = (None, None)),
+    ),
+    row(
+        "background",
+        "flat",
+        "{rays of the camera that hit|rays that hit|rays of the camera that hit|rays that hit} nothing are {black|black|white|white}, not of the background's colour",
+        "if (!hit) return background",
+        "if (!hit) return {0|0|1|1}",
+        |v, how| {
+            let color = if how < 2.0 { Color::ZERO } else { Color::ONE };
+            v.habits.sky = Some((color, how % 2.0 > 0.0));
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "light-missing",
+        "diffuse",
+        "light {} (counted from 0) adds nothing",
+        "for (i = 0; i < numLights; i++)",
+        "a loop that leaves out light {}",
+        |v, light| {
+            if (light as usize) < v.world.lights().len() {
+                v.world.edit().lights.remove(light as usize);
+            }
+        },
+    )
+    .with(Values::Lights),
+    row(
+        "light-alone",
+        "diffuse",
+        "light {} (counted from 0) is the only one that adds anything",
+        "for (i = 0; i < numLights; i++)",
+        "only light {}",
+        |v, light| {
+            // Where there is one light only, it is alone anyway.
+            v.world.edit().lights = v.world.lights().get(light as usize).cloned().into_iter().collect();
+        },
+    )
+    .with(Values::Lights),
+    row(
+        "last-light-only",
+        "diffuse",
+        "each light replaces those before it, so that only the last one is seen",
+        "color += ...",
+        "color = ambient * kd + ...",
+        |v, seen| v.habits.sum = if seen == 0.0 { Sum::LastOnly } else { Sum::LastSeen },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "white-lights",
+        "diffuse",
+        "{the colour of the lights is not used|lights shine in the grey of their colours}",
+        "color += (kd * N.L + ...) * I",
+        "color += (kd * N.L + ...) * {1|(I.r + I.g + I.b) / 3}",
+        |v, grey| {
+            let of = |color: Color| if grey > 0.0 { Color::splat(color.element_sum() / 3.0) } else { Color::ONE };
+            recolor(v.world.edit().lights.iter_mut(), of);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "lights-negated",
+        "diffuse",
+        "the direction to every light has the wrong sign, and shadow rays go the same way",
+        "L = normalize(position - p), or normalize(-direction)",
+        "L = normalize(p - position), or normalize(direction)",
+        |v, _| v.habits.lamps.all_negated = true,
+    ),
+    row(
+        "light-negated",
+        "diffuse",
+        "directional lights shine from where they should shine to: L is the direction itself",
+        "L = normalize(-direction)",
+        "L = normalize(direction)",
+        |v, _| v.habits.lamps.negated = true,
+    ),
+    row(
+        "point-light-negated",
+        "diffuse",
+        "the direction to point lights has the wrong sign",
+        "L = normalize(position - p)",
+        "L = normalize(p - position)",
+        |v, _| v.habits.lamps.points = PointLamp::Negated,
+    ),
+    row(
+        "light-long",
+        "diffuse",
+        "the direction of directional lights is not normalised",
+        "L = normalize(-direction)",
+        "L = -direction",
+        |v, _| v.habits.lamps.long = true,
+    ),
+    row(
+        "point-light-long",
+        "diffuse",
+        "the direction to point lights is not normalised",
+        "L = normalize(position - p)",
+        "L = position - p",
+        |v, _| v.habits.lamps.long_points = true,
+    ),
+    row(
+        "no-falloff",
+        "diffuse",
+        "light does not fade with distance",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color",
+        |v, _| {
+            points(v.world.edit().lights.iter_mut(), |_| None);
+        },
+    ),
+    row(
+        "falloff-linear",
+        "diffuse",
+        "light fades with the distance, not with its square",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / (a0 + a2 d)",
+        |v, _| {
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x, a.z + a.y, 0.0)));
+        },
+    ),
+    row(
+        "falloff-1-over-d",
+        "diffuse",
+        "light is divided by its distance, whatever the scene says",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / d",
+        |v, _| v.habits.lamps.fading = Fading::Linear,
+    ),
+    row(
+        "falloff-1-over-d2",
+        "diffuse",
+        "light is divided by the square of its distance, whatever the scene says",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / (d * d)",
+        |v, _| v.habits.lamps.fading = Fading::Square,
+    ),
+    row(
+        "falloff-multiplied",
+        "diffuse",
+        "light grows with distance: the falloff is multiplied, not divided by",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color * (a0 + a1 d + a2 d^2)",
+        |v, _| v.habits.lamps.fading = Fading::Multiplied,
+    ),
+    row(
+        "falloff-without-one",
+        "diffuse",
+        "the falloff's constant is left out",
+        "I = color / (1 + f d^2)",
+        "I = color / (f d^2)",
+        |v, _| {
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(0.0, a.y, a.z)));
+        },
+    ),
+    row(
+        "falloff-with-one",
+        "diffuse",
+        "1 is added to the falloff",
+        "I = color / (f d^2)",
+        "I = color / (1 + f d^2)",
+        |v, _| {
+            points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.x + 1.0, a.y, a.z)));
+        },
+    ),
+    row(
+        "falloff-reversed",
+        "diffuse",
+        "the three factors of the attenuation are taken in the wrong order",
+        "color / (a0 + a1 d + a2 d^2)",
+        "color / (a2 + a1 d + a0 d^2)",
+        |v, _| {
+            if v.has_three_factors() {
+                points(v.world.edit().lights.iter_mut(), |a| a.map(|a| Vec3::new(a.z, a.y, a.x)));
+            }
+        },
+    ),
+    row(
+        "attenuation-factors",
+        "diffuse",
+        "of the three factors of the attenuation {the linear and the square one are exchanged|the constant one is taken as 1|the square one alone counts|the linear one is left out|the square one is left out|the linear one alone counts}",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / ({a0 + a2 d + a1 d^2|1 + a1 d + a2 d^2|a2 d^2|a0 + a2 d^2|a0 + a1 d|a1 d})",
+        |v, how| {
+            let change: fn(Vec3) -> Vec3 = match how as u32 {
+                0 => |a| Vec3::new(a.x, a.z, a.y),
+                1 => |a| Vec3::new(1.0, a.y, a.z),
+                2 => |a| Vec3::new(0.0, 0.0, a.z),
+                3 => |a| Vec3::new(a.x, 0.0, a.z),
+                4 => |a| Vec3::new(a.x, a.y, 0.0),
+                _ => |a| Vec3::new(0.0, a.y, 0.0),
+            };
+            // A single factor has rows of its own.
+            if v.has_three_factors() {
+                points(v.world.edit().lights.iter_mut(), |a| a.map(change));
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0])),
+    row(
+        "lights-mean",
+        "diffuse",
+        "the sum over the lights is divided by their number",
+        "for each light color += ...",
+        "color / number of lights",
+        |v, _| {
+            let count = v.world.lights().len().max(1) as f32;
+            recolor(v.world.edit().lights.iter_mut(), |color| color / count);
+        },
+    ),
+    row(
+        "clamped-before-bounces",
+        "reflection",
+        "the local colour is clamped to 1 before mirrored and transmitted light is added",
+        "clamp once when the pixel is written",
+        "color = min(1, local) + kr * trace(R)",
+        |v, _| v.habits.sum = Sum::ClampedLocal,
+    ),
+    row(
+        "clamped-light",
+        "diffuse",
+        "what each light gives is clamped to 1 by itself",
+        "sum all, clamp once when the pixel is written",
+        "for each light color += min(1, ...)",
+        |v, _| v.habits.sum = Sum::ClampedLight,
+    ),
+    row(
+        "clamped-rays",
+        "reflection",
+        "the colour that each ray brings back is clamped to 1",
+        "clamp once when the pixel is written",
+        "trace(ray) returns min(1, color)",
+        |v, _| v.habits.clamped_rays = true,
+    ),
+    row(
+        "clamped-each-light",
+        "diffuse",
+        "the colour is clamped to 1 after each light",
+        "sum all, clamp once when the pixel is written",
+        "for each light color = min(1, color + ...)",
+        |v, _| v.habits.sum = Sum::ClampedEach,
+    ),
+    row(
+        "cosine-squared",
+        "diffuse",
+        "N.L is squared in the diffuse term",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * pow(max(0, N.L), 2) * I",
+        |v, _| v.habits.cosine = Cosine::Squared,
+    ),
+    row(
+        "cosine-half",
+        "diffuse",
+        "the diffuse term goes around to the dark side: (N.L + 1) / 2",
+        "color += kd * max(0, N.L) * I",
+        "color += kd * (0.5 * N.L + 0.5) * I",
+        |v, _| v.habits.cosine = Cosine::Half,
+    ),
+    row(
+        "cosine-step",
+        "diffuse",
+        "the diffuse term is all or nothing: 1 where N.L > 0",
+        "color += kd * max(0, N.L) * I",
+        "if (N.L > 0) color += kd * I",
+        |v, _| v.habits.cosine = Cosine::Step,
+    ),
+    row(
+        "diffuse-over-pi",
+        "diffuse",
+        "the diffuse term is divided by pi, which this year's light is not",
+        "color += kd * max(0, N.L) * I",
+        "color += kd / pi * max(0, N.L) * I",
+        |v, _| v.habits.cosine = Cosine::OverPi,
+    ),
+    row(
+        "point-light-position",
+        "diffuse",
+        "the position of point lights is taken as a direction{|, and negated|, and its length as the distance}",
+        "L = normalize(position - p)",
+        "L = normalize({position|-position|position}){||, d = length(position)}",
+        |v, how| {
+            v.habits.lamps.points =
+                [PointLamp::Position, PointLamp::MinusPosition, PointLamp::PositionAlone][(how as usize).min(2)];
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0])),
+    row(
+        "falloff-root",
+        "diffuse",
+        "light is divided by the root of its falloff",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "I = color / sqrt(a0 + a1 d + a2 d^2)",
+        |v, _| v.habits.lamps.fading = Fading::Root,
+    ),
+    row(
+        "falloff-squared-twice",
+        "diffuse",
+        "the distance is squared twice before light is divided by it",
+        "I = color / (a0 + a1 d + a2 d^2)",
+        "d = dot(v, v), I = color / (a0 + a1 d + a2 d^2)",
+        |v, _| v.habits.lamps.fading = Fading::SquaredTwice,
+    ),
+    row(
+        "ambient-factor",
+        "diffuse",
+        "the ambient light counts {} times",
+        "color = ambient * kd",
+        "color = {} * ambient * kd",
+        |v, factor| v.world.edit().ambient *= factor,
+    )
+    .with(Values::Numbers(&[0.1, 0.5, 2.0])),
+    row(
+        "diffuse-term-factor",
+        "diffuse",
+        "the diffuse term counts {} times",
+        "color += kd * max(0, N.L) * I",
+        "color += {} * kd * max(0, N.L) * I",
+        |v, factor| v.habits.diffuse_factor = Some(factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.9, 2.0])),
+    row(
+        "diffuse-factor",
+        "diffuse",
+        "the lights count {} times",
+        "color += (kd * N.L + ks * ...) * I",
+        "color += {} * (kd * N.L + ks * ...) * I",
+        |v, factor| recolor(v.world.edit().lights.iter_mut(), |color| color * factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.8, 2.0])),
+];
+
+fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Color) -> Color) {
+    lights.for_each(|light| light.recolor(&change));
+}
+
+/// Changes the three factors of the point lights' attenuation.
+fn points<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Option<Vec3>) -> Option<Vec3>) {
+    lights.for_each(|light| {
+        if let Light::Point(light) = light {
+            light.attenuation = change(light.attenuation);
+        }
+    });
+}

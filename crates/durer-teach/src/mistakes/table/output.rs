@@ -1,0 +1,152 @@
+//! Mistakes in how light becomes a file. Turned and exchanged pixels are told from the pictures
+//! alone.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::{Output, Turn};
+
+/// Usual exponents; 0 is the curve of sRGB itself.
+const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "mirrored",
+        "rays",
+        "the picture is mirrored left to right",
+        "u = cross(w, up), x from left to right",
+        "u = cross(up, w), or x from right to left",
+        |v, _| v.turn.columns_back ^= true,
+    ),
+    row(
+        "upside-down",
+        "rays",
+        "the picture is upside down",
+        "rows counted from the top where y points up",
+        "row 0 written as the lowest, or read so",
+        |v, _| v.turn.rows_back ^= true,
+    ),
+    row(
+        "turned",
+        "rays",
+        "the picture is turned by 180 degrees",
+        "d = D w + x u + y v",
+        "d = D w - x u - y v",
+        |v, _| {
+            v.turn.columns_back ^= true;
+            v.turn.rows_back ^= true;
+        },
+    ),
+    row(
+        "transposed",
+        "rays",
+        "columns and rows are exchanged",
+        "pixel(i, j): i the column, j the row",
+        "pixel(j, i)",
+        |v, _| v.turn.exchange = true,
+    ),
+    row(
+        "bgr",
+        "flat",
+        "red and blue are exchanged",
+        "red, green, blue in the order of the format",
+        "blue, green, red",
+        |v, _| v.turn.bgr = true,
+    ),
+    row(
+        "shifted",
+        "rays",
+        "the picture is moved by one pixel {up|down|to the left|to the right|up, repeating the border|down, repeating the border|to the left, repeating the border|to the right, repeating the border|up, and around|down, and around|to the left, and around|to the right, and around}",
+        "rows and columns from 0",
+        "rows or columns from 1",
+        |v, way| {
+            const WAYS: [(i32, i32); 4] = [(0, -1), (0, 1), (-1, 0), (1, 0)];
+            v.turn = Turn { moved: WAYS[way as usize % 4], black_border: way < 4.0, rolled: way >= 8.0, ..v.turn };
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0])),
+    row("tone-mapped", "flat", "light is compressed, not cut off at 1", "min(1, c)", "c / (1 + c)", |v, _| {
+        v.output = Output::Toned
+    }),
+    row(
+        "wrapped",
+        "flat",
+        "values beyond 1 wrap around in eight bits",
+        "(unsigned char) (min(1, c) * 255)",
+        "(unsigned char) (c * 255)",
+        |v, _| v.output = Output::Wrapped,
+    ),
+    row(
+        "scaled-to-maximum",
+        "flat",
+        "the picture is divided by its brightest value, not cut off at 1",
+        "min(1, c) * 255",
+        "c / max(all c) * 255",
+        |v, _| v.output = Output::Scaled,
+    ),
+    row(
+        "other-rounding",
+        "flat",
+        "values are rounded where they should be cut off, or the other way: they differ by 1",
+        "as the year has it: (int) (c * 255), or round(c * 255)",
+        "the other",
+        |v, _| v.output = Output::OtherRounding,
+    ),
+    row(
+        "curve-more",
+        "flat",
+        "the curve of sRGB (gamma) is applied once more than it should be",
+        "value = c * 255",
+        "value = pow(c, 1 / 2.2) * 255",
+        |v, power| v.output = Output::CurveMore(power),
+    )
+    .with(POWERS),
+    row(
+        "curve-less",
+        "flat",
+        "the curve of sRGB (gamma) is applied once less than it should be, or undone",
+        "value = srgb(c) * 255 where the reference has the curve, else c * 255",
+        "one curve less: value = c * 255, or pow(c, 2.2) * 255",
+        |v, power| v.output = Output::CurveLess(power),
+    )
+    .with(POWERS),
+    row(
+        "halved",
+        "rays",
+        "the picture has half the resolution, doubled",
+        "one ray for each pixel",
+        "one ray for two by two pixels",
+        |v, _| {
+            v.turn.halved = true;
+            v.aim.place = durer_scene::math::Vec2::ONE;
+        },
+    ),
+    row("negative", "flat", "the picture is a negative: dark for bright", "c", "1 - c", |v, _| {
+        v.output = Output::Negative;
+    }),
+    row(
+        "grey",
+        "flat",
+        "the picture has no colours{|||| but red| but green| but blue}",
+        "three channels",
+        "one, three times",
+        |v, how| v.output = Output::Grey(how as u32),
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0])),
+    row(
+        "steps",
+        "flat",
+        "there are only {} steps of each colour",
+        "256 steps",
+        "{} steps",
+        |v, steps| v.output = Output::Steps(steps as u32),
+    )
+    .with(Values::Only(&[2.0, 3.0, 4.0, 8.0, 16.0, 32.0, 64.0])),
+    row(
+        "picture-factor",
+        "flat",
+        "the whole picture is {} times as bright as it should be",
+        "c * 255",
+        "{} * c * 255",
+        |v, factor| v.output = Output::Times(factor),
+    )
+    .with(Values::Numbers(&[0.5, 0.75, 1.3, 2.0])),
+];

@@ -1,0 +1,419 @@
+//! Mistakes of hits, normals and transforms.
+
+use super::{Mistake, Values, row};
+use crate::mistakes::habits::{Behind, Normals, Pick};
+use durer_render::world::Geometry;
+use durer_scene::dialect::{Compat, CompatSet, MeshNormals};
+use durer_scene::scene::MatrixOp;
+use durer_scene::shape::Primitive;
+use glam::DAffine3;
+use std::sync::Arc;
+
+pub(super) const MISTAKES: &[Mistake] = &[
+    row(
+        "normals-local",
+        "transforms",
+        "normals of transformed things are not transformed",
+        "N = normalize(M^-T n)",
+        "N = n",
+        |v, _| v.habits.normals = Normals::Local,
+    ),
+    row(
+        "normals-moved",
+        "transforms",
+        "normals of transformed things go by M, not by its inverse transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M n)",
+        |v, _| v.world.edit().rules.compat |= Compat::MovedNormals.bit(),
+    ),
+    row(
+        "normals-inverse",
+        "transforms",
+        "normals of transformed things go by the inverse of M without the transpose",
+        "N = normalize(M^-T n)",
+        "N = normalize(M^-1 n)",
+        |v, _| v.habits.normals = Normals::ByInverse,
+    ),
+    row(
+        "normals-long",
+        "transforms",
+        "normals of transformed things are not normalised",
+        "N = normalize(M^-T n)",
+        "N = M^-T n",
+        |v, _| v.habits.normals = Normals::Long,
+    ),
+    row(
+        "normals-mixed-long",
+        "normals",
+        "normals between the corners of a smooth mesh are not normalised",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = a Na + b Nb + c Nc",
+        |v, _| v.habits.long_mixed = true,
+    ),
+    row(
+        "normals-flat",
+        "normals",
+        "smooth meshes are shaded flat, with one normal a triangle",
+        "N = normalize(a Na + b Nb + c Nc)",
+        "N = normalize(cross(b - a, c - a))",
+        |v, _| v.habits.flat = true,
+    ),
+    row(
+        "normals-smooth",
+        "normals",
+        "flat meshes are shaded smooth, their corners' normals weighted {by the areas around|by each face alike}",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(a Na + b Nb + c Nc)",
+        |v, weight| {
+            let rule = if weight == 0.0 { MeshNormals::SmoothByArea } else { MeshNormals::SmoothByFace };
+            v.objects(|geometry| {
+                if let Geometry::Mesh(tree) = geometry
+                    && tree.mesh.is_flat()
+                {
+                    *tree = Arc::new(tree.with_normals(rule));
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "triangles-turned",
+        "normals",
+        "normals of triangles point the other way",
+        "N = normalize(cross(b - a, c - a))",
+        "N = normalize(cross(c - a, b - a))",
+        |v, _| v.habits.triangles_turned = true,
+    ),
+    row(
+        "spheres-turned",
+        "normals",
+        "normals of spheres point inwards",
+        "N = normalize(p - center)",
+        "N = normalize(center - p)",
+        |v, _| v.habits.spheres_turned = true,
+    ),
+    row(
+        "planes-turned",
+        "normals",
+        "the normals of planes point to the other side",
+        "N = normalize(normal)",
+        "N = -normalize(normal)",
+        |v, _| v.habits.planes_turned = true,
+    ),
+    row(
+        "normals-exchanged",
+        "normals",
+        "the weights of smooth normals belong to other corners: {a b c|b c a|c a b|b a c|a c b|c b a} for a b c",
+        "N = (1 - b - c) Na + b Nb + c Nc",
+        "the weights or the normals in another order",
+        |v, order| v.habits.mixed_otherwise = order as usize,
+    )
+    .with(Values::Only(&[1.0, 2.0, 3.0, 4.0, 5.0])),
+    row(
+        "parallelograms",
+        "distance",
+        "triangles are parallelograms: nothing asks whether b + c <= 1",
+        "b >= 0 && c >= 0 && b + c <= 1",
+        "b >= 0 && c >= 0",
+        |v, _| v.parallelograms(),
+    ),
+    row(
+        "other-material",
+        "flat",
+        "things have the material {after their own|before their own|after their own, but the last its own|before their own, but the first its own}",
+        "materials[index], index from 0",
+        "materials[index + 1], or - 1",
+        |v, which| {
+            let count = v.world.materials().len().max(1) as u32;
+            for object in &mut v.world.edit().objects {
+                object.material = match which as u32 {
+                    0 => (object.material + 1) % count,
+                    1 => (object.material + count - 1) % count,
+                    2 => (object.material + 1).min(count - 1),
+                    _ => object.material.saturating_sub(1),
+                };
+            }
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row(
+        "far-spheres",
+        "distance",
+        "the far side of spheres is seen: the greater root is taken",
+        "t = (-b - sqrt(D)) / 2a, unless that is less than t_min",
+        "t = (-b + sqrt(D)) / 2a",
+        |v, _| v.habits.pick = Pick::FarSpheres,
+    ),
+    row(
+        "normals-faced",
+        "diffuse",
+        "surfaces seen from behind are shaded with their normal turned to the eye, without being asked to",
+        "N as it is (without -shade_back)",
+        "if (dot(N, d) > 0) N = -N",
+        |v, _| v.habits.faced = !v.settings.shade_back,
+    ),
+    row(
+        "backs-not-shaded",
+        "diffuse",
+        "surfaces seen from behind are not shaded with their normal turned",
+        "if (dot(N, d) > 0) N = -N",
+        "N as it is",
+        |v, _| v.settings.shade_back = false,
+    ),
+    row(
+        "black-backs",
+        "diffuse",
+        "whether surfaces seen from behind are black is the other way",
+        "as the year has it",
+        "the other way",
+        |v, _| v.toggle(Compat::BlackBacks),
+    ),
+    row(
+        "local-direction-unit",
+        "transforms",
+        "the ray's direction is normalised in object space, so that t is another there than in the world",
+        "d' = M^-1 d, with t as it is",
+        "d' = normalize(M^-1 d)",
+        |v, _| v.habits.local_unit = true,
+    ),
+    row(
+        "matrices-reversed",
+        "transforms",
+        "the matrices of a transform are multiplied in the wrong order",
+        "M = M1 * M2 * M3",
+        "M = M3 * M2 * M1",
+        |v, _| {
+            v.place(|ops, compat| {
+                let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
+                MatrixOp::product(&reversed, compat)
+            });
+        },
+    ),
+    row(
+        "rotation-radians",
+        "transforms",
+        "angles of rotations are taken as radians",
+        "angle * pi / 180",
+        "angle",
+        |v, _| v.place(|ops, compat| turned(ops, compat, f32::to_degrees)),
+    ),
+    row(
+        "rotation-negated",
+        "transforms",
+        "rotations turn the other way",
+        "rotation by angle",
+        "rotation by -angle, or the transposed matrix",
+        |v, _| v.place(|ops, compat| turned(ops, compat, |angle| -angle)),
+    ),
+    row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
+        v.place(|_, _| DAffine3::IDENTITY)
+    }),
+    row(
+        "transforms-inverted",
+        "transforms",
+        "things are transformed by the inverse of M",
+        "ray to object space by M^-1",
+        "ray to object space by M",
+        |v, _| v.place(|ops, compat| MatrixOp::product(ops, compat).inverse()),
+    ),
+    row(
+        "plane-negated",
+        "distance",
+        "the offset of planes has the wrong sign",
+        "t = (offset - n.o) / n.d",
+        "t = -(offset + n.o) / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = -plane.offset;
+                }
+            });
+        },
+    ),
+    row(
+        "plane-through-origin",
+        "distance",
+        "the offset of planes is ignored",
+        "t = (offset - n.o) / n.d",
+        "t = -n.o / n.d",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Plane(plane)) = geometry {
+                    plane.offset = 0.0;
+                }
+            });
+        },
+    ),
+    row(
+        "radius",
+        "distance",
+        "spheres have {} times the radius that they should have",
+        "b^2 - 4 a c with c = |o - center|^2 - r^2",
+        "a wrong factor within",
+        |v, factor| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius *= factor;
+                }
+            });
+        },
+    )
+    .with(Values::Numbers(&[0.5, 2.0])),
+    row(
+        "radius-not-squared",
+        "distance",
+        "the radius of spheres is not squared",
+        "c = |o - center|^2 - r * r",
+        "c = |o - center|^2 - r",
+        |v, _| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.radius = sphere.radius.max(0.0).sqrt();
+                }
+            });
+        },
+    ),
+    row(
+        "center-ignored",
+        "distance",
+        "the centre of spheres {is ignored|has the wrong sign}",
+        "o - center",
+        "o{| + center}",
+        |v, sign| {
+            v.objects(|geometry| {
+                if let Geometry::Primitive(Primitive::Sphere(sphere)) = geometry {
+                    sphere.center *= -sign;
+                }
+            });
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "farthest-object",
+        "distance",
+        "the farthest thing is seen, not the nearest",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.habits.pick = Pick::FarthestObject,
+    ),
+    row(
+        "farthest-triangle",
+        "distance",
+        "the farthest thing is seen, and of meshes the farthest triangle",
+        "if (t < best) best = t",
+        "if (t > best) best = t",
+        |v, _| v.habits.pick = Pick::FarthestTriangle,
+    ),
+    row(
+        "last-triangle",
+        "distance",
+        "what is written last hides all others, and of meshes the last triangle",
+        "if (t < best) best = t",
+        "if (hit) best = t",
+        |v, _| v.habits.pick = Pick::LastTriangle,
+    ),
+    row(
+        "near-roots",
+        "distance",
+        "of spheres the nearer root alone is looked at: rays that begin inside do not hit them",
+        "t = the least root > t_min",
+        "t = the lesser root, or nothing",
+        |v, _| v.habits.pick = Pick::NearRoots,
+    ),
+    row(
+        "last-hit",
+        "distance",
+        "the last hit along the ray is taken, not the first: the far root of spheres, say",
+        "t = the least root > t_min",
+        "t = the greatest root",
+        |v, _| v.habits.pick = Pick::Last,
+    ),
+    row(
+        "last-written",
+        "distance",
+        "the thing written last hides all others: hits are not compared by t",
+        "if (t < best) best = t",
+        "best = t",
+        |v, _| v.habits.pick = Pick::LastWritten,
+    ),
+    row(
+        "first-written",
+        "distance",
+        "the thing written first hides all others: a group stops at its first hit",
+        "for each object hit |= object.intersect(...)",
+        "for each object if (object.intersect(...)) return true",
+        |v, _| v.habits.pick = Pick::FirstWritten,
+    ),
+    row(
+        "hits-behind",
+        "distance",
+        "hits behind the ray's origin count: t_min is ignored{| for the camera's rays}",
+        "t > t_min && t < best",
+        "t < best",
+        |v, rays| v.habits.behind = Some([Behind::All, Behind::Camera][(rays as usize).min(1)]),
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+    row(
+        "thing-missing",
+        "distance",
+        "all {spheres|planes|triangles|meshes} are missing",
+        "every kind has an intersect(...)",
+        "one that always returns false",
+        |v, kind| {
+            v.world.edit().objects.retain(|object| match &object.geometry {
+                Geometry::Primitive(Primitive::Sphere(_)) => kind != 0.0,
+                Geometry::Primitive(Primitive::Plane(_)) => kind != 1.0,
+                Geometry::Primitive(Primitive::Triangle(_)) => kind != 2.0,
+                Geometry::Mesh(_) => kind != 3.0,
+                _ => true,
+            });
+            v.objects(|_| {});
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
+    row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
+        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Translate(_))))
+    }),
+    row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
+        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+    }),
+    row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
+        v.place(|ops, compat| {
+            without(ops, compat, |op| {
+                matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
+            })
+        });
+    }),
+    row(
+        "one-material",
+        "flat",
+        "all things have the {first|last} material",
+        "materials[index]",
+        "materials[0], or the one read last",
+        |v, last| {
+            let count = v.world.materials().len().max(1) as u32;
+            let all = if last == 0.0 { 0 } else { count - 1 };
+            v.world.edit().objects.iter_mut().for_each(|object| object.material = all);
+        },
+    )
+    .with(Values::Only(&[0.0, 1.0])),
+];
+
+/// The product without some of its matrices.
+fn without(ops: &[MatrixOp], compat: CompatSet, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
+    let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
+    MatrixOp::product(&kept, compat)
+}
+
+/// The product with other angles of rotation.
+fn turned(ops: &[MatrixOp], compat: CompatSet, change: fn(f32) -> f32) -> DAffine3 {
+    let change = |op: &MatrixOp| match *op {
+        MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
+        MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
+        MatrixOp::ZRotate(angle) => MatrixOp::ZRotate(change(angle)),
+        MatrixOp::Rotate(axis, angle) => MatrixOp::Rotate(axis, change(angle)),
+        other => other,
+    };
+    let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
+    MatrixOp::product(&changed, compat)
+}

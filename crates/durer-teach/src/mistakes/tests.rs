@@ -1,0 +1,235 @@
+//! The pupil without mistakes, and the table.
+
+use super::pictures::View;
+use super::table::MISTAKES;
+use super::{Diagnosis, Pupil, Question, Variant, diagnose};
+use crate::lesson::TOPICS;
+use durer_diag::{Diagnostics, Files};
+use durer_formats::Decoder;
+use durer_formats::course::{self, ReadOptions};
+use durer_image::compare::{Picture, Scale};
+use durer_image::{Image, Transfer};
+use durer_render::compile::{AccelKind, Resources, compile};
+use durer_render::integrator::Whitted;
+use durer_render::render::{Job, Sampling, center_ray};
+use durer_render::world::World;
+use durer_scene::dialect::{Dialect, Rules};
+use durer_scene::scene::Scene;
+use durer_scene::source::Source;
+use std::collections::BTreeSet;
+
+const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0.1 1 0 angle 40 }
+Lights { numLights 2 DirectionalLight { direction -1 -2 -1 color 0.7 0.7 0.6 }
+  PointLight { position 3 4 3 color 0.6 0.5 0.5 attenuation 1 0.02 0.01 } }
+Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
+Materials { numMaterials 3
+  Material { diffuseColor 0.8 0.3 0.2 specularColor 0.5 0.5 0.5 exponent 12 }
+  Material { diffuseColor 0.2 0.4 0.2 reflectiveColor 0.5 0.5 0.5 }
+  Material { diffuseColor 0.1 0.1 0.1 transparentColor 0.8 0.8 0.8 indexOfRefraction 1.5 reflectiveColor 0.2 0.2 0.2 } }
+Group { numObjects 4
+  MaterialIndex 0 Transform { Translate -1 0.6 0 ZRotate 30 Scale 1.4 0.8 1 Sphere { center 0 0 0 radius 1 } }
+  MaterialIndex 2 Sphere { center 1.4 0.6 1 radius 0.9 }
+  MaterialIndex 0 Triangle { vertex0 -3 -0.5 -3 vertex1 3 -0.5 -3 vertex2 0 3 -3 }
+  MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
+";
+
+fn world(rules: &Rules) -> (Scene, World) {
+    world_of(SCENE, rules)
+}
+
+fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let file = files.add("scene.txt", text.as_bytes().into());
+    let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
+    let scene = course::read(text.as_bytes(), file, options, &mut diagnostics).unwrap();
+    let source = Source::folder(".");
+    let resources = Resources::new(&source, &Decoder, &mut files);
+    let world = compile(&scene, rules, AccelKind::Bvh, resources, &mut diagnostics).unwrap();
+    (scene, world)
+}
+
+fn job() -> Job {
+    let job = Job { width: 48, height: 40, sampling: Sampling::Center, ..Job::default() };
+    Job { settings: durer_render::integrator::Settings { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
+}
+
+/// Whatever year's rules hold, a pupil without mistakes makes the picture that is rendered, to the
+/// bit.
+#[test]
+fn without_mistakes_the_picture_is_right() {
+    for dialect in Dialect::ALL {
+        for rules in [dialect.rules().clone(), dialect.rules().sane()] {
+            let (scene, world) = world(&rules);
+            let job = job();
+            let variant = Variant::new(&scene, world, job.settings);
+            let pupil = Pupil::new(&variant.world, job.settings, &variant.habits);
+            let whitted = Whitted { world: &variant.world, settings: job.settings, cancel: None };
+            let raster = variant.raster(job.width, job.height);
+            for place in job.whole().places() {
+                let ray = center_ray(&variant.world, &raster, place).unwrap();
+                let (own, right) = (pupil.radiance(&ray), whitted.radiance(&ray, &mut ()));
+                // A year's program may divide by zero.
+                let same = own == right || own.is_nan() && own.is_nan_mask() == right.is_nan_mask();
+                assert!(same, "{} at {place:?}: {own} {right}", dialect.name());
+            }
+        }
+    }
+}
+
+#[test]
+fn every_row_has_a_name_of_its_own_and_a_step_of_the_lesson() {
+    let mut names = BTreeSet::new();
+    for mistake in MISTAKES.iter().copied().flatten() {
+        assert!(names.insert(mistake.name), "{} is there twice", mistake.name);
+        assert!(TOPICS.iter().any(|topic| topic.name == mistake.step), "{}: no step {}", mistake.name, mistake.step);
+        assert!(!mistake.words.ends_with('.') && mistake.right != mistake.wrong, "{}", mistake.name);
+    }
+}
+
+/// The picture of a variant, as eight bits have it, and the brightest of its light.
+fn picture(variant: &Variant, job: &Job, brightest: f32) -> (Picture, f32) {
+    let places: Vec<(u32, u32)> = job.whole().places().collect();
+    let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
+    let brightest = view.light(variant, &places).iter().map(|light| light.max_element()).fold(0.0, f32::max);
+    let image = Image::from_pixels(job.width, job.height, view.picture(variant, &places)).unwrap();
+    (Picture { image, scale: Scale::Display }, brightest)
+}
+
+fn found(names: &[(&str, f32)]) -> Diagnosis {
+    found_in(SCENE, job(), names)
+}
+
+fn found_in(text: &str, job: Job, names: &[(&str, f32)]) -> Diagnosis {
+    let (scene, world) = world_of(text, Dialect::F04.rules());
+    let right = Variant::new(&scene, world, job.settings);
+    let mut wrong = right.clone();
+    for (name, value) in names {
+        (super::of_name(name).unwrap().make)(&mut wrong, *value);
+    }
+    let (reference, brightest) = picture(&right, &job, 1.0);
+    let (test, _) = picture(&wrong, &job, brightest);
+    let transfer = Transfer::Course;
+    let question =
+        Question { scene: &scene, world: &right.world, job: &job, transfer, reference: &reference, test: &test };
+    diagnose(&question, &|_| {})
+}
+
+#[test]
+fn mistakes_are_named_alone_and_in_pairs() {
+    for name in
+        ["no-ambient", "no-highlights", "light-negated", "no-shadows", "mirror-negated", "normals-local", "not-bent"]
+    {
+        let diagnosis = found(&[(name, 0.0)]);
+        let named = &diagnosis.named;
+        assert!(named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name), "{name}: {diagnosis:#?}");
+    }
+    let diagnosis = found(&[("exponent", 3.0)]);
+    let (mistake, value) = diagnosis.named[0].mistakes[0];
+    assert!(mistake.name == "exponent" && (value - 3.0).abs() < 0.1, "{diagnosis:?}");
+    let diagnosis = found(&[("no-shadows", 0.0), ("no-ambient", 0.0)]);
+    let names: BTreeSet<&str> = diagnosis.named[0].mistakes.iter().map(|m| m.0.name).collect();
+    assert_eq!(names, BTreeSet::from(["no-ambient", "no-shadows"]));
+}
+
+/// The mistakes that everybody makes, each with its value.
+const USUAL: [(&str, f32); 49] = [
+    ("no-ambient", 0.0),
+    ("no-diffuse", 0.0),
+    ("no-highlights", 0.0),
+    ("no-shadows", 0.0),
+    ("no-reflection", 0.0),
+    ("no-refraction", 0.0),
+    ("light-missing", 1.0),
+    ("exponent", 2.0),
+    ("exponent", 0.5),
+    ("exponent", 4.0),
+    ("other-model", 0.0),
+    ("highlight-cosine", 0.0),
+    ("highlight-diffuse", 0.0),
+    ("half-sum", 0.0),
+    ("no-falloff", 0.0),
+    ("falloff-1-over-d", 0.0),
+    ("falloff-1-over-d2", 0.0),
+    ("falloff-multiplied", 0.0),
+    ("bounce-less", 0.0),
+    ("light-negated", 0.0),
+    ("light-long", 0.0),
+    ("two-sided", 0.0),
+    ("not-clamped-below", 0.0),
+    ("ambient-each-light", 0.0),
+    ("ambient-bare", 0.0),
+    ("clamped-each-light", 0.0),
+    ("mirror-in-full", 0.0),
+    ("glass-in-full", 0.0),
+    ("mirror-negated", 0.0),
+    ("index-inverted", 0.0),
+    ("exit-not-swapped", 0.0),
+    ("not-bent", 0.0),
+    ("normals-local", 0.0),
+    ("normals-moved", 0.0),
+    ("normals-long", 0.0),
+    ("local-direction-unit", 0.0),
+    ("matrices-reversed", 0.0),
+    ("rotation-radians", 0.0),
+    ("rotation-negated", 0.0),
+    ("angle-not-halved", 0.0),
+    ("up-not-orthogonal", 0.0),
+    ("farthest-object", 0.0),
+    ("plane-negated", 0.0),
+    ("hits-behind", 0.0),
+    ("pixel-corner", 0.0),
+    ("mirrored", 0.0),
+    ("upside-down", 0.0),
+    ("bgr", 0.0),
+    ("wrapped", 0.0),
+];
+
+#[test]
+fn each_usual_mistake_is_named() {
+    let mut wrong = Vec::new();
+    let mut judge = |text: &str, job: Job, name: &str, value: f32| {
+        let named = found_in(text, job, &[(name, value)]).named;
+        if !named.iter().any(|n| n.mistakes.len() == 1 && n.mistakes[0].0.name == name) {
+            let said: Vec<Vec<_>> =
+                named.iter().map(|n| n.mistakes.iter().map(|m| (m.0.name, m.1)).collect()).collect();
+            wrong.push(format!("{name} {value}: {said:?}"));
+        }
+    };
+    // Bright enough for what is clamped, and with little glass, so that every term is seen.
+    let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
+    for (name, value) in USUAL {
+        judge(&bright, job(), name, value);
+    }
+    let ceiling = SCENE.replace("numObjects 4", "numObjects 5 MaterialIndex 0 Plane { normal 0 -1 0 offset -5 }");
+    judge(&ceiling, job(), "shadows-endless", 0.0);
+    let wide = Job { width: 60, height: 36, ..job() };
+    judge(SCENE, wide.clone(), "aspect-other-axis", 0.0);
+    judge(SCENE, wide, "aspect-smaller-side", 0.0);
+    let level = SCENE.replace("PerspectiveCamera", "OrthographicCamera").replace("angle 40", "size 6");
+    judge(&level, job(), "size", 2.0);
+    judge(SCENE, job(), "scaled-to-maximum", 0.0);
+    judge(SCENE, job(), "other-rounding", 0.0);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// A picture of something else is no mistake of this scene, and a reference of something else is
+/// said to be so.
+#[test]
+fn what_is_no_mistake_is_not_named() {
+    let (scene, world) = world(Dialect::F04.rules());
+    let job = job();
+    let right = Variant::new(&scene, world, job.settings);
+    let (reference, _) = picture(&right, &job, 1.0);
+    let mut other = reference.clone();
+    for (i, pixel) in other.image.pixels.iter_mut().enumerate() {
+        *pixel = durer_scene::math::Vec3::splat((i * 7919 % 251) as f32 / 255.0);
+    }
+    let ask = |reference: &Picture, test: &Picture| {
+        let transfer = Transfer::Course;
+        diagnose(&Question { scene: &scene, world: &right.world, job: &job, transfer, reference, test }, &|_| {})
+    };
+    let diagnosis = ask(&reference, &other);
+    assert!(diagnosis.is_of_scene() && diagnosis.named.is_empty(), "{:?}", diagnosis.named);
+    let diagnosis = ask(&other, &reference);
+    assert!(!diagnosis.is_of_scene() && diagnosis.named.is_empty());
+}

@@ -1,0 +1,214 @@
+//! A scene with its rules, and what a pupil does otherwise with it.
+
+use super::habits::{Aim, Habits, Output, Turn};
+use durer_bvh::BuildQuality;
+use durer_render::compile::{self, AccelKind};
+use durer_render::integrator::Settings;
+use durer_render::render::raster;
+use durer_render::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
+use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
+use durer_scene::dialect::{Compat, CompatSet, Highlight};
+use durer_scene::light::Light;
+use durer_scene::material::PhongMaterial;
+use durer_scene::math::{Affine, Color, Ray, Vec2};
+use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
+use durer_scene::shape::{Primitive, Triangle};
+use glam::DAffine3;
+use std::sync::Arc;
+
+/// What a mistake changes.
+#[derive(Clone, Debug)]
+pub struct Variant<'s> {
+    /// The scene as it is written.
+    pub scene: &'s Scene,
+    /// What rays meet, with the lights, materials, camera and rules.
+    pub world: World,
+    /// What is taken into account.
+    pub settings: Settings,
+    /// What the tracer does otherwise.
+    pub habits: Habits,
+    /// Where rays go.
+    pub aim: Aim,
+    /// What becomes of light.
+    pub output: Output,
+    /// What becomes of pixels.
+    pub turn: Turn,
+}
+
+/// Whether some light of a scene is written with the three factors of an attenuation.
+pub fn three_factors(scene: &Scene) -> bool {
+    let factors = |light: &Light| matches!(light, Light::Point(p) if p.attenuation.is_some() && p.falloff.is_none());
+    scene.lights.iter().flatten().any(|light| factors(&light.value))
+}
+
+/// How the matrices of a transform become one.
+pub type Product = fn(&[MatrixOp], CompatSet) -> DAffine3;
+
+impl<'s> Variant<'s> {
+    /// Without any mistake.
+    pub fn new(scene: &'s Scene, world: World, settings: Settings) -> Self {
+        let (habits, aim, output, turn) = Default::default();
+        Variant { scene, world, settings, habits, aim, output, turn }
+    }
+
+    /// The ray of a pixel through a place in the picture, in pixels from the upper left corner.
+    pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
+        let point =
+            |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
+        let pixel = point(Vec2::new(x as f32, y as f32) + 0.5);
+        self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
+    }
+
+    /// The pixels of a picture of some size.
+    pub fn raster(&self, width: u32, height: u32) -> Raster {
+        raster(&self.world, width, height)
+    }
+
+    /// Whether some light is written with the three factors of an attenuation.
+    pub fn has_three_factors(&self) -> bool {
+        three_factors(self.scene)
+    }
+
+    /// Turns a habit of the rules round.
+    pub fn toggle(&mut self, compat: Compat) {
+        self.world.edit().rules.compat ^= compat.bit();
+    }
+
+    /// Makes the camera's axes anew, by the rules.
+    pub fn reframe(&mut self) {
+        self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.rules());
+    }
+
+    /// The field of view of a perspective camera, in degrees.
+    pub fn angle(&self) -> Option<f32> {
+        match self.world.camera() {
+            Camera::Perspective(camera) => Some(camera.angle),
+            _ => None,
+        }
+    }
+
+    /// Changes all materials that are not made of others.
+    pub fn phongs(&mut self, change: impl Fn(&mut Phong)) {
+        for material in &mut self.world.edit().materials {
+            if let Material::Phong(phong) = material {
+                change(phong);
+            }
+        }
+    }
+
+    /// Changes the model of highlights: Blinn's to Phong's and back.
+    pub fn other_highlights(&mut self) {
+        let behind = self.world.rules().has(Compat::HighlightBehind);
+        self.phongs(|phong| {
+            if let Some((_, _, model)) = &mut phong.highlight {
+                *model = match model {
+                    HighlightModel::Blinn => HighlightModel::Phong { behind },
+                    HighlightModel::Phong { .. } => HighlightModel::Blinn,
+                };
+            }
+        });
+    }
+
+    /// Gives highlights to materials that have a specular colour, in years whose program has none.
+    ///
+    /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for
+    /// Blinn's.
+    pub fn add_highlights(&mut self, form: f32) {
+        if self.world.rules().highlight != Highlight::None {
+            return;
+        }
+        let behind = self.world.rules().has(Compat::HighlightBehind) && form == 0.0;
+        let model = if form == 2.0 { HighlightModel::Blinn } else { HighlightModel::Phong { behind } };
+        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
+            if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
+                let PhongMaterial { specular_color, shininess, .. } = **written;
+                phong.highlight = Some((specular_color, shininess.unwrap_or(0.0), model));
+            }
+        }
+    }
+
+    /// Gives a black highlight to materials that have none.
+    pub fn highlights_everywhere(&mut self) {
+        let behind = self.world.rules().has(Compat::HighlightBehind);
+        let model = match self.world.rules().highlight {
+            Highlight::None => return,
+            Highlight::Phong => HighlightModel::Phong { behind },
+            Highlight::Blinn | Highlight::ByKeyword => HighlightModel::Blinn,
+        };
+        for (written, material) in self.scene.materials.iter().zip(&mut self.world.edit().materials) {
+            if let (scene::Material::Phong(written, _), Material::Phong(phong)) = (&written.value, material) {
+                let exponent = written.exponent.or(written.shininess).unwrap_or(1.0);
+                phong.highlight.get_or_insert((Color::ZERO, exponent, model));
+            }
+        }
+    }
+
+    /// Places all objects anew.
+    pub fn place(&mut self, product: Product) {
+        let compat = self.world.rules().compat;
+        let mut places = Vec::new();
+        if let Some(root) = &self.scene.root {
+            placed(root, DAffine3::IDENTITY, &|ops| product(ops, compat), &mut places);
+        }
+        // Solids fall into pieces; what is not one to one is left as it is.
+        if places.len() != self.world.objects().len() {
+            return;
+        }
+        for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
+            if !matches!(object.geometry, Geometry::Solid(_)) {
+                // What was moved about the origin is moved back first.
+                let place = place * DAffine3::from_translation(object.center.as_dvec3());
+                object.to_world = Affine::new(place).filter(|affine| !affine.is_identity());
+            }
+        }
+        self.rebuild();
+    }
+
+    fn rebuild(&mut self) {
+        // Unlike a grid, a tree can always be made.
+        let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
+    }
+
+    /// Adds to every triangle the other half of its parallelogram.
+    pub fn parallelograms(&mut self) {
+        let mut halves = Vec::new();
+        for object in &mut self.world.edit().objects {
+            match &mut object.geometry {
+                Geometry::Primitive(Primitive::Triangle(triangle)) => {
+                    let [a, b, c] = triangle.corners();
+                    let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
+                    halves.push(Object { geometry: Geometry::Primitive(Primitive::Triangle(half)), ..object.clone() });
+                }
+                Geometry::Mesh(tree) => {
+                    *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms(), BuildQuality::Balanced))
+                }
+                _ => {}
+            }
+        }
+        self.world.edit().objects.extend(halves);
+        self.rebuild();
+    }
+
+    /// Changes all objects.
+    pub fn objects(&mut self, change: impl Fn(&mut Geometry)) {
+        self.world.edit().objects.iter_mut().for_each(|object| change(&mut object.geometry));
+        self.rebuild();
+    }
+}
+
+/// The matrices of all objects, in the order in which they are compiled.
+fn placed(group: &Group, to_world: DAffine3, product: &dyn Fn(&[MatrixOp]) -> DAffine3, places: &mut Vec<DAffine3>) {
+    fn one(
+        object: &scene::Object,
+        to_world: DAffine3,
+        product: &dyn Fn(&[MatrixOp]) -> DAffine3,
+        places: &mut Vec<DAffine3>,
+    ) {
+        match &object.node {
+            Node::Group(group) => placed(group, to_world, product, places),
+            Node::Transform(ops, inner) => one(inner, to_world * product(ops), product, places),
+            _ => places.push(to_world),
+        }
+    }
+    group.objects.iter().for_each(|object| one(object, to_world, product, places));
+}
