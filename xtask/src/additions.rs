@@ -15,21 +15,21 @@ struct Addition {
     words: &'static [(&'static str, &'static str, &'static str)],
 }
 
-const SHAPES: &str = "durer/src/shape/mod.rs";
-const CAMERAS: &str = "durer/src/camera/mod.rs";
-const LIGHTS: &str = "durer/src/light/mod.rs";
-const MATERIALS: &str = "durer/src/material/mod.rs";
-const LOBES: &str = "durer/src/bsdf/lobe/mod.rs";
-const INTEGRATORS: &str = "durer/src/integrator/mod.rs";
-const PICTURES: &str = "durer/src/image/formats.rs";
-const FORMATS: &str = "durer/src/format/mod.rs";
-const SCENES: &str = "durer/src/format/scene.rs";
-const AOVS: &str = "durer/src/film/aov.rs";
+const SHAPES: &str = "durer-scene/src/shape/mod.rs";
+const CAMERAS: &str = "durer-scene/src/camera/mod.rs";
+const LIGHTS: &str = "durer-scene/src/light/mod.rs";
+const MATERIALS: &str = "durer-scene/src/material/mod.rs";
+const LOBES: &str = "durer-scene/src/bsdf/lobe/mod.rs";
+const INTEGRATORS: &str = "durer-render/src/integrator/mod.rs";
+const PICTURES: &str = "durer-image/src/formats.rs";
+const FORMATS: &str = "durer-formats/src/lib.rs";
+const SCENES: &str = "durer-formats/src/scene.rs";
+const AOVS: &str = "durer-render/src/film/aov.rs";
 
 const ADDITIONS: &[Addition] = &[
     Addition {
         kind: "primitive",
-        file: "durer/src/shape/octahedron.rs",
+        file: "durer-scene/src/shape/octahedron.rs",
         content: include_str!("additions/octahedron.rs"),
         words: &[
             (SHAPES, "pub mod plane;", "pub mod octahedron;\n"),
@@ -38,7 +38,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "camera",
-        file: "durer/src/camera/oblique.rs",
+        file: "durer-scene/src/camera/oblique.rs",
         content: include_str!("additions/oblique.rs"),
         words: &[
             (CAMERAS, "pub mod omnimax;", "pub mod oblique;\n"),
@@ -47,7 +47,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "light",
-        file: "durer/src/light/glow.rs",
+        file: "durer-scene/src/light/glow.rs",
         content: include_str!("additions/glow.rs"),
         words: &[
             (LIGHTS, "pub mod photometric;", "pub mod glow;\n"),
@@ -56,7 +56,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "material",
-        file: "durer/src/material/stripes.rs",
+        file: "durer-scene/src/material/stripes.rs",
         content: include_str!("additions/stripes.rs"),
         words: &[
             (MATERIALS, "pub mod wood;", "pub mod stripes;\n"),
@@ -65,7 +65,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "lobe",
-        file: "durer/src/bsdf/lobe/retro.rs",
+        file: "durer-scene/src/bsdf/lobe/retro.rs",
         content: include_str!("additions/retro.rs"),
         words: &[
             (LOBES, "pub mod rough;", "pub mod retro;\n"),
@@ -74,7 +74,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "integrator",
-        file: "durer/src/integrator/hits.rs",
+        file: "durer-render/src/integrator/hits.rs",
         content: include_str!("additions/hits.rs"),
         words: &[
             (INTEGRATORS, "pub mod media;", "pub mod hits;\n"),
@@ -83,7 +83,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "scene format",
-        file: "durer/src/format/balls.rs",
+        file: "durer-formats/src/balls.rs",
         content: include_str!("additions/balls.rs"),
         words: &[
             (FORMATS, "mod bodies;", "mod balls;\n"),
@@ -93,7 +93,7 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "mesh format",
-        file: "durer/src/format/corners.rs",
+        file: "durer-formats/src/corners.rs",
         content: include_str!("additions/corners.rs"),
         words: &[
             (FORMATS, "pub mod course;", "mod corners;\n"),
@@ -104,13 +104,13 @@ const ADDITIONS: &[Addition] = &[
     },
     Addition {
         kind: "picture format",
-        file: "durer/src/image/formats/farbfeld.rs",
+        file: "durer-image/src/formats/farbfeld.rs",
         content: include_str!("additions/farbfeld.rs"),
         words: &[(PICTURES, "mod hdr;", "mod farbfeld;\n"), (PICTURES, "exr::FORMAT, ", "farbfeld::FORMAT, ")],
     },
     Addition {
         kind: "kind of picture",
-        file: "durer/src/film/aov/heights.rs",
+        file: "durer-render/src/film/aov/heights.rs",
         content: include_str!("additions/heights.rs"),
         words: &[
             (AOVS, "/// All kinds of picture beside colour.", "mod heights;\n\n"),

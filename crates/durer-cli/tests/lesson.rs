@@ -29,7 +29,7 @@ fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
         text.matches(".png)").count() + text.matches(".svg)").count() + 1 + { text.matches("(our-scene.txt)").count() }
     );
     assert!(text.contains("> scene.txt cannot show this: no glass is seen in it"), "{text}");
-    assert!(text.contains("`crates/durer/src/integrator/whitted/secondary.rs`: `fn refract`"));
+    assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
     // The last picture is the one that `render` makes.
     place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();

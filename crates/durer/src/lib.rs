@@ -5,7 +5,7 @@
 //!
 //! This crate is the face of the others: it passes on their modules, and loads files.
 
-#[cfg(any(test, fuzzing, feature = "testing"))]
+#[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod fuzz;
 pub mod load;

@@ -1,10 +1,10 @@
 //! `.balls`: four numbers a line, the middle and the radius of a ball.
 
 use super::model::{Input, SceneFormat};
-use crate::diag::{Diagnostic, Diagnostics, Span};
-use crate::math::Vec3;
-use crate::scene::{Axis, Group, Node, Object, Scene};
-use crate::shape::Sphere;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Axis, Group, Node, Object, Scene};
+use durer_scene::shape::Sphere;
 
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Balls",

@@ -2,10 +2,10 @@
 
 use super::report::Report;
 use super::{MeshFormat, as_it_is};
-use crate::diag::Diagnostics;
-use crate::math::Vec3;
-use crate::scene::Axis;
-use crate::shape::mesh::MeshData;
+use durer_diag::Diagnostics;
+use durer_scene::math::Vec3;
+use durer_scene::scene::Axis;
+use durer_scene::shape::mesh::MeshData;
 
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "Corners", extensions: &["tri"], recognise, read, known: as_it_is, write, up: Axis::Y };

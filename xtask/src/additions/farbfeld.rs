@@ -1,8 +1,8 @@
 //! farbfeld: eight letters, two sizes, sixteen bits a channel. Source: farbfeld(5), suckless.org.
 
 use super::{Depth, Format, Head, Raster};
-use crate::image::{Image, ImageError};
-use crate::math::Vec3;
+use crate::{Image, ImageError};
+use durer_bvh::math::Vec3;
 
 const NAME: &str = "farbfeld";
 

@@ -1,7 +1,7 @@
 //! How high things lie.
 
 use super::{Aov, Value};
-use crate::math::Vec3;
+use durer_scene::math::Vec3;
 
 pub(super) const AOV: Aov = Aov {
     name: "heights",

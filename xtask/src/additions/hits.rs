@@ -1,10 +1,10 @@
 //! White where anything near enough is hit, black elsewhere.
 
 use super::{Integrate, Parameters, Setup, TraceListener};
-use crate::describe::{Rule, described};
-use crate::dialect::set;
-use crate::math::{Color, Ray, Ray64};
-use crate::sampler::SampleId;
+use durer_scene::describe::{Rule, described};
+use durer_scene::dialect::set;
+use durer_scene::math::{Color, Ray, Ray64};
+use durer_scene::sampler::SampleId;
 use crate::world::World;
 
 described! {

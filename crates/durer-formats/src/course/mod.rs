@@ -8,7 +8,7 @@ mod meant;
 mod named;
 mod nodes;
 pub mod place;
-#[cfg(any(test, fuzzing, feature = "testing"))]
+#[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod random;
 mod reader;
