@@ -11,7 +11,6 @@ use crate::world::World;
 pub use ao::{AmbientOcclusion, AoParameters};
 use durer_scene::camera::RayCone;
 use durer_scene::describe::{Describe, DescribedList, described_list};
-use durer_scene::dialect::Dialect;
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;
@@ -179,6 +178,6 @@ impl Method {
 
     /// Its name.
     pub fn name(&self) -> &'static str {
-        self.keyword(Dialect::Durer)
+        self.own_keyword()
     }
 }

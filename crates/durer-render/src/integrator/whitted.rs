@@ -9,7 +9,7 @@ use super::{Integrate, Parameters, Setup};
 use crate::world::{Hit, Interaction, Material, WeightedMaterial, World};
 use direct::direct;
 use durer_scene::describe::described;
-use durer_scene::dialect::{Compat, set};
+use durer_scene::dialect::set;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
 use secondary::Blend;
@@ -271,11 +271,11 @@ impl<'w> Whitted<'w> {
 
     /// What decides which side of a surface is shaded.
     fn facing(&self) -> Facing {
-        let (rules, shade_back) = (self.world.rules(), self.settings.shade_back);
+        let (rules, shade_back) = (self.world.shading_rules(), self.settings.shade_back);
         Facing {
-            shaded_sides: rules.has(Compat::ShadedSides),
-            black_backs: !shade_back && rules.has(Compat::BlackBacks),
-            unit: rules.has(Compat::UnitLight),
+            shaded_sides: rules.shaded_sides,
+            black_backs: !shade_back && rules.black_backs,
+            unit: rules.unit_light,
             shade_back,
         }
     }
@@ -283,7 +283,7 @@ impl<'w> Whitted<'w> {
     /// Whether a ray meets a surface on the side that its normal does not point to.
     #[inline]
     pub fn sees_back(&self, at: &Interaction) -> bool {
-        let shaded = self.world.rules().has(Compat::ShadedSides);
+        let shaded = self.world.shading_rules().shaded_sides;
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 

@@ -16,7 +16,6 @@ use crate::film::aov::{Aov, Sums};
 use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
 use crate::world::{Material, World};
 use durer_scene::camera::Raster;
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
 use serde::Serialize;
@@ -157,7 +156,7 @@ pub fn explain_of(
             (Mean::Own, own.collect())
         }
     };
-    if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
+    if job.sampling == Sampling::Center && world.shading_rules().stale_texels {
         stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
     }
     let mut explanation =
@@ -220,7 +219,7 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Colo
     Some((at.material, world.diffuse_color(phong, &at.surface), phong.diffuse))
 }
 
-/// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material,
+/// What [`ShadingRules::stale_texels`] adds: the ambient light of the pixel before with the same material,
 /// less its own.
 fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let (material, own, plain) = texel(world, raster, (x, y))?;

@@ -6,7 +6,6 @@ use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::film::Packed;
-use crate::film::aov::DisplayRules;
 use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
@@ -101,7 +100,7 @@ impl PartialRender {
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
         last: u32,
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.look != DisplayRules::of(world) {
+        if self.scene != world.digest() || self.look != world.display_rules() {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));

@@ -11,7 +11,6 @@ use crate::threads;
 use crate::world::{Material, TOGETHER, World};
 use durer_bvh::RayCount;
 use durer_scene::camera::Projection;
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::sampler::{SampleId, Sampler};
 use std::cell::{Cell, RefCell};
@@ -180,7 +179,7 @@ pub(super) struct Samples<'a> {
     pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
+    /// What [`ShadingRules::stale_texels`] adds to each pixel of the whole picture.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }
@@ -188,13 +187,13 @@ pub(super) struct Samples<'a> {
 impl<'a> Samples<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let mut samples = Self::without_habits(world, job, stop);
-        if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
+        if job.sampling == Sampling::Center && world.shading_rules().stale_texels {
             samples.stale = samples.stale_texels();
         }
         samples
     }
 
-    /// The same without what [`Compat::StaleTexels`] adds, which takes a look at the whole picture.
+    /// The same without what [`ShadingRules::stale_texels`] adds, which takes a look at the whole picture.
     pub(super) fn without_habits(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));

@@ -4,7 +4,6 @@ use super::Whitted;
 use crate::integrator::spawn::{spawn_ray, to_light};
 use crate::integrator::trace::{Shadow, TermKind, TraceListener};
 use crate::world::{HighlightModel, Hit, Material, Phong};
-use durer_scene::dialect::Compat;
 use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
@@ -22,10 +21,10 @@ impl Whitted<'_> {
 
     #[inline(always)]
     pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
-        let rules = self.world.rules();
+        let epsilon = self.world.shading_rules().epsilon;
         // What stands exactly at the light does not block it.
-        let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        to_light(surface, seen.to_light, reach, rules.epsilon)
+        let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        to_light(surface, seen.to_light, reach, epsilon)
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let
@@ -35,7 +34,7 @@ impl Whitted<'_> {
             return Color::ONE;
         }
         let mut ray = self.shadow_ray(surface, seen);
-        if self.world.rules().has(Compat::ShadowFronts) {
+        if self.world.shading_rules().shadow_fronts {
             let nearest = self.world.intersect(&ray, tally);
             let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
@@ -71,7 +70,7 @@ impl Whitted<'_> {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
-            ray = spawn_ray(&blocker.surface, to_light, rest, self.world.rules().epsilon);
+            ray = spawn_ray(&blocker.surface, to_light, rest, self.world.shading_rules().epsilon);
             found = self.world.closest_along(&mut ray, tally);
         }
         Color::ZERO
