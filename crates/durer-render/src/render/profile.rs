@@ -57,7 +57,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
         return Ok(None);
     }
     let never = AtomicBool::new(false);
-    let samples = Samples::without_habits(world, job, &never);
+    let samples = Samples::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
     // A step that has no factor in common with the width goes through all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;

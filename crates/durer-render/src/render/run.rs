@@ -1,9 +1,10 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
 use super::allocation::{half, pilot, variances};
+use super::course::sampling::kept_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
-use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
+use super::samples::{SampleCursor, Samples, Stopped};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::film::Packed;
 use crate::integrator::Integrate;
