@@ -16,7 +16,7 @@ use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;
 pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
 use std::sync::atomic::AtomicBool;
-pub use trace::{TraceListener, TraceNode, TraceRecorder, Tree};
+pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
 /// What an integrator is told that it alone knows: a name and options, stated in a `described!`

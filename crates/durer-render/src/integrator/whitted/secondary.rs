@@ -84,7 +84,8 @@ impl Whitted<'_> {
         let parted = self.parted(at, blend, &passage);
         let total = blend.transparent != Color::ZERO && !parted.passes;
         let Passage { here, there, .. } = passage;
-        tally.begin(|| TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let node = tally.begin(path.node, || TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let path = Path { node, ..path };
         let mut color = Color::ZERO;
         if let Some((dir, weight)) = self.mirrored(&parted) {
             color += self.bounce(RayKind::Reflected, &at.surface, dir, weight, path, tally);
@@ -93,7 +94,7 @@ impl Whitted<'_> {
             let path = Path { media: &passage.behind, ..path };
             color += self.bounce(RayKind::Transmitted, &at.surface, dir, weight, path, tally);
         }
-        tally.end(Color::ONE, Color::ONE, color);
+        tally.end(node, Color::ONE, Color::ONE, color);
         color
     }
 
@@ -190,15 +191,21 @@ impl Whitted<'_> {
         }
         let total = self.weight_after(path.weight, weight);
         if total < self.settings.least_weight {
-            tally.begin(|| TermKind::Cut { weight: total });
-            tally.end(weight, Color::ONE, Color::ZERO);
+            let node = tally.begin(path.node, || TermKind::Cut { weight: total });
+            tally.end(node, weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
         let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.shading_rules().epsilon);
-        tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
+        let node = tally.begin(path.node, || TermKind::Ray {
+            from,
+            ray: (&ray).into(),
+            weight: total,
+            hit: None,
+            bounce: None,
+        });
         let found = self.world.closest_along(&mut ray, tally);
-        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
-        tally.end(weight, Color::ONE, color);
+        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, node, ..path }, tally);
+        tally.end(node, weight, Color::ONE, color);
         weight * color
     }
 }

@@ -7,7 +7,7 @@ use super::secondary::Blend;
 use super::{Path, Whitted};
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::one_by_one;
-use crate::integrator::trace::TraceListener;
+use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::{Geometry, Hit, Kind, Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
 use durer_scene::math::{Color, Ray64};
 use durer_scene::sampler::SampleId;
@@ -64,7 +64,7 @@ struct Hits {
 impl Hits {
     /// The path that a ray is part of.
     fn path(&self, Carried { media, weight, .. }: Carried, bounces: u32) -> Path<'_> {
-        Path { bounces, media: &self.media[media as usize], weight }
+        Path { bounces, media: &self.media[media as usize], weight, node: NodeId::NONE }
     }
 
     /// Keeps what rays run in; gives its number.
