@@ -20,7 +20,7 @@ use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
 use durer_diag::Span;
-pub use matrix::MatrixOp;
+pub use matrix::{MatrixOp, MatrixRules};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
