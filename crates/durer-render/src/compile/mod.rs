@@ -69,6 +69,8 @@ impl<'a> Resources<'a> {
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
+///
+/// All values are checked first by [`Scene::validate`], wherever the scene comes from.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -89,10 +91,12 @@ pub fn compile(
         }));
         return None;
     };
-    match camera.problem() {
-        Some(problem) => own.push(Diagnostic::error(problem).code("bad-value").at(scene.camera_span)),
-        None => check_camera(scene, camera.pose(), &mut own),
+    let invalid = scene.validate();
+    if invalid.has_errors() {
+        diagnostics.extend(invalid);
+        return None;
     }
+    check_camera(scene, camera.pose(), &mut own);
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
     let mut flattener = SceneFlattener {
         objects: Vec::new(),
@@ -123,8 +127,8 @@ pub fn compile(
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     check_sun(scene, &mut own);
     check_sky(scene, &mut own);
-    let environment = loader.environment(&scene.background, scene.background_span, &mut own);
-    let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
+    let environment = loader.environment(&scene.background, &mut own);
+    let fog = scene.fog.as_ref().and_then(|fog| media::fog(&fog.value, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
     lights.extend(sun(&scene.background));
     let mut measured = |light: &mut Light| {
@@ -262,21 +266,17 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts })
 }
 
-/// Says where the place of the sun is no place, or none from which it shines.
+/// Warns of a sun below the horizon.
 fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
-    let diagnostic = match scene.background.way_to_sun() {
-        Err(message) => Diagnostic::error(message),
-        Ok(Some(way)) if low(way) > 0.0 => {
-            let message = format!("the sun is {:.1} degrees below the horizon", low(way));
-            let warning = Diagnostic::warning(message).code("sun-below");
-            warning
-                .effect("neither it nor its sky shines")
-                .help("for dusk write a sun on the horizon, for night what lights the scene then")
-        }
-        Ok(_) => return,
-    };
-    diagnostics.push(diagnostic.at(scene.background_span));
+    if let Some(way) = scene.background.sun()
+        && low(way) > 0.0
+    {
+        let message = format!("the sun is {:.1} degrees below the horizon", low(way));
+        let warning = Diagnostic::warning(message).code("sun-below").at(scene.background_span);
+        let help = "for dusk write a sun on the horizon, for night what lights the scene then";
+        diagnostics.push(warning.effect("neither it nor its sky shines").help(help));
+    }
 }
 
 /// Tells of words of the background that say how something looks which is not there.
@@ -344,9 +344,6 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         return (Vec::new(), ambient);
     }
     for light in written {
-        if let Some(message) = light.value.contradiction() {
-            diagnostics.push(Diagnostic::error(message).at(light.span));
-        }
         if light.value.color() == Color::ZERO {
             let message = "this light reaches nothing: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
@@ -428,15 +425,6 @@ impl SceneFlattener<'_, '_> {
 
     /// A shape or mesh, placed in the world; `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
-        let flaw = match &object.node {
-            Node::Primitive(shape) => shape.flaw(),
-            Node::HeightField(field) => field.flaw(),
-            _ => None,
-        };
-        if let Some(flaw) = flaw {
-            self.diagnostics.push(Diagnostic::error(flaw).code("bad-value").at(object.span));
-            return None;
-        }
         let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
                 let [vertex0, vertex1, vertex2] = loosened(t.corners());
@@ -446,11 +434,6 @@ impl SceneFlattener<'_, '_> {
             Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
             Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
             Node::Voxels(grid, balls) => {
-                if (grid.max - grid.min).min_element() <= 0.0 {
-                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
-                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
-                    return None;
-                }
                 let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
                 Geometry::Mesh(Arc::new(self.loader.tree(mesh)))
             }
