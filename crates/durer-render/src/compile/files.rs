@@ -117,7 +117,7 @@ impl<'r> Loader<'r> {
         if let (Some(kept), Some(origin), Some(tree), true) =
             (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
         {
-            kept.keep_mesh(origin, tree, self.resources.source.digest_of(&name.path));
+            kept.keep_mesh(origin, tree, self.resources.source.record().digest_of(&name.path));
         }
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
@@ -133,7 +133,7 @@ impl<'r> Loader<'r> {
     /// Counts a file among those that were read, which was read earlier.
     pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
         if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
-            self.resources.source.remember_unread(path, stamp, digest);
+            self.resources.source.skip_reading(path, stamp, digest);
         }
     }
 
@@ -429,6 +429,8 @@ impl<'r> Loader<'r> {
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {
+        Some(near) if tried.is_empty() => format!("did you mean `{near}`?"),
+        None if tried.is_empty() => "the scene is in memory, and brings no file of that name".into(),
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
         None => format!("looked for {}", shown.join(", ")),
     }

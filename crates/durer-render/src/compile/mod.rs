@@ -22,7 +22,7 @@ use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
 use durer_scene::shape::mesh::loosened;
 use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
-use durer_scene::source::Source;
+use durer_scene::source::AssetSource;
 use durer_scene::texture::Sky;
 use durer_scene::texture::sky::SUN_RADIUS;
 use glam::DAffine3;
@@ -45,7 +45,7 @@ pub enum AccelKind {
 /// Where files come from while a scene is compiled.
 pub struct Resources<'a> {
     /// Reads files that the scene names.
-    pub source: &'a Source,
+    pub source: &'a dyn AssetSource,
     /// Decodes meshes, photometric files, spectra and densities.
     pub decoder: &'a dyn AssetDecoder,
     /// Remembers what was read, for diagnostics.
@@ -63,7 +63,7 @@ pub struct Resources<'a> {
 
 impl<'a> Resources<'a> {
     /// All the memory there is, for many rays, with nothing kept from before.
-    pub fn new(source: &'a Source, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
+    pub fn new(source: &'a dyn AssetSource, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
         Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
     }
 }
@@ -144,7 +144,7 @@ pub fn compile(
         }
     }
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
-    let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
+    let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
     diagnostics.extend(own);

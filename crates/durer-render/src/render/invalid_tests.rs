@@ -9,6 +9,7 @@ use crate::film::false_color::LightScale;
 use crate::integrator::{Method, Settings};
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
+use durer_formats::folder::FolderSource;
 use durer_scene::camera::PerspectiveCamera;
 use durer_scene::describe::{DescribedList, Value};
 use durer_scene::dialect::Dialect;
@@ -17,7 +18,6 @@ use durer_scene::math::Vec3;
 use durer_scene::sampler::Sampler;
 use durer_scene::scene::{Group, Material, Node, Object, Scene, Spanned};
 use durer_scene::shape::Sphere;
-use durer_scene::source::Source;
 
 /// A red ball in front of the camera, changed before it is compiled.
 fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial)) -> Vec<String> {
@@ -31,7 +31,7 @@ fn compiled(change: impl FnOnce(&mut Scene, &mut Sphere, &mut PrincipledMaterial
         object.node = Node::Primitive(ball.clone().into());
     }
     scene.materials.push(Spanned { value: Material::Principled(Box::new(layers)), span: Default::default() });
-    let (mut files, source, mut found) = (Files::default(), Source::folder("."), Diagnostics::default());
+    let (mut files, source, mut found) = (Files::default(), FolderSource::new("."), Diagnostics::default());
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut found);
     assert_eq!(world.is_none(), found.has_errors());
