@@ -7,9 +7,9 @@ use durer::diag::{Diagnostics, Files};
 use durer::dialect::Dialect;
 use durer::format::Decoder;
 use durer::format::course::{ReadOptions, read};
+use durer::format::folder::FolderSource;
 use durer::math::{Ray, Vec3};
 use durer::sampler::hash;
-use durer::source::Source;
 use durer::world::World;
 use std::process::{Command, ExitCode};
 use std::time::{Duration, Instant};
@@ -85,7 +85,7 @@ fn holes(radius: f32) -> Result<World> {
 
 fn compiled(body: &str) -> Result<World> {
     let text = format!("PerspectiveCamera {{ center 0 0 0 direction 0 0 1 up 0 1 0 angle 40 }} Group {{ {body} }}");
-    let (mut files, mut diagnostics, source) = (Files::default(), Diagnostics::default(), Source::folder("."));
+    let (mut files, mut diagnostics, source) = (Files::default(), Diagnostics::default(), FolderSource::new("."));
     let file = files.add("balls.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = read(text.as_bytes(), file, options, &mut diagnostics).context("the balls cannot be read")?;

@@ -15,7 +15,7 @@ use crate::{output, report};
 use codespan_reporting::term::termcolor::StandardStream;
 use durer::check::{CHECKS, Finding};
 use durer::diag::{Edit, Severity};
-use durer::source::Source;
+use durer::format::folder::FolderSource;
 use std::path::Path;
 
 pub use after::{after_course, after_render, looks};
@@ -58,7 +58,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
 
 /// Checks one scene, mends it where that is wanted, and says what was found.
 fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure> {
-    let bytes = Source::folder(".").allow_outside().read_path(path, &path.display().to_string());
+    let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
     let bytes = bytes.map_err(report::unreadable)?;
     let mut checked = look(path, bytes.clone(), args)?;
     let mut changes = Vec::new();

@@ -18,9 +18,9 @@ use crate::terminal::say;
 pub use args::CompareArgs;
 use compared::{Compared, Outcome, name};
 use durer::diag::{at_least, at_most};
+use durer::format::folder::FolderSource;
 use durer::image::compare::{Comparison, Options, Picture, Verdict, compare, memory_needed};
 use durer::image::{Destination, Encoded, Transfer};
-use durer::source::Source;
 use page::heat;
 use pairs::Pair;
 use stage::{Stage, stage};
@@ -145,7 +145,7 @@ fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
         match path.is_dir() {
             true => Err(unreadable("it is a folder".into())),
             false => {
-                let bytes = Source::folder(".").budget(memory).read_path(path, &path.to_string_lossy());
+                let bytes = FolderSource::new(".").budget(memory).read_path(path, &path.to_string_lossy());
                 bytes.map_err(|error| error.to_string())
             }
         }

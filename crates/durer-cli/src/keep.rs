@@ -6,9 +6,9 @@ use crate::options::RenderArgs;
 use crate::output::{encode, format, lengthened, wrote};
 use crate::terminal::complain;
 use crate::{progress, report};
+use durer::format::folder::FolderSource;
 use durer::image::{Destination, Display, Format, save_all};
 use durer::render::{Panicked, PartError, PartialRender, RenderEvent};
-use durer::source::Source;
 use std::cell::Cell;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -255,6 +255,6 @@ pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
 
 fn read_part_of(path: &Path) -> Result<Result<PartialRender, PartError>, Failure> {
     let name = path.display().to_string();
-    let bytes = Source::folder(".").budget(u64::MAX).read_path(path, &name).map_err(report::unreadable)?;
+    let bytes = FolderSource::new(".").budget(u64::MAX).read_path(path, &name).map_err(report::unreadable)?;
     Ok(PartialRender::read(&bytes))
 }

@@ -115,7 +115,7 @@ impl MethodArgs {
             let Some(at) = position(&method, option) else {
                 return Err(bad(format!("--{option} makes no sense with --integrator {}", method.name())));
             };
-            if let Some(wrong) = method.fields()[at].rule.violation(value) {
+            if let Err(wrong) = method.fields()[at].rule.validate(value) {
                 return Err(bad(format!("--{option} {wrong}")));
             }
             method.set(at, value.clone());

@@ -6,6 +6,7 @@ use crate::picture::{Watched, once};
 use crate::terminal::complain;
 use crate::{progress, report};
 use durer::compile::Kept;
+use durer::format::folder::stamp_of;
 use durer::source::Stamp;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -20,7 +21,7 @@ const PAUSE: Duration = Duration::from_millis(50);
 
 /// The files as they are.
 fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
-    files.iter().map(|path| Stamp::of(path)).collect()
+    files.iter().map(|path| stamp_of(path)).collect()
 }
 
 /// Renders until Ctrl-C: what is wrong with the scene is told, and waited for to be mended.

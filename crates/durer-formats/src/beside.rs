@@ -6,7 +6,7 @@ use super::{extension, photometry, vol};
 use durer_image as image;
 use durer_scene::describe::{DescribedList, FileName, Value};
 use durer_scene::scene::{Assets, Group, Material, Node, Picture, PictureBytes, Scene};
-use durer_scene::source::Source;
+use durer_scene::source::AssetSource;
 use durer_scene::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -20,7 +20,7 @@ pub fn plain(name: &str) -> String {
 
 /// The same scene with all its meshes and pictures in files of a folder beside it, and these files.
 /// Files that it names are copied there; those that cannot be read are named as before.
-pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<Beside>) {
+pub fn put_beside(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<Beside>) {
     let (files, taken, known, textures) = Default::default();
     let mut put = Put { scene, folder, source, files, taken, known, textures };
     let mut made = scene.clone();
@@ -48,7 +48,7 @@ pub fn put_beside(scene: &Scene, folder: &str, source: &Source) -> (Scene, Vec<B
 struct Put<'a> {
     scene: &'a Scene,
     folder: &'a str,
-    source: &'a Source,
+    source: &'a dyn AssetSource,
     files: Vec<Beside>,
     /// Names of files and textures that are given, in lower case: some systems tell no others
     /// apart.

@@ -10,6 +10,8 @@ pub mod course;
 pub mod curve;
 mod decoder;
 mod disney;
+#[cfg(feature = "fs")]
+pub mod folder;
 mod gltf;
 pub mod json;
 mod lamps;

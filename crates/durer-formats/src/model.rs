@@ -3,7 +3,7 @@
 use durer_diag::{Diagnostics, Files};
 use durer_scene::dialect::MeshNormals;
 use durer_scene::scene::{Axis, Scene, Staging};
-use durer_scene::source::Source;
+use durer_scene::source::AssetSource;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ pub struct Output<'a> {
     /// The name of the file, with ending.
     pub name: &'a str,
     /// Reads the files that the scene names.
-    pub source: &'a Source,
+    pub source: &'a dyn AssetSource,
     /// How triangles without normals are meant.
     pub normals: MeshNormals,
     /// Bytes that one of its pictures may take while it is decoded.
@@ -53,7 +53,7 @@ pub struct Input<'a> {
     /// Its last name, with ending.
     pub name: &'a str,
     /// Reads the files that it names.
-    pub source: &'a Source,
+    pub source: &'a dyn AssetSource,
     /// How it is to be shown.
     pub staging: &'a Staging,
     /// Bytes that one of its pictures may take while it is decoded.

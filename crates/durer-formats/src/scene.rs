@@ -88,12 +88,9 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
 
 /// A file that an option names, wherever it is, with its name.
 fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
-    let name = path.display().to_string();
-    let read = input.source.read_path(path, &name);
+    let read = input.source.read_user_file(path);
     let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
-    let bytes = read.map_err(refuse).ok()?;
-    input.source.remember(&name, &bytes);
-    Some((name, bytes))
+    Some((path.display().to_string(), read.map_err(refuse).ok()?))
 }
 
 /// A scene of one mesh without a material.

@@ -54,7 +54,19 @@ pub enum Value {
     Rows(Vec<Vec<f32>>),
 }
 
-/// What a value must be beyond finite.
+impl Value {
+    /// Whether all its numbers are finite. Paths and words have none.
+    pub fn is_finite(&self) -> bool {
+        match self {
+            Value::Float(x) => x.is_finite(),
+            Value::Vec3(v) => v.is_finite(),
+            Value::Rows(rows) => rows.iter().flatten().all(|x| x.is_finite()),
+            Value::Int(_) | Value::Path(_) | Value::Word(_) => true,
+        }
+    }
+}
+
+/// Constraint on a value, beyond being finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     /// Anything.
@@ -84,37 +96,44 @@ pub enum Rule {
 }
 
 impl Rule {
-    /// What is wrong with a value, if anything.
-    pub fn violation(self, value: &Value) -> Option<String> {
+    /// Checks a value: every number must be finite and keep to this rule.
+    ///
+    /// # Errors
+    ///
+    /// The rest of a sentence that begins with the field's name, such as "must be more than 0".
+    pub fn validate(self, value: &Value) -> Result<(), String> {
+        if !value.is_finite() {
+            return Err("must be finite".into());
+        }
         match (self, value) {
-            (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Some("must be more than 0".into()),
-            (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Some("must not be less than 0".into()),
-            (Rule::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Some("must not be 0 0 0".into()),
+            (Rule::Positive, Value::Float(x)) if *x <= 0.0 => Err("must be more than 0".into()),
+            (Rule::NonNegative, Value::Float(x)) if *x < 0.0 => Err("must not be less than 0".into()),
+            (Rule::NonZero, Value::Vec3(v)) if *v == Vec3::ZERO => Err("must not be 0 0 0".into()),
             (Rule::NonZero, Value::Vec3(v)) if !v.length_squared().is_normal() => {
-                Some("is too long or too short for a direction".into())
+                Err("is too long or too short for a direction".into())
             }
             (Rule::Between(low, high), Value::Float(x)) if *x <= low || *x >= high => {
-                Some(format!("must be more than {low} and less than {high}"))
+                Err(format!("must be more than {low} and less than {high}"))
             }
             (Rule::From(low, high), Value::Float(x)) if *x < low || *x > high => {
-                Some(format!("must be from {low} to {high}"))
+                Err(format!("must be from {low} to {high}"))
             }
             (Rule::UpTo(high), Value::Float(x)) if *x <= 0.0 || *x > high => {
-                Some(format!("must be more than 0 and at most {high}"))
+                Err(format!("must be more than 0 and at most {high}"))
             }
-            (Rule::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Some("must be from 0 to 1".into()),
+            (Rule::Share, Value::Float(x)) if *x < 0.0 || *x > 1.0 => Err("must be from 0 to 1".into()),
             (Rule::Counts(most), Value::Vec3(v))
                 if v.to_array().iter().any(|&n| n.fract() != 0.0 || n < 1.0 || n > most as f32) =>
             {
-                Some(format!("must be whole numbers from 1 to {most}"))
+                Err(format!("must be whole numbers from 1 to {most}"))
             }
-            (Rule::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => Some(format!("must be from 1 to {last}")),
-            (Rule::AtMost(most), Value::Int(i)) if *i > most => Some(format!("must be at most {most}")),
+            (Rule::Numbered(last), Value::Int(i)) if *i < 1 || *i > last => Err(format!("must be from 1 to {last}")),
+            (Rule::AtMost(most), Value::Int(i)) if *i > most => Err(format!("must be at most {most}")),
             (Rule::Rows(least, most), Value::Rows(rows)) if rows.len() < least || rows.len() > most => {
                 let wanted = if least == most { least.to_string() } else { format!("{least} to {most}") };
-                Some(format!("must have {wanted} rows, but has {}", rows.len()))
+                Err(format!("must have {wanted} rows, but has {}", rows.len()))
             }
-            _ => None,
+            _ => Ok(()),
         }
     }
 }

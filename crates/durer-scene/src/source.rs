@@ -1,16 +1,14 @@
-//! Bytes by name: the only place that opens a file for reading.
+//! Bytes by name: where a scene's files come from, without saying how they are kept.
 //!
-//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes. What
-//! was read is remembered by its hash.
+//! [`AssetSource`] is the trait, [`MemorySource`] a map of names. Folders of the file system are
+//! `durer_formats::folder::FolderSource`. Every source has a [`ReadRecord`] of what was read.
 
 use durer_diag::did_you_mean;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::SystemTime;
 
 /// A BLAKE3 hash; shown as 64 hexadecimal digits.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -136,287 +134,154 @@ impl SourceError {
     }
 }
 
-/// A file, and what tells whether it was saved since: when that was, its size, and its number in
-/// its file system, for one that takes the place of another has another.
+/// Version of a file: it differs once the file was saved again or replaced.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Stamp {
-    path: PathBuf,
-    modified: SystemTime,
-    size: u64,
-    number: u64,
+    /// Where the file is.
+    pub path: PathBuf,
+    /// Time of the last change, in nanoseconds since 1970.
+    pub modified: i128,
+    /// Size in bytes.
+    pub size: u64,
+    /// Number of the file in its file system, 0 where files have none. A file that takes the place
+    /// of another has another number.
+    pub number: u64,
 }
 
-impl Stamp {
-    /// That of a path; `None` where there is nothing.
-    pub fn of(path: &Path) -> Option<Self> {
-        let metadata = fs::metadata(path).ok()?;
-        #[cfg(unix)]
-        let number = std::os::unix::fs::MetadataExt::ino(&metadata);
-        #[cfg(not(unix))]
-        let number = 0;
-        Some(Stamp { path: path.into(), modified: metadata.modified().ok()?, size: metadata.len(), number })
-    }
-}
+/// Hashes of what was read, by the names that the scene gives the files.
+#[derive(Debug, Default)]
+pub struct ReadRecord(Mutex<BTreeMap<String, Digest>>);
 
-/// Where the files of a scene are, and how much may be read of them.
-#[derive(Debug)]
-pub struct Source {
-    /// Folders in which a relative name is looked for, in this order.
-    search: Vec<PathBuf>,
-    /// Folders below which a file must lie; empty: anywhere.
-    allowed: Vec<PathBuf>,
-    /// Folders in which a file is also looked for by its last name alone.
-    assets: Vec<PathBuf>,
-    /// Files that are in no folder, by name: these are looked at first.
-    given: BTreeMap<String, Arc<[u8]>>,
-    read: Mutex<Already>,
-}
-
-/// What was read already.
-#[derive(Clone, Debug)]
-struct Already {
-    /// Bytes that may still be read.
-    left: u64,
-    /// Hashes of the files, by the names that the scene gives them.
-    files: BTreeMap<String, Digest>,
-    /// Where they are.
-    paths: Vec<PathBuf>,
-}
-
-impl Clone for Source {
+impl Clone for ReadRecord {
     fn clone(&self) -> Self {
-        let (search, allowed, assets) = (self.search.clone(), self.allowed.clone(), self.assets.clone());
-        let (given, read) = (self.given.clone(), Mutex::new(self.already().clone()));
-        Source { search, allowed, assets, given, read }
+        ReadRecord(Mutex::new(self.hashes().clone()))
     }
 }
 
-impl Source {
-    /// The most that is read for one scene, unless [`Source::budget`] says otherwise: 4 GiB.
-    pub const DEFAULT_BUDGET: u64 = 4 << 30;
-
-    /// Files in and below one folder.
-    pub fn folder(folder: impl Into<PathBuf>) -> Self {
-        let folder = folder.into();
-        Source {
-            search: vec![folder.clone()],
-            allowed: vec![folder],
-            assets: Vec::new(),
-            given: BTreeMap::new(),
-            read: Mutex::new(Already { left: Source::DEFAULT_BUDGET, files: BTreeMap::new(), paths: Vec::new() }),
-        }
+impl ReadRecord {
+    fn hashes(&self) -> MutexGuard<'_, BTreeMap<String, Digest>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Looks in another folder too: before the others if `first`. That allows nothing.
-    pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
-        let at = if first { 0 } else { self.search.len() };
-        self.search.insert(at, folder.into());
-        self
+    /// Adds bytes that were read by a name.
+    pub fn add(&self, name: &str, bytes: &[u8]) {
+        self.add_digest(name, Digest::of(bytes));
     }
 
-    /// Allows files in and below another folder.
-    pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
-        // Where everything is allowed, so is this.
-        if !self.allowed.is_empty() {
-            self.allowed.push(folder.into());
-        }
-        self
+    /// Adds the hash of bytes that were read by a name.
+    pub fn add_digest(&self, name: &str, digest: Digest) {
+        self.hashes().insert(name.into(), digest);
     }
 
-    /// Looks in a folder by path and, failing that, by bare file name.
-    pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
-        let folder = folder.into();
-        self.assets.push(folder.clone());
-        self.look_in(folder.clone(), false).allow(folder)
+    /// Hash of what was read by a name.
+    pub fn digest_of(&self, name: &str) -> Option<Digest> {
+        self.hashes().get(name).copied()
     }
 
-    /// Has a file by some name that is in no folder, or instead of the one there.
-    pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
-        self.given.insert(name.into(), bytes);
-        self
-    }
-
-    /// Allows files anywhere.
-    pub fn allow_outside(mut self) -> Self {
-        self.allowed.clear();
-        self
-    }
-
-    /// Sets how many bytes may be read.
-    pub fn budget(self, bytes: u64) -> Self {
-        self.already().left = bytes;
-        self
-    }
-
-    fn already(&self) -> MutexGuard<'_, Already> {
-        self.read.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// The hash of all that was read by name, with the names, and of something more.
+    /// Hash of all names and hashes in here, and of `more`.
     pub fn digest(&self, more: &[u8]) -> Digest {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&Digest::of(more).0);
-        for (name, digest) in &self.already().files {
+        for (name, digest) in &*self.hashes() {
             hasher.update(&Digest::of(name.as_bytes()).0).update(&digest.0);
         }
         Digest(hasher.finalize().into())
     }
+}
 
-    /// Where the files are that were read, or tried to be.
-    pub fn paths(&self) -> Vec<PathBuf> {
-        self.already().paths.clone()
-    }
+/// Reads the files that a scene names.
+pub trait AssetSource: std::fmt::Debug + Sync {
+    /// Reads a file by the name that the scene gives it, and adds it to the record.
+    ///
+    /// # Errors
+    ///
+    /// [`SourceError`]: there is no such file, or it may not or cannot be read.
+    fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError>;
 
-    /// Counts bytes among those that were read by a name.
-    pub fn remember(&self, name: &str, bytes: &[u8]) {
-        let digest = Digest::of(bytes);
-        self.already().files.insert(name.into(), digest);
-    }
+    /// Whether a name has a file that may be read.
+    fn contains(&self, name: &str) -> bool;
 
-    /// The file that a scene means by a name, as it is now; `None` where it is in no folder or may
-    /// not be read.
-    pub fn stamp(&self, name: &str) -> Option<Stamp> {
-        if self.given.contains_key(name) {
-            return None;
-        }
-        Stamp::of(&self.find(name).ok()?)
-    }
+    /// What was read so far.
+    fn record(&self) -> &ReadRecord;
 
-    /// Where the file of that name is, if there is one that may be read.
-    pub fn place(&self, name: &str) -> Option<PathBuf> {
-        self.find(name).ok().filter(|path| path.is_file())
-    }
-
-    /// The hash of what was read by a name.
-    pub fn digest_of(&self, name: &str) -> Option<Digest> {
-        self.already().files.get(name).copied()
-    }
-
-    /// Counts a file among those that were read by a name, though it was read earlier and is as it
-    /// was.
-    pub fn remember_unread(&self, name: &str, stamp: &Stamp, digest: Digest) {
-        let mut already = self.already();
-        already.files.insert(name.into(), digest);
-        already.paths.push(stamp.path.clone());
-    }
-
-    /// Whether there is a file of that name, which may be read.
-    pub fn contains(&self, name: &str) -> bool {
-        self.given.contains_key(name) || self.find(name).is_ok()
-    }
-
-    /// Reads a file by the name that a scene gives it; what is packed by gzip is unpacked, if the
-    /// packed file's size in its last four bytes is one that may still be read.
-    pub fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+    /// Like [`AssetSource::read`]; unpacks what gzip packed.
+    ///
+    /// # Errors
+    ///
+    /// [`SourceError`], also for packed bytes that are damaged or would become too large.
+    fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let bytes = self.read(name)?;
-        if !is_packed(&bytes) {
-            return Ok(bytes);
-        }
-        let left = self.already().left;
-        let all = unpacked(&bytes, left).map_err(|problem| {
-            let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
-            SourceError::Io { name: name.into(), error }
-        })?;
-        self.already().left = left - all.len() as u64;
-        Ok(all)
+        if is_packed(&bytes) { unpacked_file(name, &bytes, u64::MAX) } else { Ok(bytes) }
     }
 
-    /// Reads a file by the name that a scene gives it.
-    pub fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        if let Some(bytes) = self.given.get(name) {
-            self.remember(name, bytes);
-            return Ok(bytes.clone());
-        }
-        match self.find(name) {
-            Ok(path) => self.read_path(&path, name).inspect(|bytes| self.remember(name, bytes)),
-            Err(SourceError::Missing { name, tried, .. }) => {
-                Err(SourceError::Missing { near: self.near(&tried), name, tried })
-            }
-            Err(error) => Err(error),
-        }
+    /// Reads a file that the user named, and not the scene: it may lie anywhere. Adds it to the
+    /// record under its path.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`AssetSource::read`].
+    fn read_user_file(&self, path: &Path) -> Result<Arc<[u8]>, SourceError> {
+        self.read(&path.to_string_lossy())
     }
 
-    /// The first place where a file of that name is, and may be read.
-    fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
-        // Scenes from Windows may write backslashes.
-        let portable = name.replace('\\', "/");
-        let path = Path::new(&portable);
-        let bare = path.file_name().map(Path::new);
-        let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
-        candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
-        let mut outside = false;
-        for candidate in &candidates {
-            let Ok(real) = candidate.canonicalize() else { continue };
-            if self.allows(&real) {
-                return Ok(real);
-            }
-            outside = true;
-        }
-        Err(match outside {
-            true => SourceError::Outside { name: name.into() },
-            false => SourceError::Missing { name: name.into(), near: None, tried: candidates },
-        })
+    /// Version of the file that the scene means by a name; `None` if it has none that is known.
+    fn stamp(&self, _name: &str) -> Option<Stamp> {
+        None
     }
 
-    /// A file beside the candidates that has nearly the name of one. What may not be read is not
-    /// listed either.
-    fn near(&self, candidates: &[PathBuf]) -> Option<String> {
-        candidates.iter().find_map(|path| {
-            let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
-            let names: Vec<String> = fs::read_dir(folder)
-                .ok()?
-                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-                .take(10_000)
-                .collect();
-            did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
-        })
-    }
-
-    fn allows(&self, real: &Path) -> bool {
-        let below = |folder: &PathBuf| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
-        self.allowed.is_empty() || self.allowed.iter().any(below)
-    }
-
-    /// Reads a file that the user named, wherever it is.
-    pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
-        let io = |error| SourceError::Io { name: name.into(), error };
-        self.already().paths.push(path.into());
-        let metadata = fs::metadata(path).map_err(io)?;
-        if !metadata.is_file() {
-            return Err(SourceError::NotAFile { name: name.into() });
-        }
-        let left = self.already().left;
-        let too_large = |size| SourceError::TooLarge { name: name.into(), size, left };
-        if metadata.len() > left {
-            return Err(too_large(metadata.len()));
-        }
-        // A file that grows while it is read is still bounded.
-        let bytes = all_of(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
-        if bytes.len() as u64 > left {
-            return Err(too_large(bytes.len() as u64));
-        }
-        self.already().left = left - bytes.len() as u64;
-        Ok(bytes)
+    /// Adds a file to the record that was read earlier, and has not changed since `stamp`.
+    fn skip_reading(&self, name: &str, _stamp: &Stamp, digest: Digest) {
+        self.record().add_digest(name, digest);
     }
 }
 
-/// All bytes of a file of about some size, and of one that has grown at most one more than is
-/// allowed. Those of a file of that size are written once, where they stay.
-fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
-    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
-    let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();
-    loop {
-        match file.read(room) {
-            Ok(0) => break,
-            Ok(count) => room = &mut std::mem::take(&mut room)[count..],
-            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(error) => return Err(error),
+/// Files in memory, by name.
+#[derive(Clone, Debug, Default)]
+pub struct MemorySource {
+    files: BTreeMap<String, Arc<[u8]>>,
+    record: ReadRecord,
+}
+
+impl MemorySource {
+    /// Adds a file, or puts it in the place of the one of that name.
+    pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
+        self.files.insert(name.into(), bytes.into());
+    }
+}
+
+impl AssetSource for MemorySource {
+    fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        match self.files.get(name) {
+            Some(bytes) => {
+                self.record.add(name, bytes);
+                Ok(bytes.clone())
+            }
+            None => {
+                let near = did_you_mean(name, self.files.keys().map(String::as_str)).map(str::to_string);
+                Err(SourceError::Missing { name: name.into(), tried: Vec::new(), near })
+            }
         }
     }
-    let read = size - room.len();
-    let mut more = Vec::new();
-    file.take(most.saturating_add(1).saturating_sub(read as u64)).read_to_end(&mut more)?;
-    Ok(if read == size && more.is_empty() { bytes } else { [&bytes[..read], &more].concat().into() })
+
+    fn contains(&self, name: &str) -> bool {
+        self.files.contains_key(name)
+    }
+
+    fn record(&self) -> &ReadRecord {
+        &self.record
+    }
+}
+
+/// Unpacks the bytes of a file that gzip packed, if they become at most `budget` bytes.
+///
+/// # Errors
+///
+/// [`SourceError::Io`]: the bytes are damaged or would become too large.
+pub fn unpacked_file(name: &str, bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, SourceError> {
+    unpacked(bytes, budget).map_err(|problem| {
+        let error = std::io::Error::new(std::io::ErrorKind::InvalidData, problem);
+        SourceError::Io { name: name.into(), error }
+    })
 }
 
 /// Whether bytes are packed by gzip.
@@ -445,4 +310,23 @@ pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
 }
 
 #[cfg(test)]
-mod tests;
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_in_memory_are_found_and_recorded() {
+        let mut source = MemorySource::default();
+        source.insert("cube.obj", *b"v 0 0 0");
+        assert!(source.contains("cube.obj") && !source.contains("ball.obj"));
+        let empty = source.record().digest(b"");
+        assert_eq!(&*source.read("cube.obj").unwrap(), b"v 0 0 0");
+        assert_eq!(source.record().digest_of("cube.obj"), Some(Digest::of(b"v 0 0 0")));
+        assert_ne!(source.record().digest(b""), empty);
+        match source.read("cubes.obj") {
+            Err(SourceError::Missing { name, near, .. }) => {
+                assert_eq!((name.as_str(), near.as_deref()), ("cubes.obj", Some("cube.obj")));
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+}

@@ -7,6 +7,7 @@
 use crate::LoadOptions;
 use durer_diag::{Diagnostics, Files, Span};
 use durer_formats::course::{ReadOptions, guess, random::Random, read, write};
+use durer_formats::folder::FolderSource;
 use durer_formats::json::{self, Document};
 use durer_formats::scene::{Input, find_scene_format, read_model};
 use durer_formats::{curve, photometry, read_mesh};
@@ -17,7 +18,7 @@ use durer_render::render::{Control, Job, PartError, PartialRender, RenderOutcome
 use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Staging;
-use durer_scene::source::{Digest, Source};
+use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
 use std::cell::RefCell;
 use std::path::PathBuf;
@@ -113,7 +114,7 @@ pub fn model(data: &[u8], name: &str) {
     let bytes = data.into();
     let file = files.add(name, Arc::clone(&bytes));
     let files = RefCell::new(files);
-    let source = Source::folder(folder());
+    let source = FolderSource::new(folder());
     for staging in [Staging::default(), Staging { at: Some(0.5), ..Staging::default() }] {
         let input =
             Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging, memory: MEMORY };

@@ -5,9 +5,10 @@
 //!
 //! This crate is the face of the others: it passes on their modules, and loads files.
 
-#[cfg(any(test, feature = "testing"))]
+#[cfg(all(feature = "fs", any(test, feature = "testing")))]
 #[doc(hidden)]
 pub mod fuzz;
+#[cfg(feature = "fs")]
 pub mod load;
 
 pub use durer_bvh as bvh;
@@ -20,4 +21,5 @@ pub use durer_scene::{
     bsdf, camera, describe, dialect, light, material, math, medium, sampler, scene, shape, source, spectrum, texture,
 };
 pub use durer_teach::{check, lesson, mistakes};
+#[cfg(feature = "fs")]
 pub use load::{LoadOptions, Loaded, load, load_text};

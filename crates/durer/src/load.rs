@@ -4,6 +4,7 @@ use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_formats::Decoder;
 use durer_formats::beside::{Beside, put_beside};
 use durer_formats::course::{self, Guess, Hint, ReadOptions};
+use durer_formats::folder::FolderSource;
 use durer_formats::json;
 use durer_formats::scene::{Input, Output, find_scene_format, other_format, read_model, scene_format_for};
 use durer_render::compile::{AccelKind, Kept, Resources, compile};
@@ -11,7 +12,7 @@ use durer_render::threads;
 use durer_render::world::World;
 use durer_scene::dialect::{Compat, Dialect, PathBase, Rules};
 use durer_scene::scene::{Scene, Staging};
-use durer_scene::source::{Source, SourceError, is_packed, unpacked};
+use durer_scene::source::{AssetSource, SourceError, is_packed, unpacked};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -65,7 +66,7 @@ pub struct Loaded {
     /// How the dialect was found, where it was not asked for.
     pub guess: Option<Guess>,
     /// Where its files are.
-    source: Source,
+    source: FolderSource,
     /// Bytes that one of its pictures may take while it is decoded.
     memory: u64,
 }
@@ -82,7 +83,7 @@ pub fn load(
     diagnostics: &mut Diagnostics,
 ) -> Result<Option<Loaded>, SourceError> {
     let name = path.display().to_string();
-    let bytes = Source::folder(folder_of(path)).allow_outside().read_path(path, &name)?;
+    let bytes = FolderSource::new(folder_of(path)).allow_outside().read_path(path, &name)?;
     Ok(load_text(path, bytes, options, files, diagnostics))
 }
 
@@ -102,7 +103,7 @@ pub fn load_text(
     files: &mut Files,
     diagnostics: &mut Diagnostics,
 ) -> Option<Loaded> {
-    let mut source = Source::folder(folder_of(path));
+    let mut source = FolderSource::new(folder_of(path));
     if options.allow_outside {
         source = source.allow_outside();
     }
@@ -113,7 +114,7 @@ pub fn load_text(
         source = source.give(name, bytes.clone());
     }
     // Where the scene lies does not matter for what it is.
-    source.remember("", &bytes);
+    source.record().add("", &bytes);
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
     if is_packed(&bytes) {
@@ -195,7 +196,7 @@ pub fn load_text(
 
 /// Bytes that may be read.
 fn budget(options: &LoadOptions) -> u64 {
-    Source::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
+    FolderSource::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
 /// What the year's own program would refuse in a file that is read here: the first of it, as a

@@ -191,7 +191,7 @@ impl Reader<'_, '_> {
             Kind::Rows(width) => Value::Rows(self.rows(word, keyword, width)?),
         };
         if field.rule != Rule::Any
-            && let Some(violation) = field.rule.violation(&value)
+            && let Err(violation) = field.rule.validate(&value)
         {
             let span = start.to(self.last_span());
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);

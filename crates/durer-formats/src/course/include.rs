@@ -2,7 +2,7 @@
 
 use super::lexer::{Token, TokenKind, tokens};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
-use durer_scene::source::{Source, SourceError};
+use durer_scene::source::{AssetSource, SourceError};
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub enum Opened {
 }
 
 /// Finds what is included below a folder, and numbers it.
-pub fn below<'a>(source: &'a Source, files: &'a RefCell<Files>) -> impl Fn(&str) -> Opened + 'a {
+pub fn below<'a>(source: &'a dyn AssetSource, files: &'a RefCell<Files>) -> impl Fn(&str) -> Opened + 'a {
     move |name| match source.read(name) {
         Ok(bytes) => Opened::Text(files.borrow_mut().add_once(name, &bytes), bytes),
         Err(error) => Opened::Failed(error),

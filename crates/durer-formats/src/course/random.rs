@@ -100,7 +100,7 @@ impl Random {
                 (Rule::UpTo(high), _) => Value::Float(high * (1 + self.below(1000)) as f32 / 1000.0),
                 (_, value) => value,
             };
-            if field.rule.violation(&value).is_none() {
+            if field.rule.validate(&value).is_ok() {
                 return value;
             }
         }

@@ -68,7 +68,7 @@ pub(super) enum Target<'a> {
 /// Reads a URI: one that holds data, or a relative one.
 ///
 /// Source: RFC 3986 and RFC 2397. What leads out of the folder is refused by
-/// [`durer_scene::source::Source`].
+/// [`durer_scene::source::AssetSource`]s of folders.
 pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
     let uri = at.string()?;
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {

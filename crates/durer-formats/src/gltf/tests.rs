@@ -1,6 +1,7 @@
 //! glTF files against what the Khronos validator says of them, the numbers of accessors, and damage
 //! of all kinds.
 
+use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
 use durer_diag::{Diagnostics, Files, Severity};
 use durer_scene::describe::FileName;
@@ -10,7 +11,6 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::scene::{Material, Scene, Staging};
 use durer_scene::shape::MeshData;
-use durer_scene::source::Source;
 use durer_scene::texture::Channel;
 use std::path::{Path, PathBuf};
 
@@ -25,7 +25,7 @@ fn staged(bytes: &[u8], folder: &Path, name: &str, staging: &Staging) -> (Option
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = bytes.into();
     let file = files.add(name, std::sync::Arc::clone(&bytes));
-    let source = Source::folder(folder);
+    let source = FolderSource::new(folder);
     let files = std::cell::RefCell::new(files);
     let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging, memory: u64::MAX };
     let format = find_scene_format(&bytes, name).expect("it is known");
@@ -571,7 +571,7 @@ fn errors_count_when_no_more_are_collected() {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     (0..100).for_each(|_| diagnostics.push(durer_diag::Diagnostic::error("before")));
     let file = files.add("a.gltf", lost.as_bytes().into());
-    let (source, files) = (Source::folder("."), std::cell::RefCell::new(files));
+    let (source, files) = (FolderSource::new("."), std::cell::RefCell::new(files));
     let (name, staging) = ("a.gltf", Staging::default());
     let input = Input {
         bytes: &lost.as_bytes().into(),

@@ -194,7 +194,7 @@ impl Reader<'_> {
             Kind::Word(words) => describe::Value::Word(self.one_of(node, name, words)?.to_string()),
             Kind::Rows(width) => describe::Value::Rows(self.rows(node, name, width)?),
         };
-        if let Some(violation) = rule.violation(&value) {
+        if let Err(violation) = rule.validate(&value) {
             self.error(node.head(), "bad-value", format!("`{name}` {violation}"), None);
         }
         Some(value)

@@ -5,7 +5,7 @@ use super::decoded::{Encoding, decode, used};
 use super::kept::Origin;
 use crate::world::MeshTree;
 use durer_bvh::BuildQuality;
-use durer_diag::{Diagnostic, Diagnostics, Severity, Span, at_least, at_most};
+use durer_diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use durer_image::{self as image, Encoded};
 use durer_scene::describe::FileName;
 use durer_scene::dialect::{Compat, Rules};
@@ -16,7 +16,7 @@ use durer_scene::scene::{Assets, Background, PictureBytes};
 use durer_scene::shape::{HeightField, Mesh, MeshData};
 use durer_scene::source::{Digest, SourceError};
 use durer_scene::spectrum::{Curve, illuminants};
-use durer_scene::texture::{CieSky, CubeMap, Environment, Sky, Texture, sky};
+use durer_scene::texture::{CubeMap, Environment, Sky, Texture, sky};
 use rayon::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -117,7 +117,7 @@ impl<'r> Loader<'r> {
         if let (Some(kept), Some(origin), Some(tree), true) =
             (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
         {
-            kept.keep_mesh(origin, tree, self.resources.source.digest_of(&name.path));
+            kept.keep_mesh(origin, tree, self.resources.source.record().digest_of(&name.path));
         }
         self.meshes.insert(name.path.clone(), tree.clone());
         tree
@@ -133,7 +133,7 @@ impl<'r> Loader<'r> {
     /// Counts a file among those that were read, which was read earlier.
     pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
         if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
-            self.resources.source.remember_unread(path, stamp, digest);
+            self.resources.source.skip_reading(path, stamp, digest);
         }
     }
 
@@ -308,19 +308,8 @@ impl<'r> Loader<'r> {
     }
 
     /// The picture around a scene.
-    pub(super) fn environment(
-        &mut self,
-        written: &Background,
-        span: Span,
-        diagnostics: &mut Diagnostics,
-    ) -> Option<Environment> {
+    pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
-            if written.cie_sky.is_some_and(CieSky::wants_sun) && written.sun().is_none() {
-                let message = "this `cieSky` is brightest about the sun, and no `sun` says where that is";
-                let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
-                diagnostics.push(Diagnostic::error(message).at(span).help(help));
-                return None;
-            }
             if written.is_night() {
                 return None;
             }
@@ -440,6 +429,8 @@ impl<'r> Loader<'r> {
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {
+        Some(near) if tried.is_empty() => format!("did you mean `{near}`?"),
+        None if tried.is_empty() => "the scene is in memory, and brings no file of that name".into(),
         Some(near) => format!("did you mean `{near}`? Looked for {}", shown.join(", ")),
         None => format!("looked for {}", shown.join(", ")),
     }

@@ -4,7 +4,7 @@ use super::files::Loader;
 use super::media;
 use super::rules::matrix_rules;
 use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
-use durer_diag::{Diagnostic, Diagnostics};
+use durer_diag::Diagnostics;
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::dialect::{Compat, Highlight, Rules, Secondary};
@@ -21,7 +21,6 @@ pub(super) fn compile(
     loader: &mut Loader,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Material> {
-    check_solids(scene, diagnostics);
     loader.decode_ahead(scene.materials.iter().filter_map(|material| match &material.value {
         scene::Material::Principled(layers) => Some(&**layers),
         _ => None,
@@ -92,34 +91,6 @@ fn meant(solid: &Solid, scene: &Scene, rules: &Rules) -> Solid {
             Checkerboard { material1: board.material2, material2: board.material1 }.into()
         }
         _ => solid.clone(),
-    }
-}
-
-/// Refuses solids that lead to themselves, are nested too deeply, or double at each level.
-fn check_solids(scene: &Scene, diagnostics: &mut Diagnostics) {
-    const DEEPEST: u32 = 64;
-    const MOST: u64 = 4096;
-    // How deep each material is nested, and of how many parts it is made at most.
-    let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
-    for material in &scene.materials {
-        let scene::Material::Solid(solid, _) = &material.value else {
-            sizes.push((0, 1));
-            continue;
-        };
-        let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
-        let [Some(first), Some(second)] = parts else {
-            let message = "a solid material is made of earlier ones";
-            diagnostics.push(Diagnostic::error(message).at(material.span));
-            return;
-        };
-        let size = (1 + first.0.max(second.0), first.1 + second.1);
-        if size.0 > DEEPEST || size.1 > MOST {
-            let message = format!("this material is made of others {} deep and {} in all", size.0, size.1);
-            let help = format!("at most {DEEPEST} deep and {MOST} in all are allowed");
-            diagnostics.push(Diagnostic::error(message).at(material.span).help(help));
-            return;
-        }
-        sizes.push(size);
     }
 }
 

@@ -6,7 +6,6 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::medium::{Fog, HenyeyGreenstein, Medium, Place};
-use durer_scene::scene::Spanned;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// What fills a body of a material, if light loses something there.
@@ -102,20 +101,8 @@ pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
 }
 
 /// What is in the air.
-pub(super) fn fog(fog: &Spanned<Fog>, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
-    let (written, span) = (&fog.value, fog.span);
-    let mut refuse = |message: &str| {
-        diagnostics.push(Diagnostic::error(message).code("bad-value").at(span));
-        None
-    };
-    let corners = match (written.min, written.max) {
-        (Some(min), Some(max)) if min.cmplt(max).all() => Some(Aabb { min, max }),
-        (Some(_), Some(_)) => {
-            return refuse("each coordinate of this fog's `max` must be greater than that of its `min`");
-        }
-        (None, None) => None,
-        _ => return refuse("a box of fog needs both `min` and `max`"),
-    };
+pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
+    let corners = written.min.zip(written.max).map(|(min, max)| Aabb { min, max });
     let density = match &written.density {
         Some(name) => Some(loader.density(name, diagnostics)?),
         None => None,

@@ -23,7 +23,7 @@ use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
 use durer_scene::shape::mesh::loosened;
 use durer_scene::shape::{Mesh, Primitive, Shape, Triangle};
-use durer_scene::source::Source;
+use durer_scene::source::AssetSource;
 use durer_scene::texture::Sky;
 use durer_scene::texture::sky::SUN_RADIUS;
 use glam::DAffine3;
@@ -46,7 +46,7 @@ pub enum AccelKind {
 /// Where files come from while a scene is compiled.
 pub struct Resources<'a> {
     /// Reads files that the scene names.
-    pub source: &'a Source,
+    pub source: &'a dyn AssetSource,
     /// Decodes meshes, photometric files, spectra and densities.
     pub decoder: &'a dyn AssetDecoder,
     /// Remembers what was read, for diagnostics.
@@ -64,12 +64,14 @@ pub struct Resources<'a> {
 
 impl<'a> Resources<'a> {
     /// All the memory there is, for many rays, with nothing kept from before.
-    pub fn new(source: &'a Source, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
+    pub fn new(source: &'a dyn AssetSource, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
         Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
     }
 }
 
 /// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
+///
+/// All values are checked first by [`Scene::validate`], wherever the scene comes from.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -90,10 +92,12 @@ pub fn compile(
         }));
         return None;
     };
-    match camera.problem() {
-        Some(problem) => own.push(Diagnostic::error(problem).code("bad-value").at(scene.camera_span)),
-        None => check_camera(scene, camera.pose(), &mut own),
+    let invalid = scene.validate();
+    if invalid.has_errors() {
+        diagnostics.extend(invalid);
+        return None;
     }
+    check_camera(scene, camera.pose(), &mut own);
     let materials = materials::compile(scene, rules, &mut loader, &mut own);
     let mut flattener = SceneFlattener {
         objects: Vec::new(),
@@ -124,8 +128,8 @@ pub fn compile(
     let cube_map = scene.background.cube_map.as_ref().and_then(|name| loader.cube_map(name, &mut own));
     check_sun(scene, &mut own);
     check_sky(scene, &mut own);
-    let environment = loader.environment(&scene.background, scene.background_span, &mut own);
-    let fog = scene.fog.as_ref().and_then(|fog| media::fog(fog, &mut loader, &mut own));
+    let environment = loader.environment(&scene.background, &mut own);
+    let fog = scene.fog.as_ref().and_then(|fog| media::fog(&fog.value, &mut loader, &mut own));
     let (mut lights, ambient) = lights(scene, rules, &mut own);
     lights.extend(sun(&scene.background));
     let mut measured = |light: &mut Light| {
@@ -141,7 +145,7 @@ pub fn compile(
         }
     }
     // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
-    let digest = loader.resources.source.digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
+    let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
     diagnostics.extend(own);
@@ -266,21 +270,17 @@ fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Res
     Ok(Accel::Grid { grid, parts })
 }
 
-/// Says where the place of the sun is no place, or none from which it shines.
+/// Warns of a sun below the horizon.
 fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     let low = |way: Vec3| -fp::asin(way.normalize_or(Vec3::Y).y).to_degrees();
-    let diagnostic = match scene.background.way_to_sun() {
-        Err(message) => Diagnostic::error(message),
-        Ok(Some(way)) if low(way) > 0.0 => {
-            let message = format!("the sun is {:.1} degrees below the horizon", low(way));
-            let warning = Diagnostic::warning(message).code("sun-below");
-            warning
-                .effect("neither it nor its sky shines")
-                .help("for dusk write a sun on the horizon, for night what lights the scene then")
-        }
-        Ok(_) => return,
-    };
-    diagnostics.push(diagnostic.at(scene.background_span));
+    if let Some(way) = scene.background.sun()
+        && low(way) > 0.0
+    {
+        let message = format!("the sun is {:.1} degrees below the horizon", low(way));
+        let warning = Diagnostic::warning(message).code("sun-below").at(scene.background_span);
+        let help = "for dusk write a sun on the horizon, for night what lights the scene then";
+        diagnostics.push(warning.effect("neither it nor its sky shines").help(help));
+    }
 }
 
 /// Tells of words of the background that say how something looks which is not there.
@@ -348,9 +348,6 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
         return (Vec::new(), ambient);
     }
     for light in written {
-        if let Some(message) = light.value.contradiction() {
-            diagnostics.push(Diagnostic::error(message).at(light.span));
-        }
         if light.value.color() == Color::ZERO {
             let message = "this light reaches nothing: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
@@ -432,15 +429,6 @@ impl SceneFlattener<'_, '_> {
 
     /// A shape or mesh, placed in the world; `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
-        let flaw = match &object.node {
-            Node::Primitive(shape) => shape.flaw(),
-            Node::HeightField(field) => field.flaw(),
-            _ => None,
-        };
-        if let Some(flaw) = flaw {
-            self.diagnostics.push(Diagnostic::error(flaw).code("bad-value").at(object.span));
-            return None;
-        }
         let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
                 let [vertex0, vertex1, vertex2] = loosened(t.corners());
@@ -450,11 +438,6 @@ impl SceneFlattener<'_, '_> {
             Node::Mesh(mesh) => Geometry::Mesh(self.loader.mesh(&mesh.obj_file, self.diagnostics)?),
             Node::HeightField(field) => Geometry::Mesh(self.loader.height_field(field, self.diagnostics)?),
             Node::Voxels(grid, balls) => {
-                if (grid.max - grid.min).min_element() <= 0.0 {
-                    let message = "each coordinate of this grid's `max` must be greater than that of its `min`";
-                    self.diagnostics.push(Diagnostic::error(message).at(object.span));
-                    return None;
-                }
                 let mesh = Mesh::new(grid.mesh(balls), MeshNormals::Flat, false);
                 Geometry::Mesh(Arc::new(self.loader.tree(mesh)))
             }

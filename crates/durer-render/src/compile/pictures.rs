@@ -154,7 +154,7 @@ impl Loader<'_> {
         };
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64, diagnostics));
         if let (Some(kept), Some(origin), Some(texture)) = (self.resources.kept, origin, &texture) {
-            kept.keep_picture(origin, encoding, texture, self.resources.source.digest_of(&path));
+            kept.keep_picture(origin, encoding, texture, self.resources.source.record().digest_of(&path));
         }
         self.decoded.insert(key, texture.clone());
         texture

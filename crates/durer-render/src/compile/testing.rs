@@ -4,6 +4,7 @@ use super::*;
 use crate::world::World;
 use durer_formats::Decoder;
 use durer_formats::course::{self, ReadOptions};
+use durer_formats::folder::FolderSource;
 use durer_scene::dialect::Dialect;
 use durer_scene::shape::Primitive;
 use glam::DAffine3;
@@ -16,7 +17,7 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     let file = files.add("scene.txt", text.as_bytes().into());
     let mut diagnostics = Diagnostics::default();
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
-    let source = Source::folder(folder);
+    let source = FolderSource::new(folder);
     let included = RefCell::new(std::mem::take(&mut files));
     let scene = course::read_with(text.as_bytes(), file, options, &course::below(&source, &included), &mut diagnostics);
     files = included.into_inner();
@@ -43,7 +44,7 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     let root = Group { objects: vec![object] };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
     let scene = Scene { camera, root: Some(root), ..Scene::default() };
-    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder(folder), Diagnostics::default());
+    let (mut files, source, mut diagnostics) = (Files::default(), FolderSource::new(folder), Diagnostics::default());
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
@@ -60,7 +61,7 @@ pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let root = Group { objects: shapes.iter().map(moved).collect() };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
     let scene = Scene { camera, root: Some(root), ..Scene::default() };
-    let (mut files, source, mut diagnostics) = (Files::default(), Source::folder("."), Diagnostics::default());
+    let (mut files, source, mut diagnostics) = (Files::default(), FolderSource::new("."), Diagnostics::default());
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = compile(&scene, Dialect::Durer.rules(), accel, resources, &mut diagnostics);
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))

@@ -16,6 +16,9 @@ pub enum RenderError {
     /// The picture is too large, or the part lies outside of it.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// A value of the job that is out of range.
+    #[error("{0}")]
+    Job(String),
     /// The part to be made does not lie in the picture.
     #[error("the crop does not lie in the picture of {0} x {1} pixels")]
     CropOutside(u32, u32),

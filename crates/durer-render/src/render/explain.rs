@@ -130,6 +130,7 @@ pub fn explain_of(
     (x, y): (u32, u32),
     samples: Option<u32>,
 ) -> Result<Explanation, RenderError> {
+    job.validate()?;
     if x >= job.width || y >= job.height {
         return Err(RenderError::CropOutside(job.width, job.height));
     }

@@ -1,6 +1,7 @@
 //! What decides a picture.
 
 use super::crop::Crop;
+use super::error::RenderError;
 use super::eye::raster;
 use super::passes;
 use crate::film::Filter;
@@ -10,6 +11,7 @@ use crate::integrator::{Integrator, Method, Settings, Setup};
 use crate::render::course::CourseFilter;
 use crate::world::World;
 use durer_scene::camera::RayCone;
+use durer_scene::describe::DescribedList;
 use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
@@ -149,6 +151,80 @@ impl Default for Job {
 }
 
 impl Job {
+    /// Samples a pixel may have at most.
+    pub const MAX_SAMPLES: u32 = 1 << 20;
+    /// Radius in pixels that a filter may have at most.
+    pub const MAX_FILTER_RADIUS: f32 = 64.0;
+
+    /// Checks all values: size at least 1 x 1, samples from 1 to [`Job::MAX_SAMPLES`], the filter's
+    /// radius more than 0 and at most [`Job::MAX_FILTER_RADIUS`], depth of recursion at most
+    /// [`Settings::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their rules.
+    /// [`PartialRender::new`](super::PartialRender::new) asks this first.
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::Job`], which names the value.
+    pub fn validate(&self) -> Result<(), RenderError> {
+        let refuse = |message: String| Err(RenderError::Job(message));
+        if self.width == 0 || self.height == 0 {
+            return refuse(format!("the size {} x {} must be at least 1 x 1", self.width, self.height));
+        }
+        let (samples, radius) = match self.sampling {
+            Sampling::Filtered { samples, filter } => (samples, Some(filter.radius())),
+            Sampling::Course2004 { samples, .. } => (samples, None),
+            Sampling::Center | Sampling::Course2012 { .. } => (1, None),
+        };
+        if !(1..=Job::MAX_SAMPLES).contains(&samples) {
+            return refuse(format!("samples {samples} must be from 1 to {}", Job::MAX_SAMPLES));
+        }
+        if let Some(radius) = radius.filter(|&radius| !(radius > 0.0 && radius <= Job::MAX_FILTER_RADIUS)) {
+            let most = Job::MAX_FILTER_RADIUS;
+            return refuse(format!("the filter's radius {radius} must be more than 0 and at most {most}"));
+        }
+        if let Sampling::Filtered { filter: Filter::Gaussian { sigma, .. }, .. } = self.sampling
+            && !(sigma > 0.0 && sigma.is_finite())
+        {
+            return refuse(format!("the filter's sigma {sigma} must be more than 0"));
+        }
+        // The course's filters may have radius 0.
+        if let Sampling::Course2004 { filter: Some(filter), .. } = self.sampling {
+            let (CourseFilter::Box { radius: size }
+            | CourseFilter::Tent { radius: size }
+            | CourseFilter::Gaussian { sigma: size }) = filter;
+            if !(0.0..=Job::MAX_FILTER_RADIUS).contains(&size) {
+                return refuse(format!("the filter's radius {size} must be from 0 to {}", Job::MAX_FILTER_RADIUS));
+            }
+        }
+        let Settings { bounces, least_weight, .. } = self.settings;
+        if bounces > Settings::MAX_BOUNCES {
+            return refuse(format!("bounces {bounces} must be at most {}", Settings::MAX_BOUNCES));
+        }
+        if !(least_weight >= 0.0 && least_weight.is_finite()) {
+            return refuse(format!("the least throughput {least_weight} must not be less than 0"));
+        }
+        if let Some(noise) = self.noise.filter(|noise| !(*noise > 0.0 && noise.is_finite())) {
+            return refuse(format!("the noise threshold {noise} must be more than 0"));
+        }
+        for (at, field) in self.method.fields().iter().enumerate() {
+            let value = self.method.get(at);
+            if let Some(Err(violation)) = value.map(|value| field.rule.validate(&value)) {
+                return refuse(format!("{} of {} {violation}", field.name, self.method.name()));
+            }
+        }
+        if let Some((min, max)) =
+            self.depth_range.filter(|(min, max)| !(min.is_finite() && max.is_finite() && min != max))
+        {
+            return refuse(format!("the depths {min} and {max} must be two different numbers"));
+        }
+        if let Some(LightScale { low, high, logarithmic }) = self.light_scale {
+            let least = if logarithmic { f32::MIN_POSITIVE } else { 0.0 };
+            if !(low >= least && high > low && high.is_finite()) {
+                return refuse(format!("false colours cannot go from {low} to {high}"));
+            }
+        }
+        Ok(())
+    }
+
     /// The part that is made.
     pub fn window(&self) -> Crop {
         self.crop.unwrap_or(self.whole())

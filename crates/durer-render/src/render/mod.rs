@@ -13,6 +13,8 @@ mod error;
 pub mod explain;
 mod eye;
 mod grid;
+#[cfg(test)]
+mod invalid_tests;
 mod job;
 mod merge;
 mod part;

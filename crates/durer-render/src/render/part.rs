@@ -130,13 +130,14 @@ impl PartialRender {
     /// A part of a picture of a world of which nothing is made yet.
     ///
     /// # Errors
-    /// [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
+    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {
+        job.validate()?;
         let window = job.window();
         let inside =
             |start: u32, length: u32, size: u32| length > 0 && start.checked_add(length).is_some_and(|end| end <= size);

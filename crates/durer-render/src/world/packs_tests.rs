@@ -48,7 +48,7 @@ fn packs_hit_as_shapes_do() {
             let edge0 = [size * Vec3::X, vector(&mut random, size) + Vec3::splat(1e-9)][random.below(2)];
             let edge1 = [size * Vec3::Y, vector(&mut random, size) + Vec3::splat(1e-9)][random.below(2)];
             let rectangle = Rectangle { corner, edge0, edge1 };
-            if rectangle.flaw().is_none() {
+            if rectangle.validate().is_ok() {
                 packs.push_rectangle(shapes.len() as u32, corner, [edge0, edge1]);
                 shapes.push(rectangle.into());
             }

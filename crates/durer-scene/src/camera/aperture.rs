@@ -42,8 +42,15 @@ pub fn sample(lens: Vec2, blades: u32, turn: f32) -> DVec2 {
     radius.abs() * (first + along * (second - first))
 }
 
-/// What is wrong with a number of blades.
-pub fn problem(blades: u32) -> Option<String> {
+/// Checks a number of blades.
+///
+/// # Errors
+///
+/// A sentence, for 1, 2 and more than [`MAX_BLADES`].
+pub fn validate(blades: u32) -> Result<(), String> {
     let wrong = (1..=2).contains(&blades) || blades > MAX_BLADES;
-    wrong.then(|| format!("`blades` must be 0, for a round opening, or 3 to {MAX_BLADES}"))
+    match wrong {
+        true => Err(format!("`blades` must be 0, for a round opening, or 3 to {MAX_BLADES}")),
+        false => Ok(()),
+    }
 }

@@ -112,26 +112,26 @@ impl Projection for CaveCamera {
         self.eyes.sheet(self.one()).proportions()
     }
 
-    fn problem(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         if self.walls.is_empty() {
-            return Some("`walls` must have at least one row".into());
+            return Err("`walls` must have at least one row".into());
         }
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         for (i, wall) in self.walls().enumerate() {
             let size = wall.size();
             if size.min_element() <= 0.0 {
-                return Some(format!("wall {} has no extent: its corners must differ", i + 1));
+                return Err(format!("wall {} has no extent: its corners must differ", i + 1));
             }
             if wall.across.dot(wall.upwards).abs() > 1e-3 * size.x * size.y {
-                return Some(format!("wall {} has no right angle at its first corner", i + 1));
+                return Err(format!("wall {} has no right angle at its first corner", i + 1));
             }
             for view in self.eyes.views(self.one()) {
                 if (self.eye(&frame, view.side) - wall.corner).dot(wall.normal()).abs() < 1e-6 * size.max_element() {
-                    return Some(format!("an eye lies in the plane of wall {}, and sees nothing of it", i + 1));
+                    return Err(format!("an eye lies in the plane of wall {}, and sees nothing of it", i + 1));
                 }
             }
         }
-        None
+        Ok(())
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {

@@ -15,9 +15,9 @@ pub trait Central {
         None
     }
 
-    /// See [`Projection::problem`].
-    fn fault(&self) -> Option<String> {
-        None
+    /// See [`Projection::validate`].
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
     }
 
     /// The direction, of any length, that a point of the picture sees for a pixel.
@@ -39,8 +39,8 @@ impl<T: Central> Projection for T {
         self.shape()
     }
 
-    fn problem(&self) -> Option<String> {
-        self.fault()
+    fn validate(&self) -> Result<(), String> {
+        Central::validate(self)
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {

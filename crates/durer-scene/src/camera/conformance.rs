@@ -47,12 +47,12 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
         let mut camera = kind.clone();
         for (i, field) in kind.fields().iter().enumerate() {
             let value = value(field, random);
-            assert_eq!(field.rule.violation(&value), None, "{}", field.name);
+            assert_eq!(field.rule.validate(&value), Ok(()), "{}", field.name);
             camera.set(i, value);
         }
         // One that sees next to nothing would be found out by nothing.
         let seen = (0..200).filter(|_| looked(&camera, random).1.is_some()).count();
-        if camera.problem().is_none() && seen > 40 {
+        if camera.validate().is_ok() && seen > 40 {
             return camera;
         }
     }
@@ -75,7 +75,7 @@ fn looked(camera: &Camera, random: &mut Random) -> (CameraSample, Option<Ray>) {
 fn all(seed: u64, mut check: impl FnMut(&Camera, &mut Random)) {
     let mut random = Random(seed);
     for kind in Camera::kinds() {
-        assert_eq!(kind.problem(), None, "{kind:?}");
+        assert_eq!(kind.validate(), Ok(()), "{kind:?}");
         check(&kind, &mut random);
         for _ in 1..CAMERAS {
             check(&random_camera(&kind, &mut random), &mut random);

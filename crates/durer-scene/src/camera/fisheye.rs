@@ -116,15 +116,15 @@ impl Central for FisheyeCamera {
         Some(Vec2::ONE)
     }
 
-    fn fault(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         match self.projection {
             FisheyeProjection::Orthographic if self.angle > 180.0 => {
-                Some("an orthographic fisheye sees at most 180 degrees".into())
+                Err("an orthographic fisheye sees at most 180 degrees".into())
             }
             FisheyeProjection::Stereographic if self.angle > 359.0 => {
-                Some("a stereographic fisheye sees at most 359 degrees: the last one is infinitely far out".into())
+                Err("a stereographic fisheye sees at most 359 degrees: the last one is infinitely far out".into())
             }
-            _ => None,
+            _ => Ok(()),
         }
     }
 

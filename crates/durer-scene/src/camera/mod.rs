@@ -53,8 +53,8 @@ macro_rules! delegate {
             fn has_aperture(&self) -> bool {
                 match self { $(Camera::$variant(c) => c.has_aperture(),)+ }
             }
-            fn problem(&self) -> Option<String> {
-                match self { $(Camera::$variant(c) => c.problem(),)+ }
+            fn validate(&self) -> Result<(), String> {
+                match self { $(Camera::$variant(c) => c.validate(),)+ }
             }
             fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
                 match self { $(Camera::$variant(c) => c.ray(frame, sample),)+ }
@@ -168,9 +168,13 @@ pub trait Projection {
         false
     }
 
-    /// Why there is no such camera, though each value by itself is allowed.
-    fn problem(&self) -> Option<String> {
-        None
+    /// Checks its fields together. Each by itself has its rule in the statement.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that says why there is no such camera.
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
     }
 
     /// The ray of a sample; `None` where the camera sees nothing. The direction has length 1, so

@@ -141,18 +141,21 @@ impl Projection for MultipleCenterCamera {
         self.sheet().proportions()
     }
 
-    fn problem(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         if self.path.len() < 2 {
-            return Some("`path` must have at least 2 rows".into());
+            return Err("`path` must have at least 2 rows".into());
         }
         // Between its rows a path may go wrong too.
         let steps = 16 * self.pieces();
-        (0..=steps).find_map(|step| {
+        (0..=steps).try_for_each(|step| {
             let column = self.column(step as f64 / steps as f64);
             let row = step as f64 / 16.0 + 1.0;
             let wrong =
                 !column.right.is_finite() || column.forward.cross(self.up.as_dvec3().normalize()).length() < 1e-6;
-            wrong.then(|| format!("at row {row} of `path` the eye looks nowhere, or along `up`"))
+            match wrong {
+                true => Err(format!("at row {row} of `path` the eye looks nowhere, or along `up`")),
+                false => Ok(()),
+            }
         })
     }
 

@@ -89,12 +89,12 @@ impl Central for OmnimaxCamera {
         Some(Vec2::ONE)
     }
 
-    fn fault(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         let outside = |place: Vec3| place.length() >= 0.99;
         match (outside(self.projector), outside(self.viewer)) {
-            (false, false) => None,
-            (true, _) => Some("the projector must be inside the dome: less than 0.99 from its middle".into()),
-            _ => Some("the viewer must be inside the dome: less than 0.99 from its middle".into()),
+            (false, false) => Ok(()),
+            (true, _) => Err("the projector must be inside the dome: less than 0.99 from its middle".into()),
+            _ => Err("the viewer must be inside the dome: less than 0.99 from its middle".into()),
         }
     }
 

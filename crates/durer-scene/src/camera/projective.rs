@@ -177,15 +177,18 @@ impl Projection for ProjectiveCamera {
         self.sheet().proportions()
     }
 
-    fn problem(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         if self.matrix.len() != 3 {
-            return Some("`matrix` must have 3 rows".into());
+            return Err("`matrix` must have 3 rows".into());
         }
         let ([a, b, c], _) = self.rows();
         let volume = a.dot(b.cross(c)).abs();
         // Compared with rows of these lengths at right angles.
         let singular = volume <= 1e-9 * a.length() * b.length() * c.length() || !self.pose().center.is_finite();
-        singular.then(|| "the left three columns of `matrix` are singular: such a camera has no eye".into())
+        match singular {
+            true => Err("the left three columns of `matrix` are singular: such a camera has no eye".into()),
+            false => Ok(()),
+        }
     }
 
     fn ray(&self, _: &CameraBasis, sample: &CameraSample) -> Option<Ray> {

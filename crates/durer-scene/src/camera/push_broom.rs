@@ -63,13 +63,17 @@ impl Projection for PushBroomCamera {
         self.sheet().proportions()
     }
 
-    fn problem(&self) -> Option<String> {
+    fn validate(&self) -> Result<(), String> {
         let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
         // Also where the way has no length.
         let moves = sideways > 1e-6 * self.way().length();
-        (!moves)
-            .then(|| "from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
+        match moves {
+            true => Ok(()),
+            false => {
+                Err("from `start` to `end` the camera must move sideways, not only along `direction` or `up`".into())
+            }
+        }
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {

@@ -83,8 +83,8 @@ impl Projection for ThinLensCamera {
         self.aperture > 0.0
     }
 
-    fn problem(&self) -> Option<String> {
-        aperture::problem(self.blades)
+    fn validate(&self) -> Result<(), String> {
+        aperture::validate(self.blades)
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {

@@ -26,8 +26,8 @@ macro_rules! delegate {
             fn in_units(&self) -> Self {
                 match self { $(Light::$variant(l) => l.in_units().into(),)+ }
             }
-            fn contradiction(&self) -> Option<&'static str> {
-                match self { $(Light::$variant(l) => l.contradiction(),)+ }
+            fn validate(&self) -> Result<(), String> {
+                match self { $(Light::$variant(l) => l.validate(),)+ }
             }
             fn spread(&self) -> f32 {
                 match self { $(Light::$variant(l) => l.spread(),)+ }
@@ -97,9 +97,13 @@ pub trait Emitter {
     /// The same with its strength in its colour, where that is written in candela, lumen or lux.
     fn in_units(&self) -> Self;
 
-    /// What is written of its strength that cannot go together.
-    fn contradiction(&self) -> Option<&'static str> {
-        None
+    /// Checks its fields together. Each by itself has its rule in the statement.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the fields which contradict each other.
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
     }
 
     /// Where it is, and what arrives at distance 1 in the direction in which it is strongest;

@@ -57,14 +57,16 @@ impl Emitter for PointLight {
         PointLight { color, attenuation: Some(Vec3::Z), falloff: None, candela: None, lumens: None, ..self.clone() }
     }
 
-    fn contradiction(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let unit = self.candela.or(self.lumens).is_some();
         match () {
-            () if self.candela.is_some() && self.lumens.is_some() => Some(TWO_UNITS),
-            () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => Some(
-                "what shines in candela or lumen fades with the square of the distance: `attenuation` and `falloff` have no place beside that",
+            () if self.candela.is_some() && self.lumens.is_some() => Err(TWO_UNITS.into()),
+            () if unit && (self.attenuation.is_some() || self.falloff.is_some()) => Err(
+                "what shines in candela or lumen fades with the square of the distance: `attenuation` and `falloff` \
+                     have no place beside that"
+                    .into(),
             ),
-            () => None,
+            () => Ok(()),
         }
     }
 

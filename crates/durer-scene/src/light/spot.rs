@@ -96,8 +96,11 @@ impl Emitter for SpotLight {
         SpotLight { color: as_bright(self.color, candela / PI), candela: None, lumens: None, ..self.clone() }
     }
 
-    fn contradiction(&self) -> Option<&'static str> {
-        (self.candela.is_some() && self.lumens.is_some()).then_some(TWO_UNITS)
+    fn validate(&self) -> Result<(), String> {
+        match self.candela.is_some() && self.lumens.is_some() {
+            true => Err(TWO_UNITS.into()),
+            false => Ok(()),
+        }
     }
 
     fn place(&self) -> Option<(Vec3, Color)> {

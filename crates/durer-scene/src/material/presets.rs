@@ -262,7 +262,7 @@ mod tests {
                 let field: &Field = PrincipledMaterial::FIELDS.iter().find(|field| field.name == *word).unwrap();
                 let index = PrincipledMaterial::FIELDS.iter().position(|field| field.name == *word).unwrap();
                 let value = material.get(index).unwrap();
-                assert_eq!(field.rule.violation(&value), None, "{name}: {word}");
+                assert_eq!(field.rule.validate(&value), Ok(()), "{name}: {word}");
             }
         }
         assert_eq!(named("gold").unwrap().base_metalness, 1.0);

@@ -90,10 +90,15 @@ impl NamedTexture {
     /// What it is by a name; `None` where its bytes are in no file.
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
+        Some(NamedTexture::with_mapping(name, file, picture.mapping))
+    }
+
+    /// The texture of a name and a picture's file, mapped in some way.
+    pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
         let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
-            picture.mapping;
-        Some(NamedTexture {
+            mapping;
+        NamedTexture {
             name: named(name),
             picture: named(file),
             wrap_u,
@@ -106,7 +111,7 @@ impl NamedTexture {
             normal_scale: strength,
             channel,
             texel_range: vec![range],
-        })
+        }
     }
 
     /// The picture.

@@ -6,6 +6,7 @@ pub mod assets;
 pub mod extent;
 pub mod matrix;
 pub mod staging;
+mod validate;
 
 use crate::camera::Camera;
 use crate::describe::{FileName, Rule, described};
@@ -23,6 +24,8 @@ use durer_diag::Span;
 pub use matrix::{MatrixOp, MatrixRules};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+
+pub use validate::MAX_NESTING;
 
 pub use staging::{Axis, Staging, Studio, View};
 

@@ -106,13 +106,13 @@ impl Shape for Cone {
         Some(y > 0.0 && y < axis.height && around.length() < self.radius_at(&axis, y))
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         if self.axis().height == 0.0 {
-            Some("`base` and `top` of a `Cone` must not be the same point")
+            Err("`base` and `top` of a `Cone` must not be the same point".into())
         } else if self.base_radius == 0.0 && self.top_radius == 0.0 {
-            Some("one of the radii of a `Cone` must be more than 0")
+            Err("one of the radii of a `Cone` must be more than 0".into())
         } else {
-            None
+            Ok(())
         }
     }
 }

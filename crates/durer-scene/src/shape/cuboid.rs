@@ -56,8 +56,11 @@ impl Shape for Cuboid {
         Some((point.cmpgt(self.min.as_dvec3()) & point.cmplt(self.max.as_dvec3())).all())
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let thick = self.min.cmplt(self.max).all();
-        (!thick).then_some("`min` of a `Box` must be less than its `max` in x, y and z")
+        match thick {
+            true => Ok(()),
+            false => Err("`min` of a `Box` must be less than its `max` in x, y and z".into()),
+        }
     }
 }

@@ -141,7 +141,10 @@ impl Shape for Cylinder {
         Some(y > 0.0 && y < axis.height && around.length() < f64::from(self.radius))
     }
 
-    fn flaw(&self) -> Option<&'static str> {
-        (self.axis().height == 0.0).then_some("`base` and `top` of a `Cylinder` must not be the same point")
+    fn validate(&self) -> Result<(), String> {
+        match self.axis().height > 0.0 {
+            true => Ok(()),
+            false => Err("`base` and `top` of a `Cylinder` must not be the same point".into()),
+        }
     }
 }

@@ -57,8 +57,11 @@ impl Shape for Disc {
         Surface::new(center + q, n, floor as f32, uv)
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let there = self.inner_radius < self.radius;
-        (!there).then_some("`innerRadius` of a `Disc` must be less than its `radius`")
+        match there {
+            true => Ok(()),
+            false => Err("`innerRadius` of a `Disc` must be less than its `radius`".into()),
+        }
     }
 }

@@ -54,8 +54,11 @@ impl Shape for Ellipsoid {
         Some(((point - self.center.as_dvec3()) / self.radii.as_dvec3()).length_squared() < 1.0)
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let thick = self.radii.min_element() > 0.0;
-        (!thick).then_some("all `radii` of an `Ellipsoid` must be more than 0")
+        match thick {
+            true => Ok(()),
+            false => Err("all `radii` of an `Ellipsoid` must be more than 0".into()),
+        }
     }
 }

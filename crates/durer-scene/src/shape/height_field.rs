@@ -29,10 +29,17 @@ impl HeightField {
     /// At most this many pixels.
     pub const MAX_PIXELS: usize = 1 << 24;
 
-    /// What is wrong with the values of its fields taken together, if anything.
-    pub fn flaw(&self) -> Option<&'static str> {
+    /// Checks its fields together.
+    ///
+    /// # Errors
+    ///
+    /// `min` is not less than `max` in some coordinate.
+    pub fn validate(&self) -> Result<(), String> {
         let wide = self.min.cmplt(self.max).all();
-        (!wide).then_some("`min` of a `HeightField` must be less than its `max` in x, y and z")
+        match wide {
+            true => Ok(()),
+            false => Err("`min` of a `HeightField` must be less than its `max` in x, y and z".into()),
+        }
     }
 
     /// The landscape: two triangles between each four neighbouring pixels, with walls around them

@@ -101,6 +101,44 @@ impl Triangles for MeshData {
 }
 
 impl MeshData {
+    /// Checks lists against each other.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, if an index has nothing that it stands for, a position is not finite, or lists
+    /// that go by triangle or by position differ in length.
+    pub fn validate(&self) -> Result<(), String> {
+        let below = |triangles: &[[u32; 3]], count: usize| {
+            triangles.iter().flatten().all(|&i| (i as usize) < count || i == NO_INDEX)
+        };
+        let (triangles, positions) = (self.triangles.len(), self.positions.len());
+        if self.triangles.iter().flatten().any(|&i| i as usize >= positions) {
+            return Err(format!("an index is too large: there are {positions} positions, counted from 0"));
+        }
+        if !self.positions.iter().all(|p| p.is_finite()) {
+            return Err("positions must be finite".into());
+        }
+        let by_triangle = [
+            ("triangle_uvs", &self.triangle_uvs, self.uvs.len()),
+            ("triangle_normals", &self.triangle_normals, self.normals.len()),
+            ("vertices", &self.vertices, usize::MAX),
+        ];
+        for (name, list, count) in by_triangle {
+            if !list.is_empty() && list.len() != triangles {
+                return Err(format!("`{name}` has {} entries for {triangles} triangles", list.len()));
+            }
+            if !below(list, count) {
+                return Err(format!("an index of `{name}` is too large: there are {count}, counted from 0"));
+            }
+        }
+        let by_position =
+            [("colors", self.colors.len()), ("second_uvs", self.second_uvs.len()), ("tangents", self.tangents.len())];
+        match by_position.into_iter().find(|(_, count)| *count != 0 && *count < positions) {
+            Some((name, count)) => Err(format!("`{name}` has {count} entries for {positions} positions")),
+            None => Ok(()),
+        }
+    }
+
     /// Bytes that it takes in memory.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.positions)

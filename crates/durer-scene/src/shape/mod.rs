@@ -73,8 +73,8 @@ macro_rules! delegate {
             fn centered(&self) -> Option<(Self, Vec3)> {
                 match self { $(Primitive::$variant(s) => s.centered().map(|(s, moved)| (s.into(), moved)),)+ }
             }
-            fn flaw(&self) -> Option<&'static str> {
-                match self { $(Primitive::$variant(s) => s.flaw(),)+ }
+            fn validate(&self) -> Result<(), String> {
+                match self { $(Primitive::$variant(s) => s.validate(),)+ }
             }
         }
     };
@@ -292,9 +292,13 @@ pub trait Shape {
         None
     }
 
-    /// What is wrong with the values of its fields taken together, if anything.
-    fn flaw(&self) -> Option<&'static str> {
-        None
+    /// Checks its fields together. Each by itself has its rule in the statement.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the fields.
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
     }
 }
 

@@ -105,8 +105,11 @@ impl Shape for Quadric {
         a < 0.0 || a == 0.0 && (b > 0.0 || b == 0.0 && c < 0.0)
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let nothing = [self.squares, self.products, self.linear].iter().all(|v| *v == Vec3::ZERO);
-        nothing.then_some("a `Quadric` needs a number beside its `constant` that is not 0")
+        match nothing {
+            true => Err("a `Quadric` needs a number beside its `constant` that is not 0".into()),
+            false => Ok(()),
+        }
     }
 }

@@ -83,8 +83,11 @@ impl Shape for Rectangle {
         Surface::new(corner + u * e + v * f, e.cross(f), floor as f32, Vec2::new(u as f32, v as f32))
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let [e, f] = self.edges().map(|e| e.normalize_or_zero());
-        (e.cross(f).length() < 1e-6).then_some("the edges of a `Rectangle` must not be parallel")
+        match e.cross(f).length() < 1e-6 {
+            true => Err("the edges of a `Rectangle` must not be parallel".into()),
+            false => Ok(()),
+        }
     }
 }

@@ -101,8 +101,11 @@ impl Shape for Torus {
         Some((q - self.nearest(q)).length() < self.radii().1)
     }
 
-    fn flaw(&self) -> Option<&'static str> {
+    fn validate(&self) -> Result<(), String> {
         let hole = self.minor_radius < self.major_radius;
-        (!hole).then_some("`minorRadius` of a `Torus` must be less than its `majorRadius`")
+        match hole {
+            true => Ok(()),
+            false => Err("`minorRadius` of a `Torus` must be less than its `majorRadius`".into()),
+        }
     }
 }

@@ -20,6 +20,18 @@ described! {
 }
 
 impl VoxelGrid {
+    /// Checks its fields together.
+    ///
+    /// # Errors
+    ///
+    /// `min` is not less than `max` in some coordinate.
+    pub fn validate(&self) -> Result<(), String> {
+        match self.min.cmplt(self.max).all() {
+            true => Ok(()),
+            false => Err("each coordinate of this grid's `max` must be greater than that of its `min`".into()),
+        }
+    }
+
     /// The outer faces of the cells that the balls fill, two triangles each, counter-clockwise seen
     /// from outside.
     pub fn mesh(&self, balls: &[Sphere]) -> MeshData {

@@ -18,7 +18,7 @@ use durer_scene::dialect::{Dialect, Highlight, Rules, Secondary};
 use durer_scene::light::Light;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Scene;
-use durer_scene::source::Source;
+use durer_scene::source::MemorySource;
 use std::sync::Arc;
 
 /// A scene of ours in which every step can be seen, and the name of its file.
@@ -71,7 +71,7 @@ impl Stage {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
         let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
-        let source = Source::folder(".");
+        let source = MemorySource::default();
         let scene = course::read(OWN_SCENE.as_bytes(), file, options, &mut diagnostics).unwrap_or_default();
         let resources = Resources::new(&source, &Decoder, &mut files);
         let world = compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics);

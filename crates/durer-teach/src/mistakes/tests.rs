@@ -7,6 +7,7 @@ use crate::lesson::TOPICS;
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::course::{self, ReadOptions};
+use durer_formats::folder::FolderSource;
 use durer_image::compare::{Picture, Scale};
 use durer_image::{Image, Transfer};
 use durer_render::compile::{AccelKind, Resources, compile};
@@ -15,7 +16,6 @@ use durer_render::render::{Job, Sampling, center_ray};
 use durer_render::world::World;
 use durer_scene::dialect::{Dialect, Rules};
 use durer_scene::scene::Scene;
-use durer_scene::source::Source;
 use std::collections::BTreeSet;
 
 const SCENE: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0.1 1 0 angle 40 }
@@ -42,7 +42,7 @@ fn world_of(text: &str, rules: &Rules) -> (Scene, World) {
     let file = files.add("scene.txt", text.as_bytes().into());
     let options = ReadOptions { dialect: Dialect::Durer, strict: false, compat: 0 };
     let scene = course::read(text.as_bytes(), file, options, &mut diagnostics).unwrap();
-    let source = Source::folder(".");
+    let source = FolderSource::new(".");
     let resources = Resources::new(&source, &Decoder, &mut files);
     let world = compile(&scene, rules, AccelKind::Bvh, resources, &mut diagnostics).unwrap();
     (scene, world)

@@ -4,8 +4,8 @@
 use super::*;
 use crate::Decoder;
 use crate::course::random::Random;
+use crate::folder::FolderSource;
 use durer_render::compile::{AccelKind, Resources, compile};
-use durer_scene::source::Source;
 
 /// Reads a file in a dialect and, if that succeeds, compiles and writes it.
 fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &Source) {
@@ -22,7 +22,7 @@ fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &Source) {
 fn folder() -> (tempfile::TempDir, Source) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cube.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
-    let source = Source::folder(folder.path());
+    let source = FolderSource::new(folder.path());
     (folder, source)
 }
 

@@ -1,5 +1,6 @@
 //! What is written is read again as the same.
 
+use crate::folder::FolderSource;
 use crate::scene::{Output, SCENE_FORMATS};
 use crate::testing::{folder, read_in};
 use durer::{LoadOptions, load_text};
@@ -10,7 +11,6 @@ use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::{Backs, Walls};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Scene, Staging};
-use durer_scene::source::Source;
 
 /// A scene of our own language, as it is.
 fn scene(text: &str) -> Scene {
@@ -21,7 +21,7 @@ fn scene(text: &str) -> Scene {
 /// What a scene is after it was written and read, and what was told of the writing.
 fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
-    let source = Source::folder(folder.path());
+    let source = FolderSource::new(folder.path());
     let mut told = Diagnostics::default();
     let output = Output { name, source: &source, normals: MeshNormals::Flat, memory: u64::MAX };
     let write = SCENE_FORMATS.iter().find(|format| format.extensions.contains(&"glb")).unwrap().write.unwrap();

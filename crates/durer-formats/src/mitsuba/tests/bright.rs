@@ -4,6 +4,7 @@
 use super::conventions::{clean_in, picture};
 use super::{folder, material, read, read_in};
 use crate::beside::put_beside;
+use crate::folder::FolderSource;
 use durer::load::{LoadOptions, load_text};
 use durer_diag::Diagnostics;
 use durer_render::integrator::{Integrate, Path, Settings, Transport};
@@ -11,7 +12,6 @@ use durer_scene::light::Light;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::sampler::SampleId;
 use durer_scene::scene::{Material, PictureBytes};
-use durer_scene::source::Source;
 
 #[test]
 fn projectors_and_spots_throw_pictures() {
@@ -157,7 +157,7 @@ fn volumes_are_densities_where_their_transform_puts_them() {
         let scattered = m.transmission_scatter / m.transmission_depth;
         assert!((scattered - Vec3::new(2.7, 1.8, 0.9)).abs().max_element() < 1e-5, "{scattered}");
         // Beside the scene's text it is the same file.
-        let (made, beside) = put_beside(&scene, "kept", &Source::folder(&std::env::temp_dir()));
+        let (made, beside) = put_beside(&scene, "kept", &FolderSource::new(&std::env::temp_dir()));
         let Material::Principled(m) = material(&made) else { panic!() };
         assert_eq!(m.transmission_density.as_ref().unwrap().path, "kept/smoke.vol");
         assert!(beside.contains(&("kept/smoke.vol".to_string(), volume.clone())));

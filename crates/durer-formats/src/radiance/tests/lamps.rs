@@ -2,10 +2,10 @@
 
 use super::*;
 use crate::beside::put_beside;
+use crate::folder::FolderSource;
 use crate::photometry;
 use durer_scene::light::{Emitter, Light};
 use durer_scene::math::fp;
-use durer_scene::source::Source;
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -144,7 +144,7 @@ fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
     let scene = scene.unwrap();
     // The last is another text.
     assert_eq!((scene.assets.profiles.len(), scene.lights.as_ref().unwrap().len()), (2, 48));
-    let (made, beside) = put_beside(&scene, "kept", &Source::folder(files.path()));
+    let (made, beside) = put_beside(&scene, "kept", &FolderSource::new(files.path()));
     let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["kept/lamp-1.ies", "kept/lamp-2.ies"]);
     assert!(made.assets.is_empty());

@@ -177,7 +177,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
     let (left, right) = (origin(0.25), origin(-0.25));
     assert!((left.distance(right) - 0.2).abs() < 1e-6 && (right - left).dot(Vec3::new(1.0, 0.0, 0.5)) > 0.0);
     // An eye that sees a wall from its edge, walls without extent or right angle are refused.
-    let refused = |camera: CaveCamera| assert!(camera.problem().is_some(), "{camera:?}");
+    let refused = |camera: CaveCamera| assert!(camera.validate().is_err(), "{camera:?}");
     refused(CaveCamera { center: Vec3::new(5.0, 0.0, -1.0), eyes: Eyes::Middle, ..camera.clone() });
     refused(CaveCamera { walls: vec![[0.0; 9]], ..camera.clone() });
     refused(CaveCamera { walls: vec![[0.0, 0.0, -1.0, 1.0, 0.0, -1.0, 0.5, 1.0, -1.0]], ..camera });

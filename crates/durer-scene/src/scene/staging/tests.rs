@@ -80,7 +80,7 @@ fn points_flat_things_and_nothing_at_all_have_cameras_too() {
             let scene = staged(scene(corners.clone()), &staging);
             let camera = scene.camera.as_ref().unwrap();
             let pose = camera.pose();
-            assert!(pose.center.is_finite() && pose.direction.is_finite() && camera.problem().is_none());
+            assert!(pose.center.is_finite() && pose.direction.is_finite() && camera.validate().is_ok());
             let frame = CameraBasis::of(camera, CameraRules::default());
             points(&scene, &mut |p| {
                 let mut seen = false;

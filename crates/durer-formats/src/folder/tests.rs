@@ -2,7 +2,7 @@ use super::*;
 use std::os::unix::fs::symlink;
 
 /// `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source is of `scene`.
-fn house() -> (tempfile::TempDir, Source) {
+fn house() -> (tempfile::TempDir, FolderSource) {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir_all(root.path().join("scene/models")).unwrap();
     fs::create_dir(root.path().join("outside")).unwrap();
@@ -11,7 +11,7 @@ fn house() -> (tempfile::TempDir, Source) {
     {
         fs::write(root.path().join(name), text).unwrap();
     }
-    let source = Source::folder(root.path().join("scene"));
+    let source = FolderSource::new(root.path().join("scene"));
     (root, source)
 }
 
@@ -108,7 +108,7 @@ fn given_files_come_first_and_count_as_if_they_were_there() {
     fs::write(root.path().join("scene/none.obj"), "n").unwrap();
     source.read("near.obj").unwrap();
     source.read("none.obj").unwrap();
-    assert_eq!(source.digest(b""), given.digest(b""));
+    assert_eq!(source.record().digest(b""), given.record().digest(b""));
 }
 
 #[test]

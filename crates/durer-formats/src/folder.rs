@@ -1,0 +1,277 @@
+//! Bytes from folders: the only place that opens a scene's files for reading.
+//!
+//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes.
+
+use durer_diag::did_you_mean;
+use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp, is_packed, unpacked_file};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::UNIX_EPOCH;
+
+/// Files of folders, of which a scene may read so many bytes. Files lie in and below allowed folders.
+#[derive(Debug)]
+pub struct FolderSource {
+    /// Folders in which a relative name is looked for, in this order.
+    search: Vec<PathBuf>,
+    /// Folders below which a file must lie; empty: anywhere.
+    allowed: Vec<PathBuf>,
+    /// Folders in which a file is also looked for by its last name alone.
+    assets: Vec<PathBuf>,
+    /// Files that are in no folder, by name: these are looked at first.
+    given: BTreeMap<String, Arc<[u8]>>,
+    record: ReadRecord,
+    progress: Mutex<Progress>,
+}
+
+/// How much was read.
+#[derive(Clone, Debug)]
+struct Progress {
+    /// Bytes that may still be read.
+    left: u64,
+    /// Where the files are that were read.
+    paths: Vec<PathBuf>,
+}
+
+impl Clone for FolderSource {
+    fn clone(&self) -> Self {
+        FolderSource {
+            search: self.search.clone(),
+            allowed: self.allowed.clone(),
+            assets: self.assets.clone(),
+            given: self.given.clone(),
+            record: self.record.clone(),
+            progress: Mutex::new(self.progress().clone()),
+        }
+    }
+}
+
+impl FolderSource {
+    /// The most that is read for one scene, unless [`FolderSource::budget`] says otherwise: 4 GiB.
+    pub const DEFAULT_BUDGET: u64 = 4 << 30;
+
+    /// Files in and below one folder.
+    pub fn new(folder: impl Into<PathBuf>) -> Self {
+        let folder = folder.into();
+        FolderSource {
+            search: vec![folder.clone()],
+            allowed: vec![folder],
+            assets: Vec::new(),
+            given: BTreeMap::new(),
+            record: ReadRecord::default(),
+            progress: Mutex::new(Progress { left: FolderSource::DEFAULT_BUDGET, paths: Vec::new() }),
+        }
+    }
+
+    /// Looks in another folder too: before the others if `first`. That allows nothing.
+    pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
+        let at = if first { 0 } else { self.search.len() };
+        self.search.insert(at, folder.into());
+        self
+    }
+
+    /// Allows files in and below another folder.
+    pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
+        // Where everything is allowed, so is this.
+        if !self.allowed.is_empty() {
+            self.allowed.push(folder.into());
+        }
+        self
+    }
+
+    /// Looks in a folder by path and, failing that, by bare file name.
+    pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
+        let folder = folder.into();
+        self.assets.push(folder.clone());
+        self.look_in(folder.clone(), false).allow(folder)
+    }
+
+    /// Has a file by some name that is in no folder, or instead of the one there.
+    pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
+        self.given.insert(name.into(), bytes);
+        self
+    }
+
+    /// Allows files anywhere.
+    pub fn allow_outside(mut self) -> Self {
+        self.allowed.clear();
+        self
+    }
+
+    /// Sets how many bytes may be read.
+    pub fn budget(self, bytes: u64) -> Self {
+        self.progress().left = bytes;
+        self
+    }
+
+    fn progress(&self) -> MutexGuard<'_, Progress> {
+        self.progress.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Where the files are that were read, or tried to be.
+    pub fn paths(&self) -> Vec<PathBuf> {
+        self.progress().paths.clone()
+    }
+
+    /// Where the file of that name is, if there is one that may be read.
+    pub fn place(&self, name: &str) -> Option<PathBuf> {
+        self.find(name).ok().filter(|path| path.is_file())
+    }
+
+    /// The first place where a file of that name is, and may be read.
+    fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
+        // Scenes from Windows may write backslashes.
+        let portable = name.replace('\\', "/");
+        let path = Path::new(&portable);
+        let bare = path.file_name().map(Path::new);
+        let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
+        candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
+        let mut outside = false;
+        for candidate in &candidates {
+            let Ok(real) = candidate.canonicalize() else { continue };
+            if self.allows(&real) {
+                return Ok(real);
+            }
+            outside = true;
+        }
+        Err(match outside {
+            true => SourceError::Outside { name: name.into() },
+            false => SourceError::Missing { name: name.into(), near: None, tried: candidates },
+        })
+    }
+
+    /// A file beside the candidates that has nearly the name of one. What may not be read is not
+    /// listed either.
+    fn near(&self, candidates: &[PathBuf]) -> Option<String> {
+        candidates.iter().find_map(|path| {
+            let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
+            let names: Vec<String> = fs::read_dir(folder)
+                .ok()?
+                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+                .take(10_000)
+                .collect();
+            did_you_mean(path.file_name()?.to_str()?, names.iter().map(String::as_str)).map(str::to_string)
+        })
+    }
+
+    fn allows(&self, real: &Path) -> bool {
+        let below = |folder: &PathBuf| folder.canonicalize().is_ok_and(|folder| real.starts_with(folder));
+        self.allowed.is_empty() || self.allowed.iter().any(below)
+    }
+
+    /// Reads a file wherever it is, and adds nothing to the record. `name` is for messages.
+    ///
+    /// # Errors
+    ///
+    /// [`SourceError`], among others if the budget is used up.
+    pub fn read_path(&self, path: &Path, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        let io = |error| SourceError::Io { name: name.into(), error };
+        self.progress().paths.push(path.into());
+        let metadata = fs::metadata(path).map_err(io)?;
+        if !metadata.is_file() {
+            return Err(SourceError::NotAFile { name: name.into() });
+        }
+        let left = self.progress().left;
+        let too_large = |size| SourceError::TooLarge { name: name.into(), size, left };
+        if metadata.len() > left {
+            return Err(too_large(metadata.len()));
+        }
+        // A file that grows while it is read is still bounded.
+        let bytes = all_of(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
+        if bytes.len() as u64 > left {
+            return Err(too_large(bytes.len() as u64));
+        }
+        self.progress().left = left - bytes.len() as u64;
+        Ok(bytes)
+    }
+}
+
+impl AssetSource for FolderSource {
+    fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        if let Some(bytes) = self.given.get(name) {
+            self.record.add(name, bytes);
+            return Ok(bytes.clone());
+        }
+        match self.find(name) {
+            Ok(path) => self.read_path(&path, name).inspect(|bytes| self.record.add(name, bytes)),
+            Err(SourceError::Missing { name, tried, .. }) => {
+                Err(SourceError::Missing { near: self.near(&tried), name, tried })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
+        let bytes = self.read(name)?;
+        if !is_packed(&bytes) {
+            return Ok(bytes);
+        }
+        let left = self.progress().left;
+        let all = unpacked_file(name, &bytes, left)?;
+        self.progress().left = left - all.len() as u64;
+        Ok(all)
+    }
+
+    fn read_user_file(&self, path: &Path) -> Result<Arc<[u8]>, SourceError> {
+        let name = path.display().to_string();
+        self.read_path(path, &name).inspect(|bytes| self.record.add(&name, bytes))
+    }
+
+    fn contains(&self, name: &str) -> bool {
+        self.given.contains_key(name) || self.find(name).is_ok()
+    }
+
+    fn record(&self) -> &ReadRecord {
+        &self.record
+    }
+
+    fn stamp(&self, name: &str) -> Option<Stamp> {
+        if self.given.contains_key(name) {
+            return None;
+        }
+        stamp_of(&self.find(name).ok()?)
+    }
+
+    fn skip_reading(&self, name: &str, stamp: &Stamp, digest: Digest) {
+        self.record.add_digest(name, digest);
+        self.progress().paths.push(stamp.path.clone());
+    }
+}
+
+/// Version of the file at a path; `None` if there is nothing.
+pub fn stamp_of(path: &Path) -> Option<Stamp> {
+    let metadata = fs::metadata(path).ok()?;
+    #[cfg(unix)]
+    let number = std::os::unix::fs::MetadataExt::ino(&metadata);
+    #[cfg(not(unix))]
+    let number = 0;
+    let modified = match metadata.modified().ok()?.duration_since(UNIX_EPOCH) {
+        Ok(after) => after.as_nanos() as i128,
+        Err(before) => -(before.duration().as_nanos() as i128),
+    };
+    Some(Stamp { path: path.into(), modified, size: metadata.len(), number })
+}
+
+/// All bytes of a file of about some size, and of one that has grown at most one more than is
+/// allowed. Those of a file of that size are written once, where they stay.
+fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
+    let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
+    let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();
+    loop {
+        match file.read(room) {
+            Ok(0) => break,
+            Ok(count) => room = &mut std::mem::take(&mut room)[count..],
+            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(error) => return Err(error),
+        }
+    }
+    let read = size - room.len();
+    let mut more = Vec::new();
+    file.take(most.saturating_add(1).saturating_sub(read as u64)).read_to_end(&mut more)?;
+    Ok(if read == size && more.is_empty() { bytes } else { [&bytes[..read], &more].concat().into() })
+}
+
+#[cfg(test)]
+mod tests;

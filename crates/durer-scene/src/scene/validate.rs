@@ -1,0 +1,232 @@
+//! Validation of a scene: every value of every field against its rule, and the fields of a thing
+//! together.
+//!
+//! Readers check what they read and report it at its place in the file. This is for scenes built in
+//! code, and for formats whose readers take a value as it comes.
+
+use super::{Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Scene, Spanned};
+use crate::camera::Projection;
+use crate::describe::{DescribedList, Value};
+use crate::dialect::Dialect;
+use crate::light::Emitter;
+use crate::material::Pattern;
+use crate::medium::Fog;
+use crate::shape::Shape;
+use crate::texture::CieSky;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+
+/// Levels of objects inside each other that a scene may have. The scene language allows 200, each of
+/// which is at most three here.
+pub const MAX_NESTING: usize = 640;
+
+/// Levels of materials made of other materials, and leaves that one such material may have.
+const MAX_MATERIAL_NESTING: u32 = 64;
+const MAX_MATERIAL_PARTS: u64 = 4096;
+
+impl Scene {
+    /// Checks all values: each field against its rule, that numbers are finite, fields that go
+    /// together, numbers of materials, and nesting. Errors only; compiling a scene asks this first.
+    ///
+    /// An object read from a file may have the number of a material that does not exist: readers
+    /// warn of it, and the object is drawn in plain grey, as by the course's programs.
+    pub fn validate(&self) -> Diagnostics {
+        let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len() };
+        if let Some(camera) = &self.camera {
+            found.thing(camera, self.camera_span, Projection::validate);
+        }
+        found.thing(&self.background, self.background_span, Background::validate);
+        if let Some(Spanned { value, span }) = &self.fog {
+            found.thing(value, *span, Fog::validate);
+        }
+        for Spanned { value, span } in self.lights.iter().flatten() {
+            found.thing(value, *span, Emitter::validate);
+        }
+        self.materials.iter().for_each(|material| found.material(material));
+        found.nested_materials(self);
+        if let Some(root) = &self.root {
+            found.group(root, 1);
+        }
+        found.assets(self);
+        if self.lumens.is_some_and(|lumens| !lumens.is_finite()) {
+            found.error("Scene: lumens must be finite", Span::default());
+        }
+        found.diagnostics
+    }
+}
+
+impl Background {
+    /// Checks its fields together.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, if the sun's place is given twice, in part or by a time that does not exist, or a
+    /// standard sky lacks the sun that it depends on.
+    pub fn validate(&self) -> Result<(), String> {
+        let sun = self.way_to_sun()?;
+        let lacks_sun = self.environment.is_none() && self.cie_sky.is_some_and(CieSky::wants_sun) && sun.is_none();
+        match lacks_sun {
+            true => Err("this `cieSky` is brightest about the sun, and no `sun` says where that is".into()),
+            false => Ok(()),
+        }
+    }
+}
+
+impl Fog {
+    /// Checks its fields together.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, if only one corner of its box is given, or the box is empty.
+    pub fn validate(&self) -> Result<(), String> {
+        match (self.min, self.max) {
+            (Some(min), Some(max)) if !min.cmplt(max).all() => {
+                Err("each coordinate of this fog's `max` must be greater than that of its `min`".into())
+            }
+            (Some(_), None) | (None, Some(_)) => Err("a box of fog needs both `min` and `max`".into()),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Collects what is wrong.
+struct Validator {
+    diagnostics: Diagnostics,
+    /// How many materials the scene has.
+    materials: usize,
+}
+
+impl Validator {
+    fn error(&mut self, message: impl Into<String>, span: Span) {
+        let error = Diagnostic::error(message).code("bad-value");
+        self.diagnostics.push(if span.is_place() { error.at(span) } else { error });
+    }
+
+    /// Checks the fields of a thing one by one and, if all are valid, together.
+    fn thing<T: DescribedList>(&mut self, thing: &T, span: Span, together: impl FnOnce(&T) -> Result<(), String>) {
+        let name = thing.keyword(Dialect::Durer);
+        let mut is_valid = true;
+        for (at, field) in thing.fields().iter().enumerate() {
+            let Some(value) = thing.get(at) else { continue };
+            if let Err(violation) = field.rule.validate(&value) {
+                is_valid = false;
+                self.error(format!("{name}: {}{} {violation}", field.name, shown(&value)), span);
+            }
+        }
+        if is_valid && let Err(message) = together(thing) {
+            let error = Diagnostic::error(message).code("bad-value");
+            let error = if span.is_place() { error.at(span) } else { error };
+            let lacks_sun = error.message.contains("`cieSky`");
+            let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
+            self.diagnostics.push(if lacks_sun { error.help(help) } else { error });
+        }
+    }
+
+    fn material(&mut self, material: &Spanned<Material>) {
+        let span = material.span;
+        match &material.value {
+            Material::Phong(phong, noise) => {
+                self.thing(&**phong, span, |_| Ok(()));
+                if let Some(noise) = noise {
+                    self.thing(noise, span, |_| Ok(()));
+                }
+            }
+            Material::Principled(layers) => self.thing(&**layers, span, |_| Ok(())),
+            Material::Hair(hair) => self.thing(hair, span, |_| Ok(())),
+            Material::Solid(solid, ops) => {
+                self.thing(solid, span, |_| Ok(()));
+                self.matrices(ops, span);
+            }
+        }
+    }
+
+    /// Refuses materials that are made of themselves or later ones, nested too deeply, or of too
+    /// many parts.
+    fn nested_materials(&mut self, scene: &Scene) {
+        // How deep each material is nested, and of how many parts it is made at most.
+        let mut sizes: Vec<(u32, u64)> = Vec::with_capacity(scene.materials.len());
+        for material in &scene.materials {
+            let Material::Solid(solid, _) = &material.value else {
+                sizes.push((0, 1));
+                continue;
+            };
+            let parts = solid.materials().map(|i| sizes.get(i as usize).copied());
+            let [Some(first), Some(second)] = parts else {
+                return self.error("a solid material is made of earlier ones", material.span);
+            };
+            let (nesting, parts) = (1 + first.0.max(second.0), first.1 + second.1);
+            if nesting > MAX_MATERIAL_NESTING || parts > MAX_MATERIAL_PARTS {
+                let message = format!("this material is made of others {nesting} deep and {parts} in all");
+                let help = format!("at most {MAX_MATERIAL_NESTING} deep and {MAX_MATERIAL_PARTS} in all are allowed");
+                let error = Diagnostic::error(message).code("bad-value").help(help);
+                return self.diagnostics.push(if material.span.is_place() { error.at(material.span) } else { error });
+            }
+            sizes.push((nesting, parts));
+        }
+    }
+
+    fn group(&mut self, group: &Group, level: usize) {
+        group.objects.iter().for_each(|object| self.object(object, level));
+    }
+
+    fn object(&mut self, object: &Object, level: usize) {
+        let span = object.span;
+        if level > MAX_NESTING {
+            return self.error(format!("objects are nested deeper than {MAX_NESTING}"), span);
+        }
+        if let Some(index) = object.material
+            && index as usize >= self.materials
+            && !span.is_place()
+        {
+            let count = self.materials;
+            self.error(format!("an object has material {index}, but the scene has {count}, counted from 0"), span);
+        }
+        match &object.node {
+            Node::Group(group) => self.group(group, level + 1),
+            Node::Transform(ops, inner) => {
+                self.matrices(ops, span);
+                self.object(inner, level + 1);
+            }
+            Node::Solid(_, parts) => parts.iter().for_each(|part| self.object(part, level + 1)),
+            Node::Primitive(shape) => self.thing(shape, span, Shape::validate),
+            Node::Mesh(mesh) => self.thing(mesh, span, |_| Ok(())),
+            Node::HeightField(field) => self.thing(field, span, |field| field.validate()),
+            Node::Voxels(grid, balls) => {
+                self.thing(grid, span, |grid| grid.validate());
+                balls.iter().for_each(|ball| self.thing(ball, span, Shape::validate));
+            }
+        }
+    }
+
+    fn matrices(&mut self, ops: &[MatrixOp], span: Span) {
+        if ops.iter().any(|op| !op.matrix().is_finite()) {
+            self.error("the numbers of a transform must be finite", span);
+        }
+    }
+
+    fn assets(&mut self, scene: &Scene) {
+        for (name, mesh) in &scene.assets.meshes {
+            if let Err(message) = mesh.validate() {
+                self.error(format!("mesh `{name}`: {message}"), Span::default());
+            }
+        }
+        for (name, picture) in &scene.assets.pictures {
+            let texture = NamedTexture::with_mapping(name, picture.bytes.path(), picture.mapping);
+            self.thing(&texture, Span::default(), |_| Ok(()));
+        }
+    }
+}
+
+/// A short value for a message, with a blank before it; nothing for rows.
+fn shown(value: &Value) -> String {
+    match value {
+        Value::Float(x) => format!(" {x}"),
+        Value::Int(i) => format!(" {i}"),
+        Value::Vec3(v) => format!(" {} {} {}", v.x, v.y, v.z),
+        Value::Path(name) => format!(" {}", name.path),
+        Value::Word(word) => format!(" {word}"),
+        Value::Rows(_) => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests;
