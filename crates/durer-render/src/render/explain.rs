@@ -8,6 +8,7 @@ mod text;
 use super::aim::PixelSample;
 use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
+use super::run::Until;
 use super::samples::Samples;
 pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, center_ray, raster, render};
@@ -198,7 +199,7 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
     if job.adaptive {
         let part = PartialRender::new(world, &Job { crop: Some(window), ..job.clone() }, Shard::WHOLE)?;
-        part.render_to(world, &Control::default(), &mut |_, _| {}, pilot(samples))?;
+        part.render_to(world, &Control::default(), &mut |_, _| {}, Until::Samples(pilot(samples)))?;
         part.allocate();
         return Ok(part.target(x, y).unwrap_or(samples));
     }
