@@ -2,7 +2,7 @@
 
 use durer::prelude::*;
 
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::look_at(vec3(0.0, 2.0, 8.0), vec3(0.0, 0.5, 0.0), 35.0));
 

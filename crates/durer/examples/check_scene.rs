@@ -3,7 +3,7 @@
 use durer::check::{Subject, check};
 use durer::prelude::*;
 
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::look_at(vec3(0.0, 0.0, 5.0), vec3(0.0, 0.0, 9.0), 40.0));
     scene.light(DirectionalLight::default());

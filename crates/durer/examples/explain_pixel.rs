@@ -3,7 +3,7 @@
 use durer::prelude::*;
 use durer::render::explain::explain;
 
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::look_at(vec3(0.0, 0.0, 5.0), Vec3::ZERO, 40.0));
     scene.light(DirectionalLight { direction: vec3(0.0, 0.0, -1.0), ..Default::default() });

@@ -2,7 +2,7 @@
 
 use durer::prelude::*;
 
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     let mut scene = Scene::builder();
     scene.camera(PerspectiveCamera::default());
     scene.add(Sphere { center: vec3(0.0, 0.0, -5.0), radius: 1.0 });

@@ -3,7 +3,7 @@
 use durer::prelude::*;
 use std::path::PathBuf;
 
-pub fn main() -> Result<(), Error> {
+pub(crate) fn main() -> Result<(), Error> {
     let mut arguments = std::env::args_os().skip(1).map(PathBuf::from).filter(|path| path.is_file());
     let own = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/glass.txt");
     let scene = arguments.next().unwrap_or_else(|| own.into());
