@@ -6,7 +6,7 @@
 
 use durer_scene::dialect::MeshNormals;
 use durer_scene::material::principled::Walls;
-use durer_scene::scene::{Group, Material, MatrixOp, Node, Object, Scene};
+use durer_scene::scene::{Group, Material, MatrixOp, MatrixRules, Node, Object, Scene};
 use durer_scene::shape::mesh::NO_INDEX;
 use durer_scene::shape::{Mesh, MeshData};
 use glam::{DAffine3, DVec3};
@@ -17,7 +17,9 @@ use std::sync::Arc;
 fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     match &object.node {
         Node::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
-        Node::Transform(ops, inner) => mesh_of(inner).map(|(name, map)| (name, MatrixOp::product(ops, 0) * map)),
+        Node::Transform(ops, inner) => {
+            mesh_of(inner).map(|(name, map)| (name, MatrixOp::product(ops, MatrixRules::default()) * map))
+        }
         _ => None,
     }
 }

@@ -2,17 +2,27 @@
 //!
 //! To add a format: one file beside the others and one row in [`FORMATS`].
 
+#[cfg(feature = "codecs")]
 mod bmp;
+#[cfg(any(feature = "codecs", feature = "jpeg", feature = "webp"))]
 mod codec;
+#[cfg(feature = "exr")]
 mod exr;
+#[cfg(feature = "codecs")]
 mod hdr;
+#[cfg(feature = "jpeg")]
 mod jpeg;
+#[cfg(feature = "ktx2")]
 mod ktx2;
 mod pfm;
+#[cfg(feature = "codecs")]
 mod png;
+#[cfg(feature = "codecs")]
 mod ppm;
 mod rows;
+#[cfg(feature = "codecs")]
 mod tga;
+#[cfg(feature = "webp")]
 mod webp;
 
 pub use rows::{RowFormat, RowWriter, Strip};
@@ -21,15 +31,36 @@ use super::limits;
 use super::{Display, Image, Image8, ImageError, Layer, LayerKind, Transfer};
 use crate::panics::caught;
 use durer_diag as diag;
+#[cfg(feature = "codecs")]
 use rayon::prelude::*;
 use std::path::Path;
 
 /// Every format that is known, in the order in which content is tried.
-pub static FORMATS: &[Format] =
-    &[png::FORMAT, tga::FORMAT, bmp::FORMAT, ppm::FORMAT, pfm::FORMAT, exr::FORMAT, hdr::FORMAT];
+pub static FORMATS: &[Format] = &[
+    #[cfg(feature = "codecs")]
+    png::FORMAT,
+    #[cfg(feature = "codecs")]
+    tga::FORMAT,
+    #[cfg(feature = "codecs")]
+    bmp::FORMAT,
+    #[cfg(feature = "codecs")]
+    ppm::FORMAT,
+    pfm::FORMAT,
+    #[cfg(feature = "exr")]
+    exr::FORMAT,
+    #[cfg(feature = "codecs")]
+    hdr::FORMAT,
+];
 
 /// Formats that are read and not written.
-static READ_ONLY: &[Format] = &[jpeg::FORMAT, webp::FORMAT, ktx2::FORMAT];
+static READ_ONLY: &[Format] = &[
+    #[cfg(feature = "jpeg")]
+    jpeg::FORMAT,
+    #[cfg(feature = "webp")]
+    webp::FORMAT,
+    #[cfg(feature = "ktx2")]
+    ktx2::FORMAT,
+];
 
 /// What a file holds for each channel of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -212,6 +243,7 @@ fn display(layer: &Layer, options: &WriteOptions) -> Display {
 
 /// The bytes of an eight-bit picture: red, green and blue, the top row first. They are made by all
 /// threads.
+#[cfg(feature = "codecs")]
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
     const STEP: usize = 1 << 14;
     let (strip, pixels) = (Strip { alpha: false, ..Strip::of(layer, options) }, &layer.image.pixels);

@@ -6,6 +6,7 @@
 
 mod color;
 pub mod compare;
+mod content;
 pub mod denoise;
 mod display;
 mod error;
@@ -13,7 +14,9 @@ mod formats;
 mod limits;
 pub mod panics;
 mod read;
+#[cfg(feature = "fs")]
 mod save;
+#[cfg(feature = "fs")]
 mod temporary;
 mod transfer;
 
@@ -21,6 +24,7 @@ mod transfer;
 mod conformance;
 
 pub use color::{Color, LUMINANCE};
+pub use content::Content;
 pub use display::{Display, Tone};
 pub use error::ImageError;
 pub use formats::{
@@ -28,7 +32,8 @@ pub use formats::{
 };
 pub use limits::{checked_count, pixel_limit};
 pub use read::{Encoded, read, read_srgb, read8};
-pub use save::{Content, Destination, SaveError, save, save_all};
+#[cfg(feature = "fs")]
+pub use save::{Destination, SaveError, save, save_all};
 pub use transfer::{Transfer, decode_linear, decode_srgb, linear_from_srgb};
 
 use durer_bvh::math::Vec3;

@@ -5,9 +5,10 @@
 //! the old one's permissions, or those of an ordinary new file; links to it (hard ones) are not
 //! followed, symbolic ones are.
 
+use super::content::Content;
 use super::temporary::{Temporary, remove_stale};
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Why a file could not be saved. The old file, if there is one, is as it was.
@@ -92,21 +93,6 @@ impl Destination {
     /// Whether it is a device or a pipe, in which nothing can be replaced.
     pub fn is_stream(&self) -> bool {
         self.stream.is_some()
-    }
-}
-
-/// What can be put into a file: bytes, or what becomes bytes while it is written.
-pub trait Content {
-    /// Writes all of it.
-    ///
-    /// # Errors
-    /// Those of `out`.
-    fn write_to(&self, out: &mut dyn Write) -> io::Result<()>;
-}
-
-impl<B: AsRef<[u8]>> Content for B {
-    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
-        out.write_all(self.as_ref())
     }
 }
 

@@ -376,6 +376,11 @@ pub trait DescribedList: Sized {
         self.keywords().iter().all(|(_, set)| *set == Dialect::Durer as DialectSet)
     }
 
+    /// Its keyword in our own dialect.
+    fn own_keyword(&self) -> &'static str {
+        self.keyword(Dialect::Durer)
+    }
+
     /// A thing with default values, by a keyword of any dialect.
     fn from_keyword(word: &str) -> Option<Self> {
         Self::kinds().into_iter().find(|kind| kind.keywords().iter().any(|(keyword, _)| *keyword == word))

@@ -301,11 +301,11 @@ compats! {
     /// is the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2, kept between
     /// 0 and 1.
     ConicRings = "conic-rings",
-    /// A checkerboard of two solid materials has its cells swapped: on in no dialect, as one official
-    /// picture of 2004 shows it (`output6_18a`) and another of the same scene does not.
+    /// A checkerboard of two solid materials has its cells swapped, as in one official picture of
+    /// 2004 (`output6_18a`). On in no dialect: another picture of the same scene does not have it.
     SwappedBoards = "swapped-boards",
-    /// Shading normals of transformed things go by the matrix itself and not by its inverse
-    /// transpose: no official program's quirk, but a usual mistake.
+    /// Shading normals are transformed by the matrix itself, not by its inverse transpose. On in no
+    /// dialect: a usual mistake, which the lecture shows.
     MovedNormals = "moved-normals",
 }
 

@@ -1,7 +1,9 @@
 //! The one error of this crate's own functions.
 
 use durer_diag::{Diagnostics, Files, Severity};
-use durer_image::{ImageError, SaveError};
+use durer_image::ImageError;
+#[cfg(feature = "fs")]
+use durer_image::SaveError;
 use durer_render::render::RenderError;
 use durer_scene::source::SourceError;
 
@@ -22,6 +24,7 @@ pub enum Error {
     #[error(transparent)]
     Image(#[from] ImageError),
     /// The file was not written.
+    #[cfg(feature = "fs")]
     #[error(transparent)]
     Save(#[from] SaveError),
     /// The scene's file was not read.

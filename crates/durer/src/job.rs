@@ -7,9 +7,10 @@
 use durer_diag::did_you_mean;
 use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
-use durer_render::film::course::CourseFilter;
+
 use durer_render::film::false_color::LightScale;
 use durer_render::integrator::{Method, Settings};
+use durer_render::render::course::CourseFilter;
 use durer_render::render::{Crop, Job, Sampling};
 use durer_scene::camera::{Projection, Raster};
 use durer_scene::describe::{DescribedList, Field, Value};

@@ -3,9 +3,12 @@
 use crate::compiled::CompiledScene;
 use crate::error::Error;
 use crate::job::RenderJob;
-use durer_image::{Image, Layer, Transfer, WriteOptions, format_for, save};
+use durer_image::{Image, Layer};
+#[cfg(feature = "fs")]
+use durer_image::{Transfer, WriteOptions, format_for, save};
 use durer_render::render::{Control, Progress, ProgressiveRender, RenderError};
 use durer_scene::math::Color;
+#[cfg(feature = "fs")]
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
@@ -100,6 +103,7 @@ impl Iterator for Renderer<'_> {
 #[derive(Clone, Debug)]
 pub struct Picture {
     layer: Layer,
+    #[cfg_attr(not(feature = "fs"), expect(dead_code))]
     attributes: Vec<(&'static str, String)>,
 }
 
@@ -136,6 +140,7 @@ impl Picture {
     ///
     /// [`Error::Image`]: there is no such format, or it cannot have such pictures. [`Error::Save`]:
     /// the file cannot be written.
+    #[cfg(feature = "fs")]
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();
         let options = WriteOptions { display: Transfer::Srgb.into(), attributes: &self.attributes };

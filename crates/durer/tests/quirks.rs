@@ -235,7 +235,7 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
             Whitted { world, settings, cancel: None }.radiance(&ray, &mut ())
         };
         close(through(&world), [(1.0 - r0) * (1.0 - r0); 3]);
-        world.edit().rules.compat |= Compat::ExitR0.bit();
+        world.edit().shading.exit_r0 = true;
         close(through(&world), [1.0 - r0; 3]);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Emitter, Illumination};
 use crate::describe::{FileName, Rule, described};
-use crate::dialect::{Rules, set};
+use crate::dialect::set;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
 
@@ -22,10 +22,6 @@ impl Emitter for GlowLight {
     fn illuminate(&self, point: DVec3) -> Illumination {
         let offset = (self.position.as_dvec3() - point).as_vec3();
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance: offset.length(), color: self.color }
-    }
-
-    fn with_rules(&self, _: &Rules) -> Self {
-        self.clone()
     }
 
     fn color(&self) -> Color {

@@ -1,6 +1,6 @@
 //! Light that goes back whence it came, as from a cat's eye.
 
-use super::{Scatter, Scattered};
+use super::{LobeKind, Scatter, Scattered};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -17,7 +17,7 @@ impl Scatter for Retro {
         Some(Scattered { wi: wo, value: Spectrum::ONE })
     }
 
-    fn is_delta(&self) -> bool {
-        true
+    fn kind(&self) -> LobeKind {
+        LobeKind::MIRROR
     }
 }

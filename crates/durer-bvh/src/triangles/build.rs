@@ -1,6 +1,7 @@
 //! Making a tree of triangles, and making it fit again when vertices have moved.
 
-use super::tree::{TAG, TriangleBvh, number};
+use super::rows::{number, put};
+use super::tree::TriangleBvh;
 use crate::BuildError;
 use crate::build::{self, BuildQuality, BuildSettings, is_finite};
 use crate::lanes::{ROOM_OF_ROWS, ROWS, listed};
@@ -176,15 +177,6 @@ impl TriangleBvh {
             }
         });
     }
-}
-
-/// Writes a triangle into the rows of a leaf of so many, which begin with its own lane. One with a
-/// corner that is no finite point is none.
-pub(super) fn put(rows: &mut [f32], count: usize, number: u32, corners: [Vec3; 3]) {
-    let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };
-    let tagged = f32::from_bits(number | TAG);
-    let column = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, tagged];
-    rows.iter_mut().step_by(count).zip(column).for_each(|(to, x)| *to = x);
 }
 
 fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {

@@ -3,11 +3,13 @@
 
 mod build;
 mod fetch;
+mod height_grid;
 mod heights;
 mod leaf;
 mod nearest;
 mod packet;
 mod query;
+mod rows;
 mod stored;
 mod stream;
 mod tree;
@@ -17,12 +19,12 @@ use super::node;
 use super::{TraversalCounter, TraversalStats};
 use crate::math::{self, Aabb, Ray, Vec3};
 use crate::watertight::WatertightRay;
-pub use heights::HeightGrid;
+pub use height_grid::HeightGrid;
 pub use nearest::NearestPoint;
 use query::{All, Any, Filter, Filtered, HitCollector, Nearest, Query};
+use rows::number;
 use std::cell::Cell;
 use std::mem::MaybeUninit;
-use tree::number;
 pub use tree::{Facing, TriangleBvh, TriangleHit};
 
 /// Asks with or without counting nodes and tests, as the counter wants it.

@@ -1,6 +1,7 @@
 //! The point of a mesh that is nearest to another point.
 
-use super::tree::{TriangleBvh, number};
+use super::rows::number;
+use super::tree::TriangleBvh;
 use crate::lanes::{ROWS, Rows, WIDTH};
 use crate::math::Vec3;
 use crate::node::{self, LEAF, WideNode};

@@ -2,7 +2,8 @@
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
-use super::tree::{Facing, TriangleBvh, TriangleHit, number};
+use super::rows::number;
+use super::tree::{Facing, TriangleBvh, TriangleHit};
 use crate::TraversalCounter;
 use crate::lanes::{Columns, Kernel, Lanes, Rows, WIDTH};
 use crate::math::{Ray, Vec2};

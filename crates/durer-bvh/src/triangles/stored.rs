@@ -5,7 +5,8 @@
 //! rows of leaves; and a checksum of all that. Whoever reads trusts nothing: a tree that is
 //! accepted leads no ray out of memory, in no circle, and no deeper than a stack is high.
 
-use super::tree::{TAG, TriangleBvh};
+use super::rows::TAG;
+use super::tree::TriangleBvh;
 use crate::LoadError;
 use crate::lanes::{ROOM_OF_ROWS, ROWS, WIDTH};
 use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};

@@ -1,6 +1,6 @@
 //! What a tree of triangles is, and what it answers with.
 
-use super::heights::HeightGrid;
+use super::height_grid::HeightGrid;
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
 use crate::math::{Aabb, Vec2};
 use crate::node::{self, WideNode};
@@ -8,16 +8,6 @@ use crate::watertight::WatertightRay;
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 use std::sync::{Arc, OnceLock};
-
-/// Makes a number below 2^28 an `f32` of ordinary size: what is read past the end of a row is
-/// computed with, and tiny numbers are slow.
-pub(super) const TAG: u32 = 1 << 30;
-
-/// The number of a triangle of a leaf, by its rows and the count of its triangles.
-#[inline(always)]
-pub(super) fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
-    rows[(ROWS - 1) * count + lane].to_bits() & !TAG
-}
 
 /// Where a ray meets a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,10 +7,10 @@ use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::DescribedList;
-use durer_scene::dialect::{Dialect, set};
+use durer_scene::dialect::{Compat, Dialect, set};
 use durer_scene::light::Light;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{Group, MatrixOp, Node, Object, Operation, Spanned};
+use durer_scene::scene::{Group, MatrixOp, MatrixRules, Node, Object, Operation, Spanned};
 use durer_scene::shape::{HeightField, Primitive, TriangleMesh};
 use glam::DVec3;
 
@@ -45,9 +45,15 @@ impl Reader<'_, '_> {
         }
     }
 
+    /// Rules of products of matrices, by the quirks that are asked for.
+    fn matrix_rules(&self) -> MatrixRules {
+        let has = |compat: Compat| self.options.compat & compat.bit() != 0;
+        MatrixRules { matrix_on_left: has(Compat::MatrixOnLeft), dropped_shear: has(Compat::DroppedShear) }
+    }
+
     fn root_node(&mut self, keyword: Span) {
         let mut inside = self.node(keyword);
-        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), self.options.compat);
+        let to_world = MatrixOp::product(inside.ops.as_deref().unwrap_or_default(), self.matrix_rules());
         let lights = std::mem::take(&mut inside.lights).into_iter().map(|(mut light, position)| {
             if let Light::Point(point) = &mut light.value {
                 point.position = to_world.transform_point3(position).as_vec3();
@@ -82,7 +88,7 @@ impl Reader<'_, '_> {
                 "Node" => {
                     let child = self.node(span);
                     inside.has_nodes = true;
-                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), self.options.compat);
+                    let to_outer = MatrixOp::product(child.ops.as_deref().unwrap_or_default(), self.matrix_rules());
                     let lights = child.lights.iter().map(|(light, p)| (light.clone(), to_outer.transform_point3(*p)));
                     inside.lights.extend(lights);
                     inside.objects.extend(child.object(span));

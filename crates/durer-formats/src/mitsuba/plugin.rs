@@ -177,3 +177,10 @@ impl Plugin {
         }
     }
 }
+
+/// Whether a shape is a sphere whose normals point inwards, by `flip_normals` or by a transform that
+/// mirrors.
+pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
+    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
+    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
+}

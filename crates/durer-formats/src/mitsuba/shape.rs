@@ -3,7 +3,7 @@
 //! Source of all meanings: *Mitsuba 3 documentation*, "Shapes".
 
 use super::curve;
-use super::plugin::{Key, Plugin};
+use super::plugin::{Key, Plugin, is_inside_out};
 use super::serialized;
 use super::solid;
 use super::state::Reader;
@@ -11,7 +11,7 @@ use super::transform::frame;
 use crate::pbrt::made::Medium;
 use crate::pbrt::mesh::{oriented, written_in_file};
 use crate::pbrt::shape::placed;
-use crate::said::{Said, meant};
+use crate::said::meant;
 use crate::smooth::smoothed;
 use durer_diag::{Diagnostic, Span};
 use durer_image::Transfer;
@@ -317,10 +317,4 @@ impl Reader<'_> {
         };
         Some((self.scene.add_mesh(&name, data?, plugin.at), map))
     }
-}
-
-/// Whether a shape is a sphere whose normals point inwards: those of one that is mirrored do too.
-pub(super) fn is_inside_out(plugin: &Plugin, said: &Said) -> bool {
-    let flipped = || plugin.truth(said, "flip_normals").unwrap_or(false);
-    plugin.kind == "sphere" && flipped() != (plugin.map(said, "to_world").matrix3.determinant() < 0.0)
 }

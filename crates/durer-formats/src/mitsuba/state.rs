@@ -3,8 +3,7 @@
 use super::load::Loader;
 use super::made::{Infinite, Made};
 use super::metals;
-use super::plugin::{Key, Plugin, Property, Value};
-use super::shape;
+use super::plugin::{Key, Plugin, Property, Value, is_inside_out};
 use crate::bodies::join_bodies;
 use crate::model::Input;
 use crate::pictures::Pictures;
@@ -105,7 +104,7 @@ impl<'a> Reader<'a> {
         let unsaid = Said::default();
         let mut indices = Vec::new();
         for shape in self.reachable(all, &["shape"]) {
-            let inside_out = shape::is_inside_out(&shape, &unsaid);
+            let inside_out = is_inside_out(&shape, &unsaid);
             let inner = self.reachable(&shape, &["bsdf"]);
             let glass = inner.iter().filter(|part| part.kind.ends_with("dielectric"));
             indices.extend(glass.filter_map(|part| clear(part, inside_out)));

@@ -1,9 +1,11 @@
 //! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not
 //! see everything.
 
-use super::{Depth, Format, Head, ImageError, Raster, RowFormat, codec, rows};
+use super::{Depth, Format, Head, ImageError, Raster, RowFormat, RowWriter, Strip, codec, rows};
 use ::image::ImageFormat;
+use ::png::{BitDepth, ColorType, Compression, Encoder, Filter};
 use std::borrow::Cow;
+use std::io::{self, Write};
 
 const NAME: &str = "PNG";
 const MARK: &[u8] = b"\x89PNG\r\n\x1a\n";
@@ -20,6 +22,26 @@ pub const FORMAT: Format = Format {
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
     rows: Some(&ROWS),
 };
+
+/// Writes rows, compressed as they come.
+pub(super) fn packed<T, E: From<io::Error>>(
+    format: &'static RowFormat,
+    strip: Strip,
+    out: &mut dyn Write,
+    rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
+) -> Result<T, E> {
+    let mut encoder = Encoder::new(out, strip.width, strip.height);
+    encoder.set_color(if strip.alpha { ColorType::Rgba } else { ColorType::Rgb });
+    encoder.set_depth(BitDepth::Eight);
+    encoder.set_compression(Compression::Fast);
+    encoder.set_filter(Filter::Adaptive);
+    let mut file = encoder.write_header().map_err(io::Error::from)?;
+    let mut packed = file.stream_writer().map_err(io::Error::from)?;
+    let made = rows(&mut RowWriter::new(format, strip, &mut packed))?;
+    packed.finish().map_err(io::Error::from)?;
+    file.finish().map_err(io::Error::from)?;
+    Ok(made)
+}
 
 /// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it
 /// is decoded.

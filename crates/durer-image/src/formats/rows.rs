@@ -1,6 +1,6 @@
 //! Formats that are written row by row, so that no picture is too large for them.
 
-use super::{Display, Format, Image, ImageError, Layer, Transfer, WriteOptions};
+use super::{Display, Format, Image, ImageError, Layer, WriteOptions};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
@@ -18,6 +18,7 @@ pub struct RowFormat {
     /// Appends the bytes of a row, whose number in the file is given.
     pub(super) row: fn(&Strip, u32, &[Vec3], &[f32], &mut Vec<u8>),
     /// Whether all that is packed by PNG's own rules, its head with it.
+    #[cfg_attr(not(feature = "codecs"), allow(dead_code))]
     pub(super) png: bool,
 }
 
@@ -45,10 +46,11 @@ impl Strip {
     /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where
     /// there is one, colours are those of what is seen alone, without the share of it (straight
     /// alpha).
+    #[cfg(feature = "codecs")]
     pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
         for (i, &pixel) in pixels.iter().enumerate() {
             let (alone, opacity) = match coverage.get(i).filter(|_| self.alpha) {
-                Some(&share) if share > 0.0 => (pixel / share, Transfer::Linear.encode(share)),
+                Some(&share) if share > 0.0 => (pixel / share, crate::Transfer::Linear.encode(share)),
                 Some(_) => (Vec3::ZERO, 0),
                 None => (pixel, 255),
             };
@@ -93,23 +95,19 @@ fn packed<T, E: From<io::Error>>(
     out: &mut dyn Write,
     rows: impl FnOnce(&mut RowWriter) -> Result<T, E>,
 ) -> Result<T, E> {
-    if !format.png {
-        return rows(&mut RowWriter { format, strip, next: 0, out });
+    #[cfg(feature = "codecs")]
+    if format.png {
+        return super::png::packed(format, strip, out, rows);
     }
-    let mut encoder = png::Encoder::new(out, strip.width, strip.height);
-    encoder.set_color(if strip.alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.set_compression(png::Compression::Fast);
-    encoder.set_filter(png::Filter::Adaptive);
-    let mut file = encoder.write_header().map_err(io::Error::from)?;
-    let mut packed = file.stream_writer().map_err(io::Error::from)?;
-    let made = rows(&mut RowWriter { format, strip, next: 0, out: &mut packed })?;
-    packed.finish().map_err(io::Error::from)?;
-    file.finish().map_err(io::Error::from)?;
-    Ok(made)
+    rows(&mut RowWriter::new(format, strip, out))
 }
 
-impl RowWriter<'_> {
+impl<'w> RowWriter<'w> {
+    /// Writes the rows of `strip` to `out`, from the first.
+    pub(super) fn new(format: &'static RowFormat, strip: Strip, out: &'w mut dyn Write) -> Self {
+        RowWriter { format, strip, next: 0, out }
+    }
+
     /// The next rows, from top to bottom whatever comes first in the file. `coverage` is the share
     /// of each pixel that is seen; empty where all is.
     ///

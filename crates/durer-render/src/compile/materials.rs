@@ -2,6 +2,7 @@
 
 use super::files::Loader;
 use super::media;
+use super::rules::matrix_rules;
 use crate::world::{Emission, HighlightModel, Material, Phong, Principled};
 use durer_diag::Diagnostics;
 use durer_scene::bsdf::Tables;
@@ -28,7 +29,7 @@ pub(super) fn compile(
     let mut tables = Vec::new();
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
-            let to_pattern = MatrixOp::product(ops, rules.compat);
+            let to_pattern = MatrixOp::product(ops, matrix_rules(rules));
             let picture = match solid {
                 Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
                 _ => None,

@@ -6,6 +6,7 @@ mod kept;
 mod materials;
 mod media;
 mod pictures;
+pub mod rules;
 mod solids;
 #[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
@@ -17,7 +18,7 @@ use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
 use durer_scene::camera::{CameraBasis, Projection};
 use durer_scene::dialect::{Compat, Dialect, MeshNormals, Rules};
-use durer_scene::light::{DirectionalLight, Emitter, Light};
+use durer_scene::light::{DirectionalLight, Emitter as _, Light};
 use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
 use durer_scene::shape::mesh::loosened;
@@ -155,7 +156,7 @@ pub fn compile(
         kept.finish();
     }
     let contents = Contents {
-        frame: CameraBasis::of(&camera, rules),
+        frame: CameraBasis::of(&camera, rules::camera_rules(rules)),
         camera,
         // A picture around the scene takes the place of the colour, a black one too.
         background: if environment.is_none() && (scene.background.environment.is_some() || scene.background.is_night())
@@ -168,6 +169,9 @@ pub fn compile(
         lights,
         materials: compiled,
         objects,
+        camera_rules: rules::camera_rules(rules),
+        shading: rules::shading_rules(rules),
+        display: rules::display_rules(rules, scene.lumens),
         rules: rules.clone(),
         lumens: scene.lumens,
     };
@@ -355,7 +359,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
             diagnostics.push(warning.help("the picture will be black; write `falloff 1`, say"));
         }
     }
-    (written.iter().map(|light| light.value.with_rules(rules)).collect(), scene.background.ambient_light)
+    (written.iter().map(|light| rules::light(&light.value, rules)).collect(), scene.background.ambient_light)
 }
 
 /// Nested groups and transforms on their way to a flat list.
@@ -420,7 +424,7 @@ impl SceneFlattener<'_, '_> {
     }
 
     fn product(&self, ops: &[MatrixOp]) -> DAffine3 {
-        MatrixOp::product(ops, self.rules.compat)
+        MatrixOp::product(ops, rules::matrix_rules(self.rules))
     }
 
     /// A shape or mesh, placed in the world; `None` after an error.

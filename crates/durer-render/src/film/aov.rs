@@ -6,13 +6,12 @@
 
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
-use crate::world::{Interaction, World};
+use crate::world::{DisplayRules, Interaction};
 use durer_bvh::TraversalStats;
-use durer_scene::dialect::{Compat, CompatSet, DepthPicture, NormalsPicture};
+use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::{Aabb, Color, Vec3};
 use durer_scene::sampler::hash;
 use durer_scene::shape::Surface;
-use serde::{Deserialize, Serialize};
 
 /// What the ray through a pixel's centre found.
 #[derive(Clone, Copy, Debug)]
@@ -72,38 +71,6 @@ impl Sums<'_> {
 /// The luminance of light, or its lumens where it is in watts.
 pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
     lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
-}
-
-/// Those rules of a scene's dialect that say how values are shown.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct DisplayRules {
-    /// Normals as colours.
-    pub normals: NormalsPicture,
-    /// Depth as grey.
-    pub depth: DepthPicture,
-    /// Quirks of the official program.
-    pub compat: CompatSet,
-    /// What makes lumens of light, by colour, where that is in watts.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub lumens: Option<Vec3>,
-}
-
-impl DisplayRules {
-    /// Those of a world.
-    pub fn of(world: &World) -> Self {
-        let rules = world.rules();
-        DisplayRules {
-            normals: rules.normals_picture,
-            depth: rules.depth_picture,
-            compat: rules.compat,
-            lumens: world.lumens(),
-        }
-    }
-
-    /// Whether a compatibility is on.
-    pub fn has(&self, compat: Compat) -> bool {
-        self.compat & compat.bit() != 0
-    }
 }
 
 /// What is needed to make a picture of values.
@@ -315,7 +282,7 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let (least, greatest) = (display.hits.min.x, display.hits.max.x);
     let (min, max) = match display.depth_range {
         // A range that whole numbers cannot tell apart is left as it is.
-        Some((min, max)) if look.has(Compat::WholeDepths) && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
+        Some((min, max)) if look.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
     };
@@ -323,7 +290,7 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
         DepthPicture::NearWhite if !hit => 0.0,
         DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),
         DepthPicture::NearBlack if !hit => {
-            if look.has(Compat::BlackSky) {
+            if look.black_sky {
                 0.0
             } else {
                 1.0

@@ -1,12 +1,9 @@
-//! From samples to pixels: reconstruction filters, exact sums, and the course's own films and
-//! diagrams.
+//! From samples to pixels: reconstruction filters and exact sums.
 //!
 //! Pixels are counted from the top left corner; a position in a pixel runs right and down.
 
 pub mod aov;
 pub mod bytes;
-pub mod course;
-pub mod diagram;
 pub mod false_color;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]
 mod film;

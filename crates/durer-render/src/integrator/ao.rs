@@ -4,7 +4,7 @@
 //! direction counts by its cosine.
 
 use super::spawn::spawn_ray;
-use super::trace::{HitRecord, RayKind, TermKind, TraceListener};
+use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::world::World;
 use durer_scene::bsdf::{Frame, warp};
@@ -44,27 +44,33 @@ impl Integrate for AmbientOcclusion<'_> {
     /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
     /// not; white where nothing is hit.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
-        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
-        let color = self.trace(&ray.into(), id, tally);
-        tally.end(Color::ONE, Color::ONE, color);
+        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+            from: RayKind::Camera,
+            ray: ray.into(),
+            weight: 1.0,
+            hit: None,
+            bounce: None,
+        });
+        let color = self.trace(&ray.into(), id, node, tally);
+        tally.end(node, Color::ONE, Color::ONE, color);
         color
     }
 }
 
 impl AmbientOcclusion<'_> {
-    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, tally: &mut T) -> Color {
+    fn trace<T: TraceListener>(&self, ray: &Ray64, id: SampleId, node: NodeId, tally: &mut T) -> Color {
         let mut color = Color::ONE;
         if let Some(at) = self.world.intersect(ray, tally) {
             let (surface, inside) = (&at.surface, at.inside());
             let n = if inside { -surface.n_geo } else { surface.n_geo };
-            tally.hit(|| HitRecord::new(self.world, &at, n, inside, false));
+            tally.hit(node, || HitRecord::new(self.world, &at, n, inside, false));
             let dir = Frame::around(n).to_world(warp::cosine_hemisphere(id.pair(0)));
             if self.world.occluded(spawn_ray(surface, dir, self.radius, None), tally) {
                 color = Color::ZERO;
             }
         }
-        tally.begin(|| TermKind::Sky);
-        tally.end(Color::ONE, Color::ONE, color);
+        let sky = tally.begin(node, || TermKind::Sky);
+        tally.end(sky, Color::ONE, Color::ONE, color);
         color
     }
 }

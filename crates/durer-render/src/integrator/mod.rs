@@ -11,13 +11,12 @@ use crate::world::World;
 pub use ao::{AmbientOcclusion, AoParameters};
 use durer_scene::camera::RayCone;
 use durer_scene::describe::{Describe, DescribedList, described_list};
-use durer_scene::dialect::Dialect;
 use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 use durer_scene::spectrum::ColorMode;
 pub use path::{Direct, Path, PhotonParameters, Photons, Transport};
 use std::sync::atomic::AtomicBool;
-pub use trace::{TraceListener, TraceNode, TraceRecorder, Tree};
+pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
 /// What an integrator is told that it alone knows: a name and options, stated in a `described!`
@@ -179,6 +178,6 @@ impl Method {
 
     /// Its name.
     pub fn name(&self) -> &'static str {
-        self.keyword(Dialect::Durer)
+        self.own_keyword()
     }
 }

@@ -6,7 +6,7 @@
 //! paths end at random, in proportion to what they are worth.
 
 use super::media::{Media, Passage};
-use super::trace::{Bounce, HitRecord, RayKind, TermKind, TermValue, TraceListener};
+use super::trace::{Bounce, HitRecord, NodeId, RayKind, TermKind, TermValue, TraceListener};
 use super::{Integrate, Settings, one_by_one};
 use crate::world::{Hit, Interaction, Shading, TOGETHER, World};
 use durer_scene::bsdf::lobe::diffuse::Diffuse;
@@ -106,6 +106,8 @@ struct State {
     alone: bool,
     /// How long the way from the camera is, if it went straight or over mirrors and through glass.
     from_camera: Option<f32>,
+    /// Node of the trace that its terms belong to.
+    node: NodeId,
 }
 
 impl Default for State {
@@ -120,6 +122,7 @@ impl Default for State {
             broad: false,
             alone: false,
             from_camera: Some(0.0),
+            node: NodeId::NONE,
         }
     }
 }
@@ -143,12 +146,18 @@ impl Integrate for Path<'_> {
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let sample = self.sample(id);
         tally.lanes(&sample.lanes);
-        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+            from: RayKind::Camera,
+            ray: ray.into(),
+            weight: 1.0,
+            hit: None,
+            bounce: None,
+        });
         let mut ray = Ray64::from(ray);
         let hit = self.world.closest_along(&mut ray, tally);
-        let (sum, scale) = self.trace(&ray, hit, &mut self.start(ray.origin()), &sample, tally);
+        let (sum, scale) = self.trace(&ray, hit, &mut State { node, ..self.start(ray.origin()) }, &sample, tally);
         let light = sum * scale;
-        tally.end(sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
+        tally.end(node, sample.told(Spectrum::ONE), sample.told(scale), sample.told(light));
         sample.lanes.color(light)
     }
 
@@ -263,8 +272,8 @@ impl<'w> Path<'w> {
                 }
                 let chance = |from: &Scattered| from.tries * self.world.emitters().chance_of_sky(self.world, &from.at);
                 let weight = self.weight(state, self.world.environment().is_some(), |from| pdf * chance(from));
-                tally.begin(|| TermKind::Sky);
-                tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
+                let node = tally.begin(state.node, || TermKind::Sky);
+                tally.end(node, sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(sky));
                 weight * sky
             }
             End::Medium(point, dir, phase) => {
@@ -387,15 +396,15 @@ impl<'w> Path<'w> {
         tally: &mut T,
     ) -> Spectrum {
         let shading = self.world.shading(at, passage.map_or(1.0, Passage::eta), &sample.lanes);
-        tally.hit(|| HitRecord::new(self.world, at, shading.frame.normal, at.inside(), false));
+        tally.hit(state.node, || HitRecord::new(self.world, at, shading.frame.normal, at.inside(), false));
         let mut sum = Spectrum::ZERO;
         let emitted = self.world.emission(at);
         if emitted != Color::ZERO {
             let emitted = sample.lanes.light_of(emitted, || self.world.own_illuminant(at.material));
             let carried = self.world.emitters().chooses(&at.hit, at.ray.dir());
             let weight = self.weight(state, carried, |from| self.pdf_of_hit(at, from));
-            tally.begin(|| TermKind::Emission { mis: weight });
-            tally.end(sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
+            let node = tally.begin(state.node, || TermKind::Emission { mis: weight });
+            tally.end(node, sample.told(Spectrum::splat(weight)), sample.told(Spectrum::ONE), sample.told(emitted));
             sum += weight * emitted;
         }
         if shading.bsdf.is_black() {
@@ -404,11 +413,13 @@ impl<'w> Path<'w> {
         let kept = self.kept(at, state, sample);
         state.by_target = self.is_target(at);
         let place = Place::Surface(&at.surface, &shading, passage);
-        let vertex = self.vertex(place, state, sample);
-        let Some((nm, kept)) = kept else { return self.scattered(sum, &vertex, sample, tally) };
-        tally.begin(|| TermKind::OneWavelength { nm });
-        let light = self.scattered(Spectrum::ZERO, &vertex, sample, tally);
-        tally.end(sample.told(kept), sample.told(Spectrum::ONE), sample.told(light));
+        let Some((nm, kept)) = kept else {
+            return self.scattered(sum, &self.vertex(place, state, sample), sample, tally);
+        };
+        let node = tally.begin(state.node, || TermKind::OneWavelength { nm });
+        state.node = node;
+        let light = self.scattered(Spectrum::ZERO, &self.vertex(place, state, sample), sample, tally);
+        tally.end(node, sample.told(kept), sample.told(Spectrum::ONE), sample.told(light));
         sum + kept * light
     }
 
@@ -464,8 +475,8 @@ impl<'w> Path<'w> {
             }
         };
         if photons > 0 {
-            tally.begin(|| TermKind::Photons { radius, photons });
-            tally.end(sample.told(Spectrum::ONE), sample.told(Spectrum::ONE), sample.told(light));
+            let node = tally.begin(vertex.state.node, || TermKind::Photons { radius, photons });
+            tally.end(node, sample.told(Spectrum::ONE), sample.told(Spectrum::ONE), sample.told(light));
         }
         light
     }
@@ -499,9 +510,10 @@ impl<'w> Path<'w> {
             broad: !delta || state.broad,
             alone: state.alone,
             from_camera: state.from_camera.filter(|_| delta),
+            node: NodeId::NONE,
         };
         let mut ray = place.spawn(chosen.wi);
-        tally.begin(|| TermKind::Ray {
+        let node = tally.begin(state.node, || TermKind::Ray {
             from: match (delta, chosen.passes) {
                 (true, false) => RayKind::Reflected,
                 (true, true) => RayKind::Transmitted,
@@ -515,12 +527,13 @@ impl<'w> Path<'w> {
                 Bounce { lobe, probability, pdf: chosen.pdf, survival, directions: vertex.directions }
             }),
         });
+        below.node = node;
         let indirect = state.depth > 0;
         let hit = self.world.closest_along(&mut ray, tally);
         let (sum, scale) = self.trace(&ray, hit, &mut below, sample, tally);
         let scale = scale * self.clamped(sum * scale * weight * state.throughput, indirect);
         let light = sum * scale;
-        tally.end(sample.told(weight), sample.told(scale), sample.told(light));
+        tally.end(node, sample.told(weight), sample.told(scale), sample.told(light));
         weight * light
     }
 

@@ -1,8 +1,9 @@
 //! An account of a ray's light: the tree of everything that made it.
 //!
-//! An integrator tells a [`TraceListener`] each term when it begins it, and what came of it when it
-//! ends it. Plain tallies hear nothing, at no cost; a [`TraceRecorder`] keeps all of it. In every
-//! node,
+//! An integrator reports each term to a [`TraceListener`] twice: when it begins, with the node that
+//! it belongs to, and when its value is known. Nodes are addressed by number, so terms of several
+//! rays may be under way at once and end in any order. Counters ignore all of it at no cost; a
+//! [`TraceRecorder`] keeps it. In every node,
 //!
 //! value = scale · (sum of the children's factor · value, in order),
 //!
@@ -24,12 +25,32 @@ pub trait TraceListener: TraversalCounter {
 
     /// What the lanes of all terms are; where it is not told, they are colours.
     fn lanes(&mut self, _lanes: &Lanes) {}
-    /// A term begins.
-    fn begin(&mut self, _what: impl FnOnce() -> TermKind) {}
-    /// The ray of the term that was begun last hits something.
-    fn hit(&mut self, _hit: impl FnOnce() -> HitRecord) {}
-    /// The term that was begun last is done.
-    fn end(&mut self, _factor: impl Into<TermValue>, _scale: impl Into<TermValue>, _value: impl Into<TermValue>) {}
+    /// Adds a term below `parent` and returns its node. Siblings keep the order in which they begin.
+    fn begin(&mut self, _parent: NodeId, _what: impl FnOnce() -> TermKind) -> NodeId {
+        NodeId::NONE
+    }
+    /// Records the hit of a ray's node.
+    fn hit(&mut self, _node: NodeId, _hit: impl FnOnce() -> HitRecord) {}
+    /// Records what became of a term: see [`TraceNode`].
+    fn end(
+        &mut self,
+        _node: NodeId,
+        _factor: impl Into<TermValue>,
+        _scale: impl Into<TermValue>,
+        _value: impl Into<TermValue>,
+    ) {
+    }
+}
+
+/// Number of a node of a trace, in the order in which terms began.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NodeId(u32);
+
+impl NodeId {
+    /// No node: what listeners return that keep nothing.
+    pub const NONE: NodeId = NodeId(u32::MAX);
+    /// Parent of the term that all others belong to.
+    pub const ROOT: NodeId = NodeId(u32::MAX - 1);
 }
 
 impl TraceListener for () {}
@@ -404,21 +425,28 @@ impl TermKind {
     }
 }
 
-/// A witness that keeps everything.
+/// Listener that keeps every term.
 #[derive(Debug, Default)]
 pub struct TraceRecorder {
-    /// Terms that were begun and are not done.
-    open: Vec<TraceNode>,
-    /// The term that all others belong to.
-    done: Option<TraceNode>,
+    /// Terms in the order in which they began, each with its parent.
+    nodes: Vec<(NodeId, TraceNode)>,
     lanes: Lanes,
 }
 
 impl TraceRecorder {
-    /// The tree; `None` if nothing was told.
-    pub fn into_tree(self) -> Option<Tree> {
-        let lanes = self.lanes;
-        self.done.map(|root| Tree { root, lanes })
+    /// Builds the tree; `None` if no term was reported.
+    pub fn into_tree(mut self) -> Option<Tree> {
+        let mut root = None;
+        // A parent comes before its children: from the end on, each node is complete when its turn
+        // comes, with its children in reverse.
+        while let Some((parent, mut node)) = self.nodes.pop() {
+            node.terms.reverse();
+            match self.nodes.get_mut(parent.0 as usize) {
+                Some((_, parent)) => parent.terms.push(node),
+                None => root = Some(node),
+            }
+        }
+        root.map(|root| Tree { root, lanes: self.lanes })
     }
 }
 
@@ -433,24 +461,29 @@ impl TraceListener for TraceRecorder {
         self.lanes = *lanes;
     }
 
-    fn begin(&mut self, what: impl FnOnce() -> TermKind) {
+    fn begin(&mut self, parent: NodeId, what: impl FnOnce() -> TermKind) -> NodeId {
         let [one, zero] = [Color::ONE, Color::ZERO].map(TermValue::Color);
         let node = TraceNode { what: what(), factor: one, scale: one, value: zero, terms: Vec::new() };
-        self.open.push(node);
+        self.nodes.push((parent, node));
+        NodeId(self.nodes.len() as u32 - 1)
     }
 
-    fn hit(&mut self, hit: impl FnOnce() -> HitRecord) {
-        if let Some(TraceNode { what: TermKind::Ray { hit: place, .. }, .. }) = self.open.last_mut() {
+    fn hit(&mut self, node: NodeId, hit: impl FnOnce() -> HitRecord) {
+        if let Some((_, TraceNode { what: TermKind::Ray { hit: place, .. }, .. })) = self.nodes.get_mut(node.0 as usize)
+        {
             *place = Some(Box::new(hit()));
         }
     }
 
-    fn end(&mut self, factor: impl Into<TermValue>, scale: impl Into<TermValue>, value: impl Into<TermValue>) {
-        let Some(node) = self.open.pop() else { return };
-        let node = TraceNode { factor: factor.into(), scale: scale.into(), value: value.into(), ..node };
-        match self.open.last_mut() {
-            Some(above) => above.terms.push(node),
-            None => self.done = Some(node),
+    fn end(
+        &mut self,
+        node: NodeId,
+        factor: impl Into<TermValue>,
+        scale: impl Into<TermValue>,
+        value: impl Into<TermValue>,
+    ) {
+        if let Some((_, node)) = self.nodes.get_mut(node.0 as usize) {
+            (node.factor, node.scale, node.value) = (factor.into(), scale.into(), value.into());
         }
     }
 }

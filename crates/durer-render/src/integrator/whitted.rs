@@ -4,12 +4,12 @@
 //! with the terms of the course.
 
 use super::media::{Media, Passage};
-use super::trace::{HitRecord, RayKind, TermKind, TraceListener};
+use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::world::{Hit, Interaction, Material, WeightedMaterial, World};
 use direct::direct;
 use durer_scene::describe::described;
-use durer_scene::dialect::{Compat, set};
+use durer_scene::dialect::set;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
 use secondary::Blend;
@@ -80,6 +80,8 @@ struct Path<'a> {
     media: &'a Media,
     /// How much the ray counts for in the pixel.
     weight: f32,
+    /// The ray's node in the trace.
+    node: NodeId,
 }
 
 /// One of the materials that make up a point, and what was worked out of it.
@@ -141,11 +143,17 @@ impl<'w> Whitted<'w> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
         let mut along = ray.into();
-        tally.begin(|| TermKind::Ray { from: RayKind::Camera, ray: ray.into(), weight: 1.0, hit: None, bounce: None });
+        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+            from: RayKind::Camera,
+            ray: ray.into(),
+            weight: 1.0,
+            hit: None,
+            bounce: None,
+        });
         let found = self.world.closest_along(&mut along, tally);
-        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0 };
+        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0, node };
         let color = self.trace(&along, found, path, tally);
-        tally.end(Color::ONE, Color::ONE, color);
+        tally.end(node, Color::ONE, Color::ONE, color);
         color
     }
 
@@ -167,8 +175,8 @@ impl<'w> Whitted<'w> {
             }
         }
         let sky = self.world.sky(ray.dir());
-        tally.begin(|| TermKind::Sky);
-        tally.end(Color::ONE, Color::ONE, sky);
+        let node = tally.begin(path.node, || TermKind::Sky);
+        tally.end(node, Color::ONE, Color::ONE, sky);
         sky
     }
 
@@ -203,14 +211,14 @@ impl<'w> Whitted<'w> {
     ) -> Color {
         let Interaction { ray, surface, .. } = at;
         let Side { n, from_behind, black } = self.side(at);
-        tally.hit(|| HitRecord::new(self.world, at, n, from_behind, black));
+        tally.hit(path.node, || HitRecord::new(self.world, at, n, from_behind, black));
         let mut color = Color::ZERO;
         if !black {
             for Lit { part, diffuse, .. } in all.iter() {
                 let met = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
-                tally.begin(|| TermKind::Ambient { share: part.share });
-                tally.end(ambient, Color::ONE, met);
+                let node = tally.begin(path.node, || TermKind::Ambient { share: part.share });
+                tally.end(node, ambient, Color::ONE, met);
                 color += ambient * met;
             }
             for number in 0..self.world.lights().len() {
@@ -219,7 +227,7 @@ impl<'w> Whitted<'w> {
                 if !T::LISTENS {
                     let mut dark = true;
                     for Lit { part, diffuse, scattered } in all.iter_mut() {
-                        *scattered = direct(part.phong, *diffuse, n, ray.dir(), &seen, tally);
+                        *scattered = direct(part.phong, *diffuse, n, ray.dir(), &seen, NodeId::NONE, tally);
                         dark &= *scattered == Color::ZERO;
                     }
                     if dark {
@@ -229,7 +237,7 @@ impl<'w> Whitted<'w> {
                 let visible = self.visible(surface, &seen, tally);
                 for Lit { part, diffuse, scattered } in all.iter() {
                     let share = part.share;
-                    tally.begin(|| {
+                    let node = tally.begin(path.node, || {
                         let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
                         let (to_light, distance) = (seen.to_light, seen.distance);
                         TermKind::Light { light: number, to_light, distance, share, shadow }
@@ -237,10 +245,10 @@ impl<'w> Whitted<'w> {
                     // In the dark nothing is computed.
                     let direct = match visible == Color::ZERO {
                         true => Color::ZERO,
-                        false if T::LISTENS => direct(part.phong, *diffuse, n, ray.dir(), &seen, tally),
+                        false if T::LISTENS => direct(part.phong, *diffuse, n, ray.dir(), &seen, node, tally),
                         false => *scattered,
                     };
-                    tally.end(share * visible, seen.color, direct);
+                    tally.end(node, share * visible, seen.color, direct);
                     color += share * visible * direct;
                 }
             }
@@ -252,8 +260,8 @@ impl<'w> Whitted<'w> {
                 false => self.secondary(at, blend, passage.unwrap_or_default(), path, tally),
             };
         } else if all.iter().any(|Lit { part, .. }| part.phong.reflective + part.phong.transparent != Color::ZERO) {
-            tally.begin(|| TermKind::Spent);
-            tally.end(Color::ONE, Color::ONE, Color::ZERO);
+            let node = tally.begin(path.node, || TermKind::Spent);
+            tally.end(node, Color::ONE, Color::ONE, Color::ZERO);
         }
         color
     }
@@ -271,11 +279,11 @@ impl<'w> Whitted<'w> {
 
     /// What decides which side of a surface is shaded.
     fn facing(&self) -> Facing {
-        let (rules, shade_back) = (self.world.rules(), self.settings.shade_back);
+        let (rules, shade_back) = (self.world.shading_rules(), self.settings.shade_back);
         Facing {
-            shaded_sides: rules.has(Compat::ShadedSides),
-            black_backs: !shade_back && rules.has(Compat::BlackBacks),
-            unit: rules.has(Compat::UnitLight),
+            shaded_sides: rules.shaded_sides,
+            black_backs: !shade_back && rules.black_backs,
+            unit: rules.unit_light,
             shade_back,
         }
     }
@@ -283,7 +291,7 @@ impl<'w> Whitted<'w> {
     /// Whether a ray meets a surface on the side that its normal does not point to.
     #[inline]
     pub fn sees_back(&self, at: &Interaction) -> bool {
-        let shaded = self.world.rules().has(Compat::ShadedSides);
+        let shaded = self.world.shading_rules().shaded_sides;
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 

@@ -1,23 +1,21 @@
 //! Why a pixel has its colour: every sample, and the tree of terms that it is the sum of.
 
 pub mod check;
-mod course;
 mod firefly;
 mod text;
 
 use super::aim::PixelSample;
 use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
+pub use super::course::SubPixels;
+use super::course::{explain as course, stale};
 use super::run::Until;
 use super::samples::Samples;
-pub use super::sub_pixels::SubPixels;
-use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, center_ray, raster, render};
+use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, raster, render};
 use crate::film::Film;
 use crate::film::aov::{Aov, Sums};
 use crate::integrator::{Integrate, Integrator, TraceRecorder, Tree};
-use crate::world::{Material, World};
-use durer_scene::camera::Raster;
-use durer_scene::dialect::Compat;
+use crate::world::World;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::sampler::SampleId;
 use serde::Serialize;
@@ -138,7 +136,7 @@ pub fn explain_of(
         return Err(RenderError::CropOutside(job.width, job.height));
     }
     let (stop, mut stale_texels) = (AtomicBool::new(false), None);
-    let source = Samples::without_habits(world, job, &stop);
+    let source = Samples::without_quirks(world, job, &stop);
     let integrator = job.integrator(world, None);
     let account = |of, sample, aim: PixelSample| {
         let id = SampleId::new(job.seed, of, sample);
@@ -159,8 +157,8 @@ pub fn explain_of(
             (Mean::Own, own.collect())
         }
     };
-    if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
-        stale_texels = stale_texel(world, job, &raster(world, job.width, job.height), (x, y));
+    if stale::applies(world, job) {
+        stale_texels = stale::difference(world, job, &raster(world, job.width, job.height), (x, y));
     }
     let mut explanation =
         Explanation { x, y, color: Vec3::ZERO, coverage: 1.0, mean, samples, stale_texels, error: None };
@@ -211,27 +209,6 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
     let aovs = Aov::from_name("sample-count").into_iter().collect();
     let counted = render(world, &Job { crop: Some(block), color: false, aovs, ..job.clone() }, &Control::default())?;
     Ok(counted.layers[0].image.get(x - block.left, y - block.top).map_or(0, |count| count.x as u32))
-}
-
-/// The colour of a texture, noise or plain surface at a pixel's centre, and its material, if that
-/// has one.
-fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<(u32, Color, Color)> {
-    let ray = center_ray(world, raster, pixel)?;
-    let at = world.intersect(&ray, &mut ())?;
-    let Material::Phong(phong) = &world.materials()[at.material as usize] else { return None };
-    Some((at.material, world.diffuse_color(phong, &at.surface), phong.diffuse))
-}
-
-/// What [`Compat::StaleTexels`] adds: the ambient light of the pixel before with the same material,
-/// less its own.
-fn stale_texel(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
-    let (material, own, plain) = texel(world, raster, (x, y))?;
-    // In rows from the bottom: first those of this row to the left, from right to left, then the
-    // rows below.
-    let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
-    let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
-    let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.0 == material));
-    Some(world.ambient() * (before.map_or(plain, |found| found.1) - own))
 }
 
 #[cfg(test)]

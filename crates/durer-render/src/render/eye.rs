@@ -7,7 +7,7 @@ use durer_scene::math::{Ray, Vec2};
 
 /// The picture's pixels on the square that a world's camera covers.
 pub fn raster(world: &World, width: u32, height: u32) -> Raster {
-    Raster::new(width, height, world.camera().proportions(), world.rules())
+    Raster::new(width, height, world.camera().proportions(), world.camera_rules())
 }
 
 /// The ray of a camera for a pixel, through a place in the picture in pixels from the upper left

@@ -5,9 +5,8 @@ use super::blocks::{Blocks, Shard, ShardBy};
 use super::error::RenderError;
 use super::passes::{self, Passes};
 use super::{Crop, Job, Sampling};
-use crate::film::aov::DisplayRules;
 use crate::film::{Film, Packed, Rejected};
-use crate::world::World;
+use crate::world::{DisplayRules, World};
 use durer_image::checked_count;
 use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
@@ -134,7 +133,7 @@ impl PartialRender {
     /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
     /// that cannot be split so.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
-        PartialRender::empty(job.clone(), shard, world.digest(), DisplayRules::of(world))
+        PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
 
     pub(super) fn empty(job: Job, shard: Shard, scene: Digest, look: DisplayRules) -> Result<Self, RenderError> {

@@ -7,7 +7,6 @@ use crate::film::Film;
 use crate::film::aov::{Aov, Display, Sums, Value, fill_from_last_hit};
 use crate::film::false_color::LightScale;
 use durer_image::{Display as ImageDisplay, Format, Image, Layer, Strip};
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Aabb, Color, Vec3};
 use rayon::prelude::*;
 use std::io::Write;
@@ -244,7 +243,7 @@ impl PartialRender {
             _ => (aov.picture)(value, found == PrimaryHit::Hit, &display),
         };
         let mut picture: Vec<Color> = values.iter().map(color).collect();
-        if aov.name == "normals" && self.look.has(Compat::StaleNormals) {
+        if aov.name == "normals" && self.look.stale_normals {
             let hits: Vec<bool> = values.iter().map(|value| value.1 == PrimaryHit::Hit).collect();
             fill_from_last_hit(&mut picture, &hits, self.job.ray_window().width as usize);
         }

@@ -3,7 +3,7 @@
 
 use super::samples::Samples;
 use super::{Job, RenderError};
-use crate::integrator::trace::{RayKind, RayRecord, TermKind};
+use crate::integrator::trace::{NodeId, RayKind, RayRecord, TermKind};
 use crate::integrator::{Integrate, TraceListener};
 use crate::world::World;
 use durer_bvh::{RayCount, TraversalCounter};
@@ -35,7 +35,7 @@ impl TraversalCounter for RayLog {
 }
 
 impl TraceListener for RayLog {
-    fn begin(&mut self, what: impl FnOnce() -> TermKind) {
+    fn begin(&mut self, _parent: NodeId, what: impl FnOnce() -> TermKind) -> NodeId {
         match what() {
             TermKind::Ray { from, ray, .. } => self.0.push((Some(from), ray)),
             TermKind::Light { shadow: Some(shadow), .. } | TermKind::Direct { shadow: Some(shadow), .. } => {
@@ -43,6 +43,7 @@ impl TraceListener for RayLog {
             }
             _ => {}
         }
+        NodeId::NONE
     }
 }
 
@@ -57,7 +58,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
         return Ok(None);
     }
     let never = AtomicBool::new(false);
-    let samples = Samples::without_habits(world, job, &never);
+    let samples = Samples::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
     // A step that has no factor in common with the width goes through all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;

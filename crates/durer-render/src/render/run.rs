@@ -1,12 +1,12 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
 use super::allocation::{half, pilot, variances};
+use super::course::sampling::kept_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
-use super::samples::{SampleCursor, Samples, Stopped, kept_bytes};
+use super::samples::{SampleCursor, Samples, Stopped};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
 use crate::film::Packed;
-use crate::film::aov::DisplayRules;
 use crate::integrator::Integrate;
 use crate::threads;
 use crate::world::World;
@@ -121,7 +121,7 @@ impl PartialRender {
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
         until: Until,
     ) -> Result<RenderOutcome, RenderError> {
-        if self.scene != world.digest() || self.look != DisplayRules::of(world) {
+        if self.scene != world.digest() || self.look != world.display_rules() {
             return Err(RenderError::OtherScene);
         }
         let (pool, tile) = (threads::pool(control.threads), control.tile.unwrap_or(usual_tile(&self.job)));

@@ -1,17 +1,14 @@
 //! How the samples of a block are taken, for each way of sampling.
 
 use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, Several};
-use super::error::{MAX_KEPT, center};
-use super::sub_pixels::SubPixels;
-use super::{Control, Crop, Job, RenderError, Sampling, center_ray};
+use super::course::stale;
+use super::error::center;
+use super::{Crop, Job, Sampling};
 use crate::film::Film;
-use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::integrator::{Integrate, Integrator, Whitted};
-use crate::threads;
-use crate::world::{Material, TOGETHER, World};
+use crate::world::{TOGETHER, World};
 use durer_bvh::RayCount;
 use durer_scene::camera::Projection;
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::sampler::{SampleId, Sampler};
 use std::cell::{Cell, RefCell};
@@ -24,29 +21,6 @@ pub(super) struct Stopped;
 
 /// Column, row and number of the sample that a thread is at.
 pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
-
-/// Where the samples of a job lie, with their colours: for its diagram.
-///
-/// # Errors
-/// [`RenderError`], among them [`RenderError::TooManySamples`].
-pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<StoredSamples, RenderError> {
-    let (sampler, samples) = match job.sampling {
-        Sampling::Course2004 { sampler, samples, .. } => (sampler, samples),
-        Sampling::Filtered { samples, .. } => (Sampler::Sobol, samples),
-        Sampling::Center | Sampling::Course2012 { .. } => (Sampler::Uniform, 1),
-    };
-    let samples = sampler.round_up(samples);
-    let count = job.whole().pixels().saturating_mul(samples.into());
-    if count > MAX_KEPT {
-        return Err(RenderError::TooManySamples(count));
-    }
-    let work = || {
-        let (at, mut rays) = (Cell::new((0, 0, None)), RayCount::default());
-        let source = Samples::new(world, job, &control.cancel);
-        source.stored(&Show::default(), job.whole(), (sampler, samples), &at, |_, _| true, &mut rays)
-    };
-    threads::install(control.threads, work).map_err(|Stopped| RenderError::Cancelled)
-}
 
 /// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts.
 /// Of samples that count for other pixels too only the pixel's own are offered.
@@ -78,35 +52,6 @@ pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnM
         }),
         _ => offer(center(x, y), Vec2::splat(0.5), 1.0),
     }
-}
-
-/// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
-pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
-    match job.sampling {
-        Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
-            let across = u64::from(side) + 2 * u64::from(filter.support());
-            across * across * u64::from(sampler.round_up(samples)) * size_of::<StoredSample>() as u64
-        }
-        // The picture, what is blurred of it along rows, and then along columns.
-        Sampling::Course2012 { .. } => 3 * 9 * 12 * u64::from(side + 2) * u64::from(side + 2),
-        _ => 0,
-    }
-}
-
-/// What the course's ways of sampling are made to show. They know colours only: where the camera
-/// sees nothing somewhere, it is shown a second time, white where the camera sees and black
-/// elsewhere.
-#[derive(Default)]
-struct Show {
-    mask: bool,
-    /// Whether the camera saw nothing at some sample.
-    blind: Cell<bool>,
-}
-
-/// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a
-/// filter's weights are a little off: what is nearly all is all.
-pub(super) fn share(white: Color) -> f32 {
-    if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
 /// Samples of a pixel that were aimed, one after the other.
@@ -175,27 +120,27 @@ thread_local! {
 
 /// Takes the samples of a job.
 pub(super) struct Samples<'a> {
-    world: &'a World,
-    job: &'a Job,
+    pub(super) world: &'a World,
+    pub(super) job: &'a Job,
     pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// What [`Compat::StaleTexels`] adds to each pixel of the whole picture.
+    /// What [`stale`] adds to each pixel of the whole picture; empty where it does not apply.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }
 
 impl<'a> Samples<'a> {
     pub(super) fn new(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
-        let mut samples = Self::without_habits(world, job, stop);
-        if job.sampling == Sampling::Center && world.rules().has(Compat::StaleTexels) {
-            samples.stale = samples.stale_texels();
+        let mut samples = Self::without_quirks(world, job, stop);
+        if stale::applies(world, job) {
+            samples.stale = stale::differences(world, job, &samples.aim.raster, || samples.check().is_err());
         }
         samples
     }
 
-    /// The same without what [`Compat::StaleTexels`] adds, which takes a look at the whole picture.
-    pub(super) fn without_habits(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
+    /// As [`Samples::new`], without the [`stale`] pass over the whole image.
+    pub(super) fn without_quirks(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
         Samples { world, job, aim: Aim::new(world, job), whitted, integrator, stale: Vec::new(), stop }
@@ -326,123 +271,6 @@ impl<'a> Samples<'a> {
     /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
         self.aim.sample(&self.aim.pixel(x, y), sample)
-    }
-
-    /// The finished pixels of a part with their coverage, for samplings whose samples count for
-    /// other pixels too. Samples around the part that are needed for it are taken for it alone.
-    pub(super) fn finished(
-        &self,
-        part: Crop,
-        at: &SampleCursor,
-        rays: &mut RayCount,
-    ) -> Result<Vec<(Color, f32)>, Stopped> {
-        let show = Show::default();
-        let colors = self.shown(&show, part, at, rays)?;
-        if !show.blind.get() {
-            return Ok(colors.into_iter().map(|color| (color, 1.0)).collect());
-        }
-        let mask = self.shown(&Show { mask: true, ..Show::default() }, part, at, &mut RayCount::default())?;
-        Ok(colors.into_iter().zip(mask).map(|(color, white)| (color, share(white))).collect())
-    }
-
-    fn shown(&self, show: &Show, part: Crop, at: &SampleCursor, rays: &mut RayCount) -> Result<Vec<Color>, Stopped> {
-        match self.job.sampling {
-            Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
-                self.course_2004(show, part, (sampler, sampler.round_up(samples)), filter, at, rays)
-            }
-            Sampling::Course2012 { jitter, blur } => self.course_2012(show, part, (jitter, blur), at, rays),
-            _ => unreachable!("other samplings add their samples to a film"),
-        }
-    }
-
-    /// The colour of a sample that is kept.
-    fn kept(&self, show: &Show, aim: &PixelSample, id: SampleId, rays: &mut RayCount) -> Color {
-        show.blind.set(show.blind.get() || aim.ray.is_none());
-        let light = |ray| if show.mask { Vec3::ONE } else { self.integrator.radiance(&ray, id, rays) };
-        aim.ray.map_or(Vec3::ZERO, light)
-    }
-
-    fn course_2004(
-        &self,
-        show: &Show,
-        part: Crop,
-        sampling: (Sampler, u32),
-        filter: CourseFilter,
-        at: &SampleCursor,
-        rays: &mut RayCount,
-    ) -> Result<Vec<Color>, Stopped> {
-        let around = part.grown(filter.support(), self.job.whole());
-        let stored = self.stored(show, around, sampling, at, |x, y| part.holds(x, y), rays)?;
-        let from = (part.left - around.left, part.top - around.top);
-        stored.try_reconstruct(filter, from, (part.width, part.height), || self.check())
-    }
-
-    /// All samples of a part of the picture; only rays of the wanted pixels are counted.
-    fn stored(
-        &self,
-        show: &Show,
-        part: Crop,
-        sampling: (Sampler, u32),
-        at: &SampleCursor,
-        counted: impl Fn(u32, u32) -> bool,
-        rays: &mut RayCount,
-    ) -> Result<StoredSamples, Stopped> {
-        StoredSamples::try_take(part.width, part.height, sampling.1, |column, row, sample| {
-            self.check()?;
-            let (x, y) = (part.left + column, part.top + row);
-            at.set((x, y, Some(sample)));
-            let (aim, position) = self.aim.kept(sampling, x, y, sample);
-            let mut own = RayCount::default();
-            let color = self.kept(show, &aim, SampleId::new(self.job.seed, (x, y), sample), &mut own);
-            rays.0 += if counted(x, y) { own.0 } else { 0 };
-            Ok(StoredSample { position, color })
-        })
-    }
-
-    /// `-jitter` and `-filter` of 2012. Blur without jitter works on the picture as it is.
-    fn course_2012(
-        &self,
-        show: &Show,
-        part: Crop,
-        (jitter, blurred): (bool, bool),
-        at: &SampleCursor,
-        rays: &mut RayCount,
-    ) -> Result<Vec<Color>, Stopped> {
-        let grid = SubPixels::new(self.job, part, jitter, blurred);
-        let raster = grid.raster(self.world);
-        let mut pixels = Vec::with_capacity(grid.around.pixels() as usize);
-        for (x, y) in grid.around.places() {
-            self.check()?;
-            let pixel = grid.pixel((x, y));
-            at.set((pixel.0, pixel.1, None));
-            let mut own = RayCount::default();
-            let id = SampleId::new(self.job.seed, pixel, grid.number((x, y)));
-            pixels.push(self.kept(show, &self.aim.sub_pixel(&grid, &raster, (x, y)), id, &mut own));
-            rays.0 += if grid.inner.holds(x, y) { own.0 } else { 0 };
-        }
-        let pixels = grid.develop(pixels);
-        self.check()?;
-        Ok(pixels)
-    }
-
-    /// The difference, at each pixel of the whole picture, between the ambient light on its texture
-    /// and that of the pixel shaded before with the same material.
-    fn stale_texels(&self) -> Vec<Color> {
-        let (world, job) = (self.world, self.job);
-        let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
-        let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
-        for (y, x) in (0..job.height).rev().flat_map(|y| (0..job.width).map(move |x| (y, x))) {
-            if self.check().is_err() {
-                break;
-            }
-            let Some(ray) = center_ray(world, &self.aim.raster, (x, y)) else { continue };
-            let Some(at) = world.intersect(&ray, &mut ()) else { continue };
-            let Material::Phong(phong) = &world.materials()[at.material as usize] else { continue };
-            let texel = world.diffuse_color(phong, &at.surface);
-            let before = last[at.material as usize].replace(texel).unwrap_or(phong.diffuse);
-            differences[y as usize * job.width as usize + x as usize] = world.ambient() * (before - texel);
-        }
-        differences
     }
 }
 

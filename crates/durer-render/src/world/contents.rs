@@ -1,7 +1,7 @@
 //! What a world is made of, and its identity.
 
-use super::{Geometry, Material, Object, World};
-use durer_scene::camera::{Camera, CameraBasis};
+use super::{DisplayRules, Geometry, Material, Object, ShadingRules, World};
+use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::Rules;
 use durer_scene::light::{Light, Profile};
 use durer_scene::math::{Color, Vec3};
@@ -29,8 +29,15 @@ pub struct Contents {
     pub materials: Vec<Material>,
     /// Everything that a ray can hit, by number.
     pub objects: Vec<Object>,
-    /// What the words of the scene's dialect mean.
-    pub rules: Rules,
+    /// Rules of the camera and of pixels.
+    pub camera_rules: CameraRules,
+    /// Rules of hits and of Whitted's integrator.
+    pub shading: ShadingRules,
+    /// Rules of pictures of values.
+    pub display: DisplayRules,
+    /// The dialect that all these were resolved from. Rendering does not ask it; checks, lessons
+    /// and mistakes of the course do.
+    pub(crate) rules: Rules,
     /// What makes lumens of its light, by colour, where that is in watts.
     pub lumens: Option<Vec3>,
 }
@@ -69,9 +76,10 @@ impl World {
         if !self.edited {
             return self.source;
         }
-        let Contents { camera, frame, background, ambient, lights, materials, objects, rules, lumens: _ } =
-            &self.contents;
-        let mut text = format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules));
+        let Contents { camera, frame, background, ambient, lights, materials, objects, rules, .. } = &self.contents;
+        let resolved = (self.contents.camera_rules, self.contents.shading, self.contents.display);
+        let mut text =
+            format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules, resolved));
         for Object { geometry, to_world, center, material, normal_length, span: _ } in objects {
             let geometry = match geometry {
                 Geometry::Mesh(tree) => tree.mesh.digest().to_string(),
@@ -118,7 +126,22 @@ impl World {
         &self.contents.objects
     }
 
-    /// What the words of the scene's dialect mean.
+    /// Rules of the camera and of pixels.
+    pub fn camera_rules(&self) -> CameraRules {
+        self.contents.camera_rules
+    }
+
+    /// Rules of hits and of Whitted's integrator.
+    pub fn shading_rules(&self) -> &ShadingRules {
+        &self.contents.shading
+    }
+
+    /// Rules of pictures of values.
+    pub fn display_rules(&self) -> DisplayRules {
+        self.contents.display
+    }
+
+    /// The rules of the dialect that it was compiled with: for checks, lessons and mistakes.
     pub fn rules(&self) -> &Rules {
         &self.contents.rules
     }

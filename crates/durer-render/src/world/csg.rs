@@ -20,7 +20,7 @@
 //! bits: whether the surface is turned inside out, and whether the ray enters the solid.
 
 use super::solid::{BoolOp, Solid};
-use super::{Geometry, Object, PlacementQuirks};
+use super::{Geometry, Object, ShadingRules};
 use durer_bvh::{Bvh, TraversalCounter};
 use durer_scene::math::{Aabb, Ray, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
@@ -239,10 +239,10 @@ impl Csg {
     }
 
     /// The surface at a hit, in world space; its normals point out of the solid.
-    pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, quirks: PlacementQuirks) -> Surface {
+    pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
-        let surface = leaf.object.surface(ray, point, crossing, number, quirks);
+        let surface = leaf.object.surface(ray, point, crossing, number, rules);
         // A mesh may be inside out by itself: what counts is the ray's way.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
@@ -478,7 +478,7 @@ impl Csg {
             let object = &self.leaves[event.leaf as usize].object;
             let crossing = ShapeHit { t: event.t as f32, uv: event.uv };
             let at = object.local_line(ray).at(event.t);
-            object.surface(ray, at, &crossing, event.part, PlacementQuirks::default()).n_geo.as_dvec3()
+            object.surface(ray, at, &crossing, event.part, &ShadingRules::default()).n_geo.as_dvec3()
         });
         // A grazing ray runs farther between faces at the same distance.
         let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;

@@ -1,8 +1,7 @@
 //! What a ray met, and the surface there.
 
-use super::{Geometry, Hit, PlacementQuirks, World};
+use super::{Geometry, Hit, World};
 use durer_bvh::TraversalCounter;
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Ray, Ray64, Side, Vec2, Vec3};
 use durer_scene::shape::{ShapeHit, Surface};
 
@@ -71,14 +70,10 @@ impl World {
             Some(to_world) => to_world.inverse_ray(ray).line().at(t),
         };
         let crossing = ShapeHit { t: hit.t, uv: hit.uv };
-        let quirks = PlacementQuirks {
-            as_is: self.rules().is_official(),
-            moved_normals: self.rules().has(Compat::MovedNormals),
-            mesh_textures: self.rules().has(Compat::MeshTextures),
-        };
-        object.own_surface(ray, point, &crossing, hit.part, quirks, &mut at.surface);
+        let rules = self.shading_rules();
+        object.own_surface(ray, point, &crossing, hit.part, rules, &mut at.surface);
         (at.ray, at.hit, at.material, at.width) = (*ray, hit, self.material_of(&hit), 0.0);
-        object.place(&mut at.surface, ray, &crossing, quirks);
+        object.place(&mut at.surface, ray, &crossing, rules);
         if let Geometry::Solid(_) = &object.geometry {
             at.surface.solid = Some(hit.object);
         }

@@ -8,6 +8,7 @@ mod maps;
 mod material;
 mod merged;
 mod object;
+mod rules;
 pub mod shading;
 pub mod solid;
 mod surfaces;
@@ -25,7 +26,8 @@ pub use emitters::Emitters;
 use glam::DVec3;
 pub use interaction::Interaction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
-pub use object::{Geometry, MeshTree, Object, PlacementQuirks};
+pub use object::{Geometry, MeshTree, Object};
+pub use rules::{DisplayRules, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
 pub(crate) use surfaces::{Kind, LANES, Met, Numbers, PLACES, Surfaces, Vectors};
@@ -408,7 +410,7 @@ impl World {
             Material::Solid(solid, to_pattern, picture) => {
                 let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
                 let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
-                let weight = solid.share(q, self.rules().compat) * pictured;
+                let weight = solid.share(q, self.shading_rules().conic_rings) * pictured;
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {

@@ -1,5 +1,6 @@
 //! The things in a world, and how a ray meets them.
 
+use super::ShadingRules;
 use super::csg::Csg;
 use durer_bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use durer_scene::dialect::MeshNormals;
@@ -20,21 +21,11 @@ pub struct Object {
     pub center: Vec3,
     /// Number of its material; the parts of a solid have their own.
     pub material: u32,
-    /// Length of its normals: other than 1 where [`durer_scene::dialect::Compat::RawNormals`] holds.
+    /// Length of its normals: other than 1 only under
+    /// [`ShadingRules::raw_normals`].
     pub normal_length: f32,
     /// Where it is written.
     pub span: durer_diag::Span,
-}
-
-/// Quirks of old programs, and one mistake, in how a surface is placed in the world.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct PlacementQuirks {
-    /// Whether its position is the ray's own, without bounds on its error.
-    pub as_is: bool,
-    /// Whether [`durer_scene::dialect::Compat::MovedNormals`] holds.
-    pub moved_normals: bool,
-    /// Whether [`durer_scene::dialect::Compat::MeshTextures`] holds.
-    pub mesh_textures: bool,
 }
 
 /// The form of an object.
@@ -169,11 +160,11 @@ impl Object {
         point: DVec3,
         crossing: &ShapeHit,
         part: u32,
-        quirks: PlacementQuirks,
+        rules: &ShadingRules,
     ) -> Surface {
         let mut surface = Surface::NOWHERE;
-        self.own_surface(ray, point, crossing, part, quirks, &mut surface);
-        self.place(&mut surface, ray, crossing, quirks);
+        self.own_surface(ray, point, crossing, part, rules, &mut surface);
+        self.place(&mut surface, ray, crossing, rules);
         surface
     }
 
@@ -184,7 +175,7 @@ impl Object {
         point: DVec3,
         crossing: &ShapeHit,
         part: u32,
-        quirks: PlacementQuirks,
+        rules: &ShadingRules,
         surface: &mut Surface,
     ) {
         // Each writes for itself: what all wrote to one place would be copied from there.
@@ -193,29 +184,29 @@ impl Object {
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
             Geometry::Primitive(shape) => *surface = shape.surface(point, crossing),
             Geometry::Mesh(tree) => *surface = tree.mesh.surface(part, crossing),
-            Geometry::Solid(solid) => *surface = solid.surface(ray, crossing, part, quirks),
+            Geometry::Solid(solid) => *surface = solid.surface(ray, crossing, part, rules),
         }
     }
 
     /// Places such a surface in the world. It stays where it lies in memory, for a copy of what was
     /// just written takes long.
     #[inline]
-    pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, quirks: PlacementQuirks) {
+    pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, rules: &ShadingRules) {
         if matches!(self.geometry, Geometry::Solid(_)) {
             return;
         }
-        let shading = |to_world: &Affine, n: Vec3| match quirks.moved_normals {
+        let shading = |to_world: &Affine, n: Vec3| match rules.moved_normals {
             true => to_world.vector(n).normalize_or(n),
             false => to_world.normal(n),
         };
-        if quirks.as_is {
+        if rules.points_on_ray {
             if let Some(to_world) = &self.to_world {
                 surface.n_geo = to_world.normal(surface.n_geo);
                 surface.n_shade = shading(to_world, surface.n_shade);
             }
             surface.position = ray.rounded.at(crossing.t);
             surface.n_shade *= self.normal_length;
-            if quirks.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
+            if rules.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
                 surface.uv = Uv::None;
             }
         } else if let Some(to_world) = &self.to_world {

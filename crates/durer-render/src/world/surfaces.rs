@@ -194,7 +194,7 @@ impl World {
     pub(crate) fn kind_of(&self, hit: &Hit, phong: &Phong) -> Kind {
         let object = &self.objects()[hit.object as usize];
         let is_plain = object.to_world.is_none()
-            && !self.rules().is_official()
+            && !self.shading_rules().points_on_ray
             && phong.texture.is_none()
             && phong.noise.is_none()
             && !phong.tinted;

@@ -8,8 +8,7 @@
 //! compiled ([`super::Tables::prepare`]); for others at their first use.
 
 use super::fresnel;
-use super::lobe::fuzz;
-use super::microfacet::Ggx;
+use super::microfacet::{Ggx, fuzz_value};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use rayon::prelude::*;
@@ -113,7 +112,7 @@ pub fn fuzz(cosine: f32, roughness: f32) -> f32 {
             mean(|u| {
                 let wi = super::warp::polar(u.x, u.y);
                 // Evenly spread directions: density 1 / (2 pi).
-                2.0 * std::f32::consts::PI * fuzz::value(roughness, wo, wi) * wi.z
+                2.0 * std::f32::consts::PI * fuzz_value(roughness, wo, wi) * wi.z
             })
         })
     });

@@ -5,7 +5,7 @@
 //! 3(2), 2014; Dupuy and Benyoub, *Sampling Visible GGX Normals with Spherical Caps*, HPG 2023.
 
 use super::warp;
-use crate::math::{Vec2, Vec3};
+use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::PI;
 
 /// Surfaces smoother than this are taken for smooth: alpha along both axes.
@@ -84,4 +84,15 @@ impl Ggx {
         let h = warp::polar(z.clamp(-1.0, 1.0), u.x) + stretched;
         Vec3::new(h.x * self.alpha.x, h.y * self.alpha.y, h.z.max(0.0)).try_normalize().unwrap_or(Vec3::Z)
     }
+}
+
+/// Value of a layer of white fibres, without the cosine.
+///
+/// Source: see [`crate::bsdf::lobe::fuzz`].
+pub fn fuzz_value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
+    let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
+    let sharpness = 1.0 / (roughness * roughness).max(0.01);
+    let sine = (1.0 - h.z * h.z).max(0.0).sqrt();
+    let density = (2.0 + sharpness) * fp::pow(sine, sharpness) / (2.0 * PI);
+    density / (4.0 * (wo.z + wi.z - wo.z * wi.z).max(1e-6))
 }

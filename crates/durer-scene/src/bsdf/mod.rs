@@ -20,7 +20,7 @@ use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 pub use frame::Frame;
 pub use layers::Tables;
-pub use lobe::{Lobe, Scatter};
+pub use lobe::{Lobe, LobeKind, Scatter, Spread};
 use smallvec::SmallVec;
 
 /// A lobe, how much it counts, and how often it is chosen.
@@ -76,13 +76,13 @@ impl<'a> Bsdf<'a> {
 
     /// Whether half or more of what is scattered goes into a narrow part of all directions.
     pub fn is_glossy(&self) -> bool {
-        let glossy = self.lobes.iter().filter(|part| part.lobe.is_glossy());
+        let glossy = self.lobes.iter().filter(|part| part.lobe.kind().spread == Spread::Glossy);
         glossy.map(|part| part.probability).sum::<f32>() >= 0.5 * self.total
     }
 
     /// Whether some of it is a fibre, whose light may leave on any side.
     pub fn is_fibre(&self) -> bool {
-        self.lobes.iter().any(|part| matches!(part.lobe, Lobe::Hair(_)))
+        self.lobes.iter().any(|part| part.lobe.kind().is_fibre)
     }
 
     /// Whether nothing is scattered.
@@ -93,12 +93,12 @@ impl<'a> Bsdf<'a> {
     /// Whether light from behind the surface is scattered too, and not only along single
     /// directions.
     pub fn passes_light(&self) -> bool {
-        self.lobes.iter().any(|part| part.lobe.passes_light())
+        self.lobes.iter().any(|part| part.lobe.kind().transmits && !part.lobe.is_delta())
     }
 
     /// The share of light that goes on as if nothing were there.
     pub fn straight(&self) -> Spectrum {
-        let through = self.lobes.iter().filter(|part| matches!(part.lobe, Lobe::Through(_)));
+        let through = self.lobes.iter().filter(|part| part.lobe.kind().is_straight);
         through.map(|part| part.weight).sum()
     }
 

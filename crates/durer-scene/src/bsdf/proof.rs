@@ -206,11 +206,7 @@ pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<
 
 /// What lobes give back.
 pub(super) fn given(bsdf: &Bsdf, wo: Vec3, samples: u32) -> (f64, f64) {
-    let eta = bsdf.lobes().find_map(|part| match part.lobe {
-        Lobe::RoughGlass(glass) => Some(glass.eta),
-        Lobe::Refraction(glass) => Some(glass.eta),
-        _ => None,
-    });
+    let eta = bsdf.lobes().find_map(|part| part.lobe.kind().eta);
     let denser = eta.map_or(1.0, |eta| eta * eta);
     let flux = |s: BsdfSample| f64::from(s.weight.x * if s.wi.z < 0.0 { denser } else { 1.0 });
     let mut sums = (0.0, 0.0);

@@ -13,9 +13,9 @@
 
 use super::pose::world_ray;
 use super::sheet::Sheet;
-use super::{CameraBasis, CameraSample, Eyes, Pose, Projection};
+use super::{CameraBasis, CameraRules, CameraSample, Eyes, Pose, Projection};
 use crate::describe::{Rule, described};
-use crate::dialect::{Dialect, set};
+use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DMat3, DVec2, DVec3};
 
@@ -116,7 +116,7 @@ impl Projection for CaveCamera {
         if self.walls.is_empty() {
             return Err("`walls` must have at least one row".into());
         }
-        let frame = CameraBasis::new(self.pose(), Dialect::Durer.rules());
+        let frame = CameraBasis::new(self.pose(), CameraRules::default());
         for (i, wall) in self.walls().enumerate() {
             let size = wall.size();
             if size.min_element() <= 0.0 {

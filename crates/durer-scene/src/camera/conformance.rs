@@ -3,7 +3,6 @@
 
 use super::*;
 use crate::describe::{DescribedList, Field, Kind, Rule, Value};
-use crate::dialect::Dialect;
 use crate::math::random::Random;
 
 /// Random cameras of each kind, and points for each: 10^5 together.
@@ -60,7 +59,7 @@ fn random_camera(kind: &Camera, random: &mut Random) -> Camera {
 }
 
 fn frame(camera: &Camera) -> CameraBasis {
-    CameraBasis::of(camera, Dialect::Durer.rules())
+    CameraBasis::of(camera, CameraRules::default())
 }
 
 /// A sample anywhere in the natural picture, and its ray.
@@ -222,7 +221,7 @@ fn footprints_are_areas() {
 #[test]
 fn rays_side_by_side_are_those_one_by_one() {
     all(8, |camera, random| {
-        for rules in [Dialect::Durer.rules(), Dialect::F04.rules()] {
+        for rules in [CameraRules::default(), CameraRules { screen_point: true, ..CameraRules::default() }] {
             let frame = CameraBasis::of(camera, rules);
             let samples: [CameraSample; 8] = std::array::from_fn(|_| looked(camera, random).0);
             let alone = samples.each_ref().map(|sample| camera.ray(&frame, sample));

@@ -1,7 +1,6 @@
 //! Where a camera stands and how it is turned.
 
 use super::Projection;
-use crate::dialect::{Compat, Rules};
 use crate::math::{Ray, Vec3};
 use glam::{DMat3, DVec3};
 
@@ -16,8 +15,33 @@ pub struct Pose {
     pub up: Vec3,
 }
 
-/// A camera's axes: where it looks, and the picture's right and up. Of unit length and
-/// perpendicular, but for the compatibilities that say otherwise.
+/// How the camera's `up` becomes the picture's.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum UpRule {
+    /// Perpendicular to the view direction, unit length.
+    #[default]
+    Perpendicular,
+    /// As written, of any length.
+    Raw,
+    /// Unit length, not made perpendicular.
+    Skew,
+}
+
+/// Rules of a camera, resolved from a scene's dialect when it is compiled. The default is our own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CameraRules {
+    /// The picture's up.
+    pub up: UpRule,
+    /// Rays are aimed at points of the world on a screen at distance 1, rounded to `f32` there.
+    pub screen_point: bool,
+    /// Centres of the first and last column and row lie on the picture's border.
+    pub border_pixels: bool,
+    /// The camera's square is stretched over a picture that is not square.
+    pub stretch: bool,
+}
+
+/// A camera's axes: where it looks, and the picture's right and up. Unit length and perpendicular,
+/// unless [`CameraRules`] say otherwise.
 ///
 /// Together they are the camera's space: x to the right, y upwards, z forwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +54,7 @@ pub struct CameraBasis {
     pub right: Vec3,
     /// Upwards in the picture.
     pub up: Vec3,
-    /// Whether rays are aimed at rounded points of the world, as [`Compat::ScreenPoint`] says.
+    /// See [`CameraRules::screen_point`].
     pub screen_point: bool,
     /// The camera's [`Projection::half_width`], worked out once.
     pub half_width: f64,
@@ -78,23 +102,22 @@ fn scaled_or(v: Vec3, fallback: Vec3) -> Vec3 {
 
 impl CameraBasis {
     /// The axes of a camera, and what all its rays need of its angle.
-    pub fn of(camera: &impl Projection, rules: &Rules) -> Self {
+    pub fn of(camera: &impl Projection, rules: CameraRules) -> Self {
         CameraBasis { half_width: camera.half_width(), ..CameraBasis::new(camera.pose(), rules) }
     }
 
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
-    pub(super) fn new(pose: Pose, rules: &Rules) -> Self {
-        let screen_point = rules.has(Compat::ScreenPoint);
+    pub(super) fn new(pose: Pose, CameraRules { up, screen_point, .. }: CameraRules) -> Self {
         let unit = if screen_point { scaled_or } else { unit_or };
         let forward = unit(pose.direction, Vec3::NEG_Z);
         let right = unit(forward.cross(pose.up), forward.any_orthonormal_vector());
-        let up = if rules.has(Compat::RawUp) {
-            pose.up
-        } else if rules.has(Compat::SkewUp) {
-            pose.up.normalize_or(Vec3::Y)
-        } else {
-            let up = right.cross(forward);
-            if screen_point { scaled_or(up, up) } else { up }
+        let up = match up {
+            UpRule::Raw => pose.up,
+            UpRule::Skew => pose.up.normalize_or(Vec3::Y),
+            UpRule::Perpendicular => {
+                let up = right.cross(forward);
+                if screen_point { scaled_or(up, up) } else { up }
+            }
         };
         CameraBasis { eye: pose.center, forward, right, up, screen_point, half_width: 1.0 }
     }

@@ -10,9 +10,9 @@
 
 use super::perspective::half_width;
 use super::sheet::Sheet;
-use super::{CameraBasis, CameraSample, Pose, Projection};
+use super::{CameraBasis, CameraRules, CameraSample, Pose, Projection};
 use crate::describe::{Rule, described};
-use crate::dialect::{Dialect, set};
+use crate::dialect::set;
 use crate::math::{Ray, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
@@ -64,7 +64,7 @@ impl Projection for PushBroomCamera {
     }
 
     fn validate(&self) -> Result<(), String> {
-        let frame = CameraBasis::new(self.pose(), Dialect::Durer.rules());
+        let frame = CameraBasis::new(self.pose(), CameraRules::default());
         let sideways = self.way().dot(frame.right.as_dvec3()).abs();
         // Also where the way has no length.
         let moves = sideways > 1e-6 * self.way().length();

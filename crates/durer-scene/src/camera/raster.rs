@@ -1,6 +1,6 @@
 //! From pixels to the square that a camera covers.
 
-use crate::dialect::{Compat, Rules};
+use super::CameraRules;
 use crate::math::Vec2;
 
 /// A picture's pixels, and how they lie in the square from (-1, -1) to (1, 1).
@@ -17,17 +17,16 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// A picture of a size. Its larger side spans the square, unless a compatibility says
-    /// otherwise.
+    /// A picture of a size. Its larger side spans the square, unless the rules say otherwise.
     ///
     /// Where the camera's picture has proportions of its own, it fills this one as far as it can,
     /// undistorted and whole.
-    pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: &Rules) -> Self {
+    pub fn new(width: u32, height: u32, proportions: Option<Vec2>, rules: CameraRules) -> Self {
         Raster {
             width,
             height,
-            border_pixels: rules.has(Compat::BorderPixels),
-            stretch: rules.has(Compat::Stretch),
+            border_pixels: rules.border_pixels,
+            stretch: rules.stretch,
             natural: proportions.map(|sides| sides / sides.max_element()),
         }
     }

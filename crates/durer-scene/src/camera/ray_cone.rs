@@ -34,13 +34,12 @@ impl RayCone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::camera::{OrthographicCamera, PerspectiveCamera};
-    use crate::dialect::Dialect;
+    use crate::camera::{CameraRules, OrthographicCamera, PerspectiveCamera};
 
     #[test]
     fn cones_widen_in_perspective_and_nowhere_else() {
         let cone = |camera: Camera, side: f32| {
-            let basis = CameraBasis::of(&camera, Dialect::Durer.rules());
+            let basis = CameraBasis::of(&camera, CameraRules::default());
             RayCone::new(&camera, &basis, side * side).unwrap()
         };
         let perspective = PerspectiveCamera { angle: 90.0, ..Default::default() };

@@ -1,14 +1,12 @@
 //! Rays of cameras through known places of pictures.
 
 use super::*;
-use crate::dialect::{Compat, Dialect, Rules};
 
 mod family;
 mod lenses;
 
-fn rules(compat: &[Compat]) -> Rules {
-    Rules { compat: compat.iter().map(|c| c.bit()).sum(), ..Dialect::Durer.rules().clone() }
-}
+const OURS: CameraRules =
+    CameraRules { up: UpRule::Perpendicular, screen_point: false, border_pixels: false, stretch: false };
 
 fn close(a: Vec3, b: Vec3) {
     assert!((a - b).length() < 1e-6, "{a} {b}");
@@ -16,7 +14,7 @@ fn close(a: Vec3, b: Vec3) {
 
 #[test]
 fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
-    let raster = Raster::new(4, 4, None, &rules(&[]));
+    let raster = Raster::new(4, 4, None, OURS);
     assert_eq!(raster.point(Vec2::ZERO), Vec2::new(-1.0, 1.0));
     assert_eq!(raster.point(Vec2::splat(4.0)), Vec2::new(1.0, -1.0));
     assert_eq!(raster.point(Vec2::splat(2.0)), Vec2::ZERO);
@@ -27,8 +25,11 @@ fn pixel_centres_lie_inside_the_square_and_edges_on_its_border() {
 fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
     for (width, height, corner) in [(8, 4, Vec2::new(1.0, 0.5)), (4, 8, Vec2::new(0.5, 1.0)), (5, 5, Vec2::ONE)] {
         let end = Vec2::new(width as f32, height as f32);
-        assert_eq!(Raster::new(width, height, None, &rules(&[])).point(end), corner * Vec2::new(1.0, -1.0));
-        assert_eq!(Raster::new(width, height, None, &rules(&[Compat::Stretch])).point(end), Vec2::new(1.0, -1.0));
+        assert_eq!(Raster::new(width, height, None, OURS).point(end), corner * Vec2::new(1.0, -1.0));
+        assert_eq!(
+            Raster::new(width, height, None, CameraRules { stretch: true, ..OURS }).point(end),
+            Vec2::new(1.0, -1.0)
+        );
     }
 }
 
@@ -36,8 +37,8 @@ fn the_larger_side_spans_the_square_unless_the_picture_is_stretched() {
 fn a_natural_picture_lies_whole_and_undistorted_in_any_other() {
     for (width, height, corner) in [(8, 4, [1.0, 0.5]), (8, 8, [1.0, 1.0]), (8, 2, [2.0, 0.5]), (2, 8, [1.0, 4.0])] {
         let end = Vec2::new(width as f32, 0.0);
-        for compat in [&[][..], &[Compat::Stretch]] {
-            let raster = Raster::new(width, height, Some(Vec2::new(6.0, 3.0)), &rules(compat));
+        for stretch in [false, true] {
+            let raster = Raster::new(width, height, Some(Vec2::new(6.0, 3.0)), CameraRules { stretch, ..OURS });
             assert_eq!(raster.point(end), Vec2::from(corner));
         }
     }
@@ -53,41 +54,44 @@ fn sizes_follow_proportions_and_misfits_are_counted() {
     for (pixels, w, h) in [(8, 360.0, 180.0), (40, 360.0, 180.0), (33, 6.25, 2.0), (51, 1.0, 7.3)] {
         let sides = Some(Vec2::new(w, h));
         let (width, height) = Raster::natural_size(sides, (pixels, pixels));
-        assert_eq!(Raster::new(width, height, sides, &rules(&[])).empty(), (0, 0), "{width}x{height} for {w}:{h}");
+        assert_eq!(Raster::new(width, height, sides, OURS).empty(), (0, 0), "{width}x{height} for {w}:{h}");
     }
-    let empty = |width, height| Raster::new(width, height, Some(Vec2::new(3.0, 1.0)), &rules(&[])).empty();
+    let empty = |width, height| Raster::new(width, height, Some(Vec2::new(3.0, 1.0)), OURS).empty();
     assert_eq!([empty(300, 100), empty(301, 100), empty(300, 300)], [(0, 0), (1, 0), (0, 200)]);
-    assert_eq!(
-        [empty(100, 33), empty(100, 34), Raster::new(9, 5, None, &rules(&[])).empty()],
-        [(1, 0), (0, 0), (0, 0)]
-    );
+    assert_eq!([empty(100, 33), empty(100, 34), Raster::new(9, 5, None, OURS).empty()], [(1, 0), (0, 0), (0, 0)]);
 }
 
 #[test]
 fn border_pixels_have_their_centres_on_the_border() {
     let last = Vec2::new(6.5, 4.5);
-    let square = Raster::new(7, 5, None, &rules(&[Compat::BorderPixels]));
+    let square = Raster::new(7, 5, None, CameraRules { border_pixels: true, ..OURS });
     assert!((square.point(Vec2::splat(0.5)) - Vec2::new(-1.0, 4.0 / 6.0)).length() < 1e-6);
     assert!((square.point(last) - Vec2::new(1.0, -4.0 / 6.0)).length() < 1e-6);
-    let stretched = Raster::new(7, 5, None, &rules(&[Compat::BorderPixels, Compat::Stretch]));
+    let stretched = Raster::new(7, 5, None, CameraRules { border_pixels: true, stretch: true, ..OURS });
     assert_eq!(stretched.point(Vec2::splat(0.5)), Vec2::new(-1.0, 1.0));
     assert_eq!(stretched.point(last), Vec2::new(1.0, -1.0));
     // A picture of one pixel, or one row, has its centre in the middle.
-    assert_eq!(Raster::new(1, 1, None, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::ZERO);
-    assert_eq!(Raster::new(3, 1, None, &rules(&[Compat::BorderPixels])).point(Vec2::splat(0.5)), Vec2::new(-1.0, 0.0));
+    assert_eq!(
+        Raster::new(1, 1, None, CameraRules { border_pixels: true, ..OURS }).point(Vec2::splat(0.5)),
+        Vec2::ZERO
+    );
+    assert_eq!(
+        Raster::new(3, 1, None, CameraRules { border_pixels: true, ..OURS }).point(Vec2::splat(0.5)),
+        Vec2::new(-1.0, 0.0)
+    );
 }
 
 #[test]
 fn a_frame_is_right_handed_unless_up_is_used_as_written() {
     let pose = Pose { center: Vec3::X, direction: Vec3::NEG_Z * 3.0, up: Vec3::new(0.0, 2.0, -2.0) };
-    let frame = CameraBasis::new(pose, &rules(&[]));
+    let frame = CameraBasis::new(pose, OURS);
     assert_eq!((frame.eye, frame.forward), (Vec3::X, Vec3::NEG_Z));
     close(frame.right, Vec3::X);
     close(frame.up, Vec3::Y);
-    assert_eq!(CameraBasis::new(pose, &rules(&[Compat::RawUp])).up, pose.up);
-    close(CameraBasis::new(pose, &rules(&[Compat::SkewUp])).up, pose.up.normalize());
+    assert_eq!(CameraBasis::new(pose, CameraRules { up: UpRule::Raw, ..OURS }).up, pose.up);
+    close(CameraBasis::new(pose, CameraRules { up: UpRule::Skew, ..OURS }).up, pose.up.normalize());
     // Looking along `up`, the axes are arbitrary but perpendicular.
-    let frame = CameraBasis::new(Pose { up: Vec3::Z, ..pose }, &rules(&[]));
+    let frame = CameraBasis::new(Pose { up: Vec3::Z, ..pose }, OURS);
     assert!(frame.right.is_normalized() && frame.up.is_normalized());
     assert!(frame.right.dot(frame.up).abs() + frame.right.dot(frame.forward).abs() < 1e-6);
 }
@@ -95,7 +99,7 @@ fn a_frame_is_right_handed_unless_up_is_used_as_written() {
 #[test]
 fn the_pinhole_sees_its_angle_across_the_square() {
     let camera = PerspectiveCamera { center: Vec3::Y, angle: 90.0, ..PerspectiveCamera::default() };
-    let frame = CameraBasis::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, OURS);
     let ray = |x, y| camera.ray(&frame, &CameraSample::at(Vec2::new(x, y))).unwrap();
     close(ray(0.0, 0.0).dir, Vec3::NEG_Z);
     close(ray(1.0, 0.0).dir, Vec3::new(1.0, 0.0, -1.0).normalize());
@@ -103,7 +107,7 @@ fn the_pinhole_sees_its_angle_across_the_square() {
     assert_eq!((ray(0.3, 0.4).origin, ray(0.3, 0.4).t_min), (Vec3::Y, 0.0));
     for angle in [1.0f32, 30.0, 120.0, 179.0] {
         let camera = PerspectiveCamera { angle, ..camera.clone() };
-        let frame = CameraBasis::of(&camera, &rules(&[]));
+        let frame = CameraBasis::of(&camera, OURS);
         let dir = |x| camera.ray(&frame, &CameraSample::at(x)).unwrap().dir;
         let cosine = dir(Vec2::X).dot(dir(Vec2::NEG_X));
         assert!((f64::from(cosine) - libm::cos(f64::from(angle).to_radians())).abs() < 1e-6, "{angle}");
@@ -119,7 +123,7 @@ fn parallel_rays_start_on_the_picture_and_run_both_ways() {
         size: 5.0,
         ..OrthographicCamera::default()
     };
-    let frame = CameraBasis::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, OURS);
     // right = x cross y = z; up = y.
     let ray = camera.ray(&frame, &CameraSample::at(Vec2::new(1.0, -0.5))).unwrap();
     close(ray.origin, Vec3::new(1.0, 2.0 - 1.25, 3.0 + 2.5));

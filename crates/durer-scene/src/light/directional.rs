@@ -2,7 +2,7 @@
 
 use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
-use crate::dialect::{Rules, set};
+use crate::dialect::set;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -30,10 +30,6 @@ impl Emitter for DirectionalLight {
     fn illuminate(&self, _point: DVec3) -> Illumination {
         let to_light = (-self.direction).normalize_or(Vec3::Y);
         Illumination { to_light, distance: f32::INFINITY, color: self.color }
-    }
-
-    fn with_rules(&self, _rules: &Rules) -> Self {
-        self.in_units()
     }
 
     fn in_units(&self) -> Self {

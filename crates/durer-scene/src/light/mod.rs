@@ -6,7 +6,6 @@ pub mod point;
 pub mod spot;
 
 use crate::describe::{FileName, described_list};
-use crate::dialect::Rules;
 use crate::math::{Color, LUMINANCE, Vec3};
 pub use directional::DirectionalLight;
 use glam::DVec3;
@@ -20,9 +19,6 @@ macro_rules! delegate {
             #[inline]
             fn illuminate(&self, point: DVec3) -> Illumination {
                 match self { $(Light::$variant(l) => l.illuminate(point),)+ }
-            }
-            fn with_rules(&self, rules: &Rules) -> Self {
-                match self { $(Light::$variant(l) => l.with_rules(rules).into(),)+ }
             }
             fn color(&self) -> Color {
                 match self { $(Light::$variant(l) => l.color,)+ }
@@ -94,9 +90,6 @@ pub struct Illumination {
 pub trait Emitter {
     /// The light that arrives at a point, if nothing is in the way.
     fn illuminate(&self, point: DVec3) -> Illumination;
-
-    /// The same light with the rules of a dialect worked in.
-    fn with_rules(&self, rules: &Rules) -> Self;
 
     /// Its colour, as written.
     fn color(&self) -> Color;

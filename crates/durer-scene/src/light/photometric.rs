@@ -2,7 +2,7 @@
 
 use super::{Emitter, Illumination, as_bright};
 use crate::describe::{FileName, Rule, described};
-use crate::dialect::{Rules, set};
+use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
 use crate::source::Digest;
 use glam::DVec3;
@@ -52,10 +52,6 @@ impl Emitter for PhotometricLight {
         let faded = distance + self.focal_length;
         let color = self.color / (PI * faded * faded);
         Illumination { to_light: offset.normalize_or(Vec3::Y), distance, color }
-    }
-
-    fn with_rules(&self, _rules: &Rules) -> Self {
-        self.clone()
     }
 
     fn color(&self) -> Color {

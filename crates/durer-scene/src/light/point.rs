@@ -2,7 +2,7 @@
 
 use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described};
-use crate::dialect::{Compat, Falloff, Rules, set};
+use crate::dialect::set;
 use crate::math::{Color, Vec3};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -44,22 +44,6 @@ impl Emitter for PointLight {
         };
         let to_light = offset.normalize_or(Vec3::Y);
         Illumination { to_light, distance, color }
-    }
-
-    fn with_rules(&self, rules: &Rules) -> Self {
-        if self.candela.or(self.lumens).is_some() {
-            return self.in_units();
-        }
-        let attenuation = match (rules.falloff, self.falloff) {
-            (Falloff::None, _) => None,
-            (Falloff::OnePlus, Some(f)) => Some(Vec3::new(1.0, 0.0, f)),
-            (Falloff::OnePlus, None) => self.attenuation,
-            (Falloff::Bare(_), Some(f)) if f > 0.0 || rules.has(Compat::MissingFalloff) => Some(Vec3::new(0.0, 0.0, f)),
-            (Falloff::Bare(Some(default)), None) => Some(Vec3::new(0.0, 0.0, default)),
-            (Falloff::Bare(None), None) if rules.has(Compat::MissingFalloff) => Some(Vec3::ZERO),
-            (Falloff::Bare(_), _) => None,
-        };
-        PointLight { attenuation, falloff: None, ..self.clone() }
     }
 
     fn color(&self) -> Color {

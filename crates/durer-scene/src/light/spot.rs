@@ -2,7 +2,7 @@
 
 use super::{Emitter, Illumination, TWO_UNITS, as_bright};
 use crate::describe::{FileName, Rule, described, described_words};
-use crate::dialect::{Rules, set};
+use crate::dialect::set;
 use crate::math::{Color, Vec3, fp};
 use glam::DVec3;
 use std::f32::consts::PI;
@@ -82,10 +82,6 @@ impl Emitter for SpotLight {
                 Fade::Fourth => share * share,
             };
         Illumination { to_light, distance, color: self.color * (share / (distance * distance)) }
-    }
-
-    fn with_rules(&self, _rules: &Rules) -> Self {
-        self.in_units()
     }
 
     fn color(&self) -> Color {

@@ -13,7 +13,6 @@ pub mod solid_noise;
 pub mod wood;
 
 use crate::describe::{Field, described_list};
-use crate::dialect::{Compat, CompatSet};
 use crate::math::Vec3;
 pub use hair::HairMaterial;
 pub use parameters::Parameters;
@@ -45,11 +44,11 @@ described_list! {
 }
 
 impl Solid {
-    /// The share of the first material at a point of pattern space, by an old program's formula
-    /// where its quirk is asked for.
-    pub fn share(&self, q: Vec3, compat: CompatSet) -> f32 {
+    /// Share of the first material at a point of pattern space, in [0,1]. `conic_rings`: wood has
+    /// the rings of the program of 2004, cones whose grain is stretched along the axis.
+    pub fn share(&self, q: Vec3, conic_rings: bool) -> f32 {
         match self {
-            Solid::Wood(wood) if compat & Compat::ConicRings.bit() != 0 => wood.conic(q),
+            Solid::Wood(wood) if conic_rings => wood.conic(q),
             _ => self.weight(q),
         }
     }

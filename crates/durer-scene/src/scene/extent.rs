@@ -1,6 +1,6 @@
 //! The places that a scene reaches, before it is a world.
 
-use super::{MatrixOp, Node, Object, Scene};
+use super::{MatrixOp, MatrixRules, Node, Object, Scene};
 use crate::math::Vec3;
 use crate::shape::Shape;
 use glam::{DAffine3, DVec3};
@@ -22,7 +22,9 @@ fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnM
     let mut offer = |p: Vec3| found(to_world.transform_point3(p.as_dvec3()));
     match &object.node {
         Node::Group(group) => group.objects.iter().for_each(|object| visit(scene, object, to_world, found)),
-        Node::Transform(ops, inner) => visit(scene, inner, to_world * MatrixOp::product(ops, 0), found),
+        Node::Transform(ops, inner) => {
+            visit(scene, inner, to_world * MatrixOp::product(ops, MatrixRules::default()), found)
+        }
         Node::Solid(_, parts) => parts.iter().for_each(|part| visit(scene, part, to_world, found)),
         Node::Mesh(mesh) => {
             let Some(data) = scene.assets.meshes.get(&mesh.obj_file.path) else { return };

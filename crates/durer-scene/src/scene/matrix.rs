@@ -1,6 +1,5 @@
 //! The matrices of a transform, as written.
 
-use crate::dialect::{Compat, CompatSet};
 use crate::math::{Vec3, fp};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
@@ -24,6 +23,16 @@ pub enum MatrixOp {
     Rotate(Vec3, f32),
     /// Any affine matrix, row by row.
     Matrix([f32; 16]),
+}
+
+/// Rules of products of matrices, resolved from a scene's dialect. The default is our own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct MatrixRules {
+    /// A `Matrix` is multiplied on the left of everything before it.
+    pub matrix_on_left: bool,
+    /// The product of one transform loses its shear: it is taken apart into translation, rotation
+    /// and scale.
+    pub dropped_shear: bool,
 }
 
 impl MatrixOp {
@@ -58,15 +67,13 @@ impl MatrixOp {
         }
     }
 
-    /// The product of the matrices of one transform, with the quirks [`Compat::MatrixOnLeft`] and
-    /// [`Compat::DroppedShear`].
-    pub fn product(ops: &[MatrixOp], quirks: CompatSet) -> DAffine3 {
-        let has = |compat: Compat| quirks & compat.bit() != 0;
+    /// Product of the matrices of one transform.
+    pub fn product(ops: &[MatrixOp], rules: MatrixRules) -> DAffine3 {
         let product = ops.iter().fold(DAffine3::IDENTITY, |product, op| match op {
-            MatrixOp::Matrix(_) if has(Compat::MatrixOnLeft) => op.matrix() * product,
+            MatrixOp::Matrix(_) if rules.matrix_on_left => op.matrix() * product,
             _ => product * op.matrix(),
         });
-        if has(Compat::DroppedShear) { without_shear(product) } else { product }
+        if rules.dropped_shear { without_shear(product) } else { product }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
 use durer_diag::Span;
-pub use matrix::MatrixOp;
+pub use matrix::{MatrixOp, MatrixRules};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

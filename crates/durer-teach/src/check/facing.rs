@@ -1,7 +1,7 @@
 //! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
 
 use super::finding::{Finding, MAX_SOUGHT, counted};
-use super::mesh::topology::Topology;
+use super::mesh_files::topology::Topology;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity};
 use durer_render::world::Geometry;

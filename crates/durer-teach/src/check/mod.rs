@@ -22,6 +22,7 @@ mod layers;
 mod lens;
 mod lights;
 mod mesh;
+mod mesh_files;
 mod names;
 mod numbers;
 mod objects;

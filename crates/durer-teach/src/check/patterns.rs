@@ -4,7 +4,6 @@ use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
 use durer_render::world::{Geometry, Material, World};
-use durer_scene::dialect::CompatSet;
 use durer_scene::material::{ColorNoise, Solid};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as Written;
@@ -18,24 +17,27 @@ const COARSEST: f32 = 3.0;
 /// Fewer places tell nothing.
 const FEWEST: usize = 20;
 
-/// What is looked at of a pattern: its share of the first part at a place of the world.
+/// A pattern and how its share of the first part is computed: for solids the matrix to pattern
+/// space, and [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
 enum Look<'w> {
-    Solid(&'w Solid, &'w glam::DAffine3, CompatSet),
+    Solid(&'w Solid, &'w glam::DAffine3, bool),
     Noise(&'w ColorNoise),
 }
 
 impl Look<'_> {
     fn of(world: &World, material: u32) -> Option<Look<'_>> {
         match world.materials().get(material as usize)? {
-            Material::Solid(solid, to_pattern, _) => Some(Look::Solid(solid, to_pattern, world.rules().compat)),
+            Material::Solid(solid, to_pattern, _) => {
+                Some(Look::Solid(solid, to_pattern, world.shading_rules().conic_rings))
+            }
             Material::Phong(phong) => phong.noise.as_ref().map(Look::Noise),
         }
     }
 
     fn at(&self, place: Vec3) -> f32 {
         match self {
-            Look::Solid(solid, to_pattern, compat) => {
-                solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *compat)
+            Look::Solid(solid, to_pattern, conic_rings) => {
+                solid.share(to_pattern.transform_point3(place.as_dvec3()).as_vec3(), *conic_rings)
             }
             Look::Noise(noise) => {
                 let range = noise.color1 - noise.color2;

@@ -3,7 +3,7 @@
 use super::scene_probe::SceneProbe;
 use durer_diag::Span;
 use durer_scene::math::Vec3;
-use durer_scene::scene::{MatrixOp, Node, Object};
+use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object};
 
 /// Of a scene in which nothing is in the picture: the first transform that in the reverse order, or
 /// left out, would put its object there, and words for that.
@@ -20,7 +20,8 @@ fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
         world.objects().iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;
     let (to_world, bounds) = (own.to_world.as_ref()?, own.bounds()?);
     let local = to_world.inverse_point(bounds.center()) + own.center;
-    let by = |ops: &[MatrixOp]| MatrixOp::product(ops, 0).transform_point3(local.as_dvec3()).as_vec3();
+    let by =
+        |ops: &[MatrixOp]| MatrixOp::product(ops, MatrixRules::default()).transform_point3(local.as_dvec3()).as_vec3();
     let aims = |place: Vec3| super::visibility::aims(scout, place);
     let place = super::finding::vector(bounds.center());
     let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();

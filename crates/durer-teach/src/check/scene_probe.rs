@@ -2,7 +2,7 @@
 
 use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
-use super::mesh::files::{MeshFile, files};
+use super::mesh_files::{MeshFile, files};
 use super::probes::{ProbeGrid, Subject};
 use super::verdict::{Verdict, verdicts};
 use super::visibility::{Visibility, visibilities};

@@ -1,6 +1,6 @@
 //! Parts of the checks that no scene shows alone.
 
-use super::mesh::topology::Topology;
+use super::mesh_files::topology::Topology;
 use super::within::around;
 use super::*;
 use durer_diag::{Diagnostic, Span};

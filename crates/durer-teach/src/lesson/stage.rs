@@ -149,12 +149,15 @@ impl Stage {
             false => (Vec::new(), Color::ONE),
         };
         let own = self.world.edit();
-        (own.lights, own.ambient, own.rules) = (lights, ambient, self.rules.clone());
+        (own.lights, own.ambient) = (lights, ambient);
+        own.set_rules(self.rules.clone());
         // The lesson's mistakes are those that change the rules.
         if let Some(mistake) = look.mistake.and_then(of_name) {
             let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.make)(&mut variant, 0.0);
-            self.world.edit().rules = variant.world.rules().clone();
+            let own = self.world.edit();
+            own.set_rules(variant.world.rules().clone());
+            own.shading = *variant.world.shading_rules();
         }
         let own = self.world.edit();
         own.materials = self.materials.clone();

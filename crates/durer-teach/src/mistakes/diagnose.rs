@@ -269,8 +269,7 @@ impl<'a> Search<'a> {
             variant
         };
         let mut other = self.base.clone();
-        other.world.edit().rules.epsilon =
-            other.world.rules().epsilon.map_or(Some(1e-4), |epsilon| Some(8.0 * epsilon));
+        other.change_rules(|rules| rules.epsilon = Some(rules.epsilon.map_or(1e-4, |epsilon| 8.0 * epsilon)));
         let mut steady = vec![true; pixels.places.len()];
         for variant in [aside(0.004), aside(-0.004), other] {
             let made = self.view.picture(&variant, &pixels.places);

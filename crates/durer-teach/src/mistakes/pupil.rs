@@ -12,7 +12,6 @@ use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
 use durer_render::integrator::{Settings, Whitted, refract};
 use durer_render::world::{Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
-use durer_scene::dialect::Compat;
 use durer_scene::light::{Emitter, Illumination, Light};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use durer_scene::shape::{Primitive, Surface};
@@ -188,10 +187,10 @@ impl<'w> Pupil<'w> {
         let (world, habits) = (self.world, self.habits);
         let Interaction { ray, surface, .. } = at;
         let from_behind = self.right.sees_back(at);
-        let black = from_behind && !self.settings.shade_back && world.rules().has(Compat::BlackBacks);
+        let black = from_behind && !self.settings.shade_back && world.shading_rules().black_backs;
         let turned = from_behind && (self.settings.shade_back || habits.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
-        let n = if world.rules().has(Compat::UnitLight) { n.normalize_or(n) } else { n };
+        let n = if world.shading_rules().unit_light { n.normalize_or(n) } else { n };
         let parts = world.parts(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
@@ -377,8 +376,8 @@ impl<'w> Pupil<'w> {
         if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
             return Color::ONE;
         }
-        let rules = self.world.rules();
-        let reach = match (habits.endless, rules.is_official()) {
+        let rules = self.world.shading_rules();
+        let reach = match (habits.endless, rules.epsilon.is_some()) {
             (true, _) => f32::INFINITY,
             (false, true) => seen.distance,
             (false, false) => seen.distance * (1.0 - gamma(16)),
@@ -394,7 +393,7 @@ impl<'w> Pupil<'w> {
         if habits.no_glass {
             return self.visible_through_glass(ray, epsilon);
         }
-        if rules.has(Compat::ShadowFronts) {
+        if rules.shadow_fronts {
             let nearest = self.closest(&ray).map(|(hit, _)| self.world.interaction(ray, hit));
             let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
@@ -453,7 +452,7 @@ impl<'w> Pupil<'w> {
             Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
             Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
         };
-        let (mirrored, n) = match self.world.rules().has(Compat::RawNormals) {
+        let (mirrored, n) = match self.world.shading_rules().raw_normals {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
@@ -483,7 +482,7 @@ impl<'w> Pupil<'w> {
                     r0 + (1.0 - r0) * rest * rest * rest * rest * rest
                 }
                 _ => {
-                    let zero = leaving && self.world.rules().has(Compat::ExitR0);
+                    let zero = leaving && self.world.shading_rules().exit_r0;
                     let indices = if habits.glass == Glass::Exchanged { (there, here) } else { (here, there) };
                     fresnel_share(ray.dir(), n, t, indices, zero)
                 }
@@ -516,12 +515,11 @@ impl<'w> Pupil<'w> {
         if weight.max_element() <= 0.0 {
             return Color::ZERO;
         }
-        let old = self.world.rules().is_official();
-        let total = path.weight * if old { weight.length() } else { weight.max_element() };
+        let total = self.right.weight_after(path.weight, weight);
         if total < self.settings.least_weight {
             return Color::ZERO;
         }
-        let epsilon = self.habits.bounces.epsilon.or(self.world.rules().epsilon);
+        let epsilon = self.habits.bounces.epsilon.or(self.world.shading_rules().epsilon);
         let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
     }

@@ -2,16 +2,17 @@
 
 use super::habits::{Aim, Habits, Output, Turn};
 use durer_bvh::BuildQuality;
+use durer_render::compile::rules::matrix_rules;
 use durer_render::compile::{self, AccelKind};
 use durer_render::integrator::Settings;
 use durer_render::render::raster;
 use durer_render::world::{Geometry, HighlightModel, Material, MeshTree, Object, Phong, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster};
-use durer_scene::dialect::{Compat, CompatSet, Highlight};
+use durer_scene::dialect::{Compat, Highlight, Rules};
 use durer_scene::light::Light;
 use durer_scene::material::PhongMaterial;
 use durer_scene::math::{Affine, Color, Ray, Vec2};
-use durer_scene::scene::{self, Group, MatrixOp, Node, Scene};
+use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Scene};
 use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
 use std::sync::Arc;
@@ -42,7 +43,7 @@ pub fn three_factors(scene: &Scene) -> bool {
 }
 
 /// How the matrices of a transform become one.
-pub type Product = fn(&[MatrixOp], CompatSet) -> DAffine3;
+pub type Product = fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> Variant<'s> {
     /// Without any mistake.
@@ -71,12 +72,19 @@ impl<'s> Variant<'s> {
 
     /// Turns a habit of the rules round.
     pub fn toggle(&mut self, compat: Compat) {
-        self.world.edit().rules.compat ^= compat.bit();
+        self.change_rules(|rules| rules.compat ^= compat.bit());
+    }
+
+    /// Changes the dialect's rules. The camera's axes, lights, materials and objects stay.
+    pub fn change_rules(&mut self, change: impl FnOnce(&mut Rules)) {
+        let mut rules = self.world.rules().clone();
+        change(&mut rules);
+        self.world.edit().set_rules(rules);
     }
 
     /// Makes the camera's axes anew, by the rules.
     pub fn reframe(&mut self) {
-        self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.rules());
+        self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.camera_rules());
     }
 
     /// The field of view of a perspective camera, in degrees.
@@ -145,10 +153,10 @@ impl<'s> Variant<'s> {
 
     /// Places all objects anew.
     pub fn place(&mut self, product: Product) {
-        let compat = self.world.rules().compat;
+        let rules = matrix_rules(self.world.rules());
         let mut places = Vec::new();
         if let Some(root) = &self.scene.root {
-            placed(root, DAffine3::IDENTITY, &|ops| product(ops, compat), &mut places);
+            placed(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut places);
         }
         // Solids fall into pieces; what is not one to one is left as it is.
         if places.len() != self.world.objects().len() {

@@ -8,7 +8,7 @@ use crate::folder::FolderSource;
 use durer_render::compile::{AccelKind, Resources, compile};
 
 /// Reads a file in a dialect and, if that succeeds, compiles and writes it.
-fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &Source) {
+fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &FolderSource) {
     let (scene, _) = read_as(text, dialect, strict);
     guess(text, 0, &[], &|_| false);
     let Some(scene) = scene else { return };
@@ -19,7 +19,7 @@ fn try_it(text: &[u8], dialect: Dialect, strict: bool, source: &Source) {
     assert!(!write(&scene, dialect).is_empty());
 }
 
-fn folder() -> (tempfile::TempDir, Source) {
+fn folder() -> (tempfile::TempDir, FolderSource) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("cube.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
     let source = FolderSource::new(folder.path());

@@ -19,7 +19,7 @@ use durer_scene::describe::DescribedList;
 use durer_scene::dialect::Dialect;
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Vec3, fp};
-use durer_scene::scene::{MatrixOp, Node, Object, Scene};
+use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object, Scene};
 use durer_scene::shape::MeshData;
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde_json::{Map, Value, json};
@@ -112,7 +112,7 @@ impl Writer<'_> {
             }
             Node::Transform(ops, inner) => {
                 let child = self.object(inner)?;
-                let map = MatrixOp::product(ops, 0);
+                let map = MatrixOp::product(ops, MatrixRules::default());
                 let own = self.lists.get("nodes").is_some_and(|nodes| nodes[child].get("matrix").is_none());
                 if own {
                     // The map is that of the node itself.

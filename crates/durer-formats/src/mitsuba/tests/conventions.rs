@@ -8,7 +8,7 @@ use durer_scene::light::Light;
 use durer_scene::material::principled::Walls;
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
-use durer_scene::scene::{Material, MatrixOp, Node, PictureBytes, Scene};
+use durer_scene::scene::{Material, MatrixOp, MatrixRules, Node, PictureBytes, Scene};
 
 pub(super) fn layers(bsdf: &str) -> PrincipledMaterial {
     let scene = clean(&format!("<shape type='sphere'>{bsdf}</shape>"));
@@ -467,7 +467,7 @@ fn axes_of_cylinders_are_those_of_mitsuba() {
         let (data, mut map) = (mesh(&scene), glam::DAffine3::IDENTITY);
         let mut object = &scene.root.as_ref().unwrap().objects[0];
         while let Node::Transform(ops, inner) = &object.node {
-            (map, object) = (map * MatrixOp::product(ops, 0), inner);
+            (map, object) = (map * MatrixOp::product(ops, MatrixRules::default()), inner);
         }
         let number = data.uvs.iter().position(|uv| uv.x == 0.0).unwrap();
         let corner = data.triangle_uvs.iter().zip(&data.triangles).find_map(|(uvs, corners)| {

@@ -8,8 +8,7 @@ use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
 use durer_render::render::Job;
 use durer_render::world::World;
 use durer_scene::bsdf::microfacet::Ggx;
-use durer_scene::camera::{CameraBasis, CameraSample, Projection};
-use durer_scene::dialect::Dialect;
+use durer_scene::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use durer_scene::light::Light;
 use durer_scene::math::random::Random;
 use durer_scene::math::{Vec2, Vec3, fp};
@@ -19,7 +18,7 @@ use durer_scene::spectrum::Lanes;
 /// The ray of a scene's camera through a point of the picture, -1 to 1 across its larger side.
 fn ray(scene: &Scene, x: f32, y: f32) -> (Vec3, Vec3) {
     let camera = scene.camera.as_ref().unwrap();
-    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+    let frame = CameraBasis::of(camera, CameraRules::default());
     let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
     let ray = camera.ray(&frame, &sample).unwrap();
     let mut found = Vec::new();
@@ -78,7 +77,7 @@ fn lenses_and_other_cameras() {
     let text = "Camera \"perspective\" \"float fov\" 90 \"float lensradius\" 0.5 \"float focaldistance\" 4";
     let scene = camera(text, [100, 100]);
     let lens = scene.camera.unwrap();
-    let frame = CameraBasis::of(&lens, Dialect::Durer.rules());
+    let frame = CameraBasis::of(&lens, CameraRules::default());
     for place in [Vec2::new(0.1, 0.9), Vec2::new(0.99, 0.5)] {
         let sample = CameraSample { lens: place, ..CameraSample::at(Vec2::new(0.5, 0.25)) };
         let ray = lens.ray(&frame, &sample).unwrap();

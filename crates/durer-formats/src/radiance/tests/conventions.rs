@@ -4,8 +4,7 @@ use durer::load_text;
 use durer_diag::{Diagnostics, Files};
 use durer_render::integrator::{Integrate, Path as Paths, Settings, Transport};
 use durer_render::render::Job;
-use durer_scene::camera::{CameraBasis, CameraSample, Projection};
-use durer_scene::dialect::Dialect;
+use durer_scene::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use durer_scene::math::{Vec2, fp};
 use durer_scene::sampler::SampleId;
 use std::f64::consts::PI;
@@ -73,7 +72,7 @@ fn sees(options: &str, x: f32, y: f32) -> Vec3 {
     let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
     let scene = scene.unwrap_or_else(|| panic!("{told:?}"));
     let camera = scene.camera.as_ref().unwrap();
-    let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+    let frame = CameraBasis::of(camera, CameraRules::default());
     let sample = CameraSample { lens: Vec2::splat(0.5), ..CameraSample::at(Vec2::new(x, y)) };
     camera.ray(&frame, &sample).unwrap().dir.normalize()
 }
@@ -90,7 +89,7 @@ fn views_see_what_radiance_s_do() {
         let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
         let Some(durer_scene::camera::Camera::Orthographic(camera)) = scene.unwrap().camera else { panic!("{told:?}") };
         assert_eq!(camera.near, Some(near));
-        let frame = CameraBasis::of(&camera, Dialect::Durer.rules());
+        let frame = CameraBasis::of(&camera, CameraRules::default());
         assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
     }
     // A picture higher than wide: its height is 90 degrees.

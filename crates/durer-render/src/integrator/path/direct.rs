@@ -82,7 +82,7 @@ impl Path<'_> {
         // Each sheet is a bounce of a path, and those that end before the last one meet nothing.
         let weight = weight_of(if vertex.state.depth + sheets > self.settings.bounces { 0.0 } else { pdf });
         let factor = value * (weight / density) * visible;
-        tally.begin(|| TermKind::Direct {
+        let node = tally.begin(vertex.state.node, || TermKind::Direct {
             light: light.light,
             to_light: light.wi,
             distance: light.reach,
@@ -93,7 +93,7 @@ impl Path<'_> {
             shadow: self.settings.shadows.then(|| self.shadow(place, &light, sample.told(visible))),
         });
         let radiance = sample.lanes.light_of(light.radiance, || world.illuminant(light.light));
-        tally.end(sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
+        tally.end(node, sample.told(factor), sample.told(Spectrum::ONE), sample.told(radiance));
         factor * radiance
     }
 

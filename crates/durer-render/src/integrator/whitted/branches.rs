@@ -126,7 +126,7 @@ impl Whitted<'_> {
         let places = || partings.hits.iter().map(|(met, _)| met.place());
         let (first, last) = (places().min().unwrap_or(0), places().max().unwrap_or(0));
         run_plain(PartingKernel { whitted: self, surfaces, partings, first: first / LANES * LANES, end: last + 1 });
-        let epsilon = self.world.rules().epsilon;
+        let epsilon = self.world.shading_rules().epsilon;
         let Partings { hits, mirrored, transmitted, .. } = &*partings;
         for &(met, behind) in hits {
             let (place, before) = (met.place(), carried(met.ray()));
@@ -182,7 +182,8 @@ impl PartingKernel<'_> {
     fn divide<const TRANSMITS: bool>(self) {
         let PartingKernel { whitted, surfaces, partings, first, end } = self;
         let Partings { given, mirrored, transmitted, .. } = partings;
-        let (division, settings, epsilon) = (whitted.division(), whitted.settings, whitted.world.rules().epsilon);
+        let (division, settings, epsilon) =
+            (whitted.division(), whitted.settings, whitted.world.shading_rules().epsilon);
         for i in first..end.next_multiple_of(LANES).min(PLACES) {
             let surface = surfaces.get(i, None);
             let blend = Blend {

@@ -2,9 +2,8 @@
 
 use super::Whitted;
 use crate::integrator::spawn::{spawn_ray, to_light};
-use crate::integrator::trace::{Shadow, TermKind, TraceListener};
+use crate::integrator::trace::{NodeId, Shadow, TermKind, TraceListener};
 use crate::world::{HighlightModel, Hit, Material, Phong};
-use durer_scene::dialect::Compat;
 use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
@@ -22,10 +21,10 @@ impl Whitted<'_> {
 
     #[inline(always)]
     pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
-        let rules = self.world.rules();
+        let epsilon = self.world.shading_rules().epsilon;
         // What stands exactly at the light does not block it.
-        let reach = if rules.is_official() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        to_light(surface, seen.to_light, reach, rules.epsilon)
+        let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
+        to_light(surface, seen.to_light, reach, epsilon)
     }
 
     /// The share of a light that arrives: nothing behind a thing, or what transparent things let
@@ -35,7 +34,7 @@ impl Whitted<'_> {
             return Color::ONE;
         }
         let mut ray = self.shadow_ray(surface, seen);
-        if self.world.rules().has(Compat::ShadowFronts) {
+        if self.world.shading_rules().shadow_fronts {
             let nearest = self.world.intersect(&ray, tally);
             let blocked = nearest.is_some_and(|blocker| blocker.surface.n_shade.dot(ray.dir()) <= 0.0);
             return if blocked { Color::ZERO } else { Color::ONE };
@@ -71,7 +70,7 @@ impl Whitted<'_> {
                 break;
             }
             let rest = ray.rounded.t_max - blocker.hit.t;
-            ray = spawn_ray(&blocker.surface, to_light, rest, self.world.rules().epsilon);
+            ray = spawn_ray(&blocker.surface, to_light, rest, self.world.shading_rules().epsilon);
             found = self.world.closest_along(&mut ray, tally);
         }
         Color::ZERO
@@ -86,13 +85,14 @@ pub(super) fn direct<T: TraceListener>(
     n: Vec3,
     view: Vec3,
     seen: &Illumination,
+    node: NodeId,
     tally: &mut T,
 ) -> Color {
     let base = |model| match model {
         HighlightModel::Blinn => blinn(n, view, seen.to_light),
         HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
     };
-    scattered(phong.highlight, diffuse, n.dot(seen.to_light), base, tally) * seen.color
+    scattered(phong.highlight, diffuse, n.dot(seen.to_light), base, node, tally) * seen.color
 }
 
 /// The cosine of the angle between the normal and what is halfway between light and eye.
@@ -102,23 +102,24 @@ pub(super) fn blinn(n: Vec3, view: Vec3, to_light: Vec3) -> f32 {
 }
 
 /// What is scattered of white light that comes in at an angle of a cosine; `base` is the cosine
-/// that a highlight is a power of.
+/// that a highlight is a power of. `parent` is the light's node in the trace.
 #[inline(always)]
 pub(super) fn scattered<T: TraceListener>(
     highlight: Option<(Color, f32, HighlightModel)>,
     diffuse: Color,
     cosine: f32,
     base: impl FnOnce(HighlightModel) -> f32,
+    parent: NodeId,
     tally: &mut T,
 ) -> Color {
-    tally.begin(|| TermKind::Diffuse { cosine });
-    tally.end(Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
+    let node = tally.begin(parent, || TermKind::Diffuse { cosine });
+    tally.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
     let shines = highlight.filter(|&(.., model)| cosine > 0.0 || model == HighlightModel::Phong { behind: true });
     let Some((specular, exponent, model)) = shines else { return sum(cosine, diffuse, false, 0.0, Color::ZERO) };
     let base = base(model);
     let strength = fp::pow(base.max(0.0), exponent);
-    tally.begin(|| TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
-    tally.end(Color::splat(strength), Color::ONE, specular);
+    let node = tally.begin(parent, || TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+    tally.end(node, Color::splat(strength), Color::ONE, specular);
     sum(cosine, diffuse, true, strength, specular)
 }
 

@@ -3,7 +3,7 @@
 
 use super::direct::{blinn, scattered, sum};
 use super::{Facing, Side, Whitted};
-use crate::integrator::trace::TraceListener;
+use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::{HighlightModel, Met, Numbers, PLACES, Phong, Surfaces, TOGETHER, Vectors};
 use durer_bvh::internal::{PlainKernel, run_plain};
 use durer_scene::light::{Emitter as _, Illumination, Light};
@@ -230,7 +230,8 @@ impl Whitted<'_> {
             HighlightModel::Blinn => blinn(n, view, to_light),
             HighlightModel::Phong { .. } => reflect(view, n).dot(to_light),
         };
-        scattered(highlight, sides.diffuse.get(place), seen.cosine[place], base, tally) * seen.color.get(place)
+        scattered(highlight, sides.diffuse.get(place), seen.cosine[place], base, NodeId::NONE, tally)
+            * seen.color.get(place)
     }
 }
 

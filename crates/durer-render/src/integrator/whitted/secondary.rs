@@ -5,7 +5,6 @@ use crate::integrator::media::{Body, Media, Passage};
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{RayKind, TermKind, TraceListener};
 use crate::world::{Interaction, Material, WeightedMaterial};
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::Surface;
 
@@ -85,7 +84,8 @@ impl Whitted<'_> {
         let parted = self.parted(at, blend, &passage);
         let total = blend.transparent != Color::ZERO && !parted.passes;
         let Passage { here, there, .. } = passage;
-        tally.begin(|| TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let node = tally.begin(path.node, || TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let path = Path { node, ..path };
         let mut color = Color::ZERO;
         if let Some((dir, weight)) = self.mirrored(&parted) {
             color += self.bounce(RayKind::Reflected, &at.surface, dir, weight, path, tally);
@@ -94,7 +94,7 @@ impl Whitted<'_> {
             let path = Path { media: &passage.behind, ..path };
             color += self.bounce(RayKind::Transmitted, &at.surface, dir, weight, path, tally);
         }
-        tally.end(Color::ONE, Color::ONE, color);
+        tally.end(node, Color::ONE, Color::ONE, color);
         color
     }
 
@@ -117,10 +117,10 @@ impl Whitted<'_> {
 
     /// What divides light.
     pub(super) fn division(&self) -> Division {
-        let (rules, settings) = (self.world.rules(), &self.settings);
+        let (rules, settings) = (self.world.shading_rules(), &self.settings);
         Division {
-            raw_normals: rules.has(Compat::RawNormals),
-            exit_r0: rules.has(Compat::ExitR0),
+            raw_normals: rules.raw_normals,
+            exit_r0: rules.exit_r0,
             both: settings.reflection && settings.refraction,
         }
     }
@@ -151,7 +151,7 @@ impl Whitted<'_> {
         leaving: bool,
         media: &Media,
     ) -> Passage {
-        match self.world.rules().is_official() {
+        match self.world.shading_rules().one_medium {
             true => self.official_passage(object, blend, leaving, media),
             false => media.passage_into(self.world, (object, start), blend.ior, leaving),
         }
@@ -161,7 +161,7 @@ impl Whitted<'_> {
     fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let (known, ior) = (media.ior(), blend.ior);
         let (here, there) = match (leaving, blend.fresnel) {
-            (true, true) if known != 1.0 || self.world.rules().has(Compat::AirAtEye) => (known, 1.0),
+            (true, true) if known != 1.0 || self.world.shading_rules().air_at_eye => (known, 1.0),
             (true, _) => (ior, 1.0),
             (false, true) => (known, ior),
             (false, false) => (1.0, ior),
@@ -171,9 +171,9 @@ impl Whitted<'_> {
 
     /// How much a ray counts for that a colour weighs. The course takes the length of the colour,
     /// which for grey is more than what is left of the light.
-    pub(super) fn weight_after(&self, before: f32, weight: Color) -> f32 {
-        let old = self.world.rules().is_official();
-        before * if old { weight.length() } else { weight.max_element() }
+    pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
+        let by_length = self.world.shading_rules().weight_by_length;
+        before * if by_length { weight.length() } else { weight.max_element() }
     }
 
     /// One secondary ray, weighed by a colour.
@@ -191,15 +191,21 @@ impl Whitted<'_> {
         }
         let total = self.weight_after(path.weight, weight);
         if total < self.settings.least_weight {
-            tally.begin(|| TermKind::Cut { weight: total });
-            tally.end(weight, Color::ONE, Color::ZERO);
+            let node = tally.begin(path.node, || TermKind::Cut { weight: total });
+            tally.end(node, weight, Color::ONE, Color::ZERO);
             return Color::ZERO;
         }
-        let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.rules().epsilon);
-        tally.begin(|| TermKind::Ray { from, ray: (&ray).into(), weight: total, hit: None, bounce: None });
+        let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.shading_rules().epsilon);
+        let node = tally.begin(path.node, || TermKind::Ray {
+            from,
+            ray: (&ray).into(),
+            weight: total,
+            hit: None,
+            bounce: None,
+        });
         let found = self.world.closest_along(&mut ray, tally);
-        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, ..path }, tally);
-        tally.end(weight, Color::ONE, color);
+        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, node, ..path }, tally);
+        tally.end(node, weight, Color::ONE, color);
         weight * color
     }
 }

@@ -7,9 +7,8 @@ use super::secondary::Blend;
 use super::{Path, Whitted};
 use crate::integrator::media::{Media, Passage};
 use crate::integrator::one_by_one;
-use crate::integrator::trace::TraceListener;
+use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::{Geometry, Hit, Kind, Material, Phong, Surfaces, TOGETHER, WeightedMaterial};
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, Ray64};
 use durer_scene::sampler::SampleId;
 use std::cell::RefCell;
@@ -65,7 +64,7 @@ struct Hits {
 impl Hits {
     /// The path that a ray is part of.
     fn path(&self, Carried { media, weight, .. }: Carried, bounces: u32) -> Path<'_> {
-        Path { bounces, media: &self.media[media as usize], weight }
+        Path { bounces, media: &self.media[media as usize], weight, node: NodeId::NONE }
     }
 
     /// Keeps what rays run in; gives its number.
@@ -206,7 +205,7 @@ impl Whitted<'_> {
     /// those of others.
     #[inline]
     fn plain(&self, material: u32) -> Option<&Phong> {
-        let waits = self.settings.shadows && !self.world.rules().has(Compat::ShadowFronts);
+        let waits = self.settings.shadows && !self.world.shading_rules().shadow_fronts;
         match &self.world.materials()[material as usize] {
             Material::Phong(phong) if waits => Some(phong),
             _ => None,

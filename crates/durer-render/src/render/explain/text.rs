@@ -8,7 +8,6 @@ use crate::world::{Geometry, Material, World};
 use durer_diag::{Files, Span};
 use durer_image::Transfer;
 use durer_scene::describe::DescribedList;
-use durer_scene::dialect::Compat;
 use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
@@ -484,7 +483,7 @@ fn shadow_line(shadow: &Shadow, names: &Names) -> String {
     let (object, t) = (names.short_object(object), number(t));
     match shadow.share {
         share if share.is(0.0) => format!("in the shadow of {object}, {t} away"),
-        share if share.is(1.0) && names.world.rules().has(Compat::ShadowFronts) => {
+        share if share.is(1.0) && names.world.shading_rules().shadow_fronts => {
             format!(
                 "{object} stands {t} away, but does not block it: its back is turned to the ray (quirk `shadow-fronts`)"
             )

@@ -5,7 +5,7 @@ use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
 use crate::world::{Hit, Interaction, World};
 use durer_scene::math::random::Random;
-use durer_scene::scene::{self, Group, MatrixOp, Node, Operation};
+use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Operation};
 use durer_scene::shape::*;
 use glam::{DAffine3, DVec3};
 use std::path::Path;
@@ -84,7 +84,9 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
         Node::Group(group) => count(&group.objects) > 0,
-        Node::Transform(ops, inner) => member(inner, MatrixOp::product(ops, 0).inverse().transform_point3(p)),
+        Node::Transform(ops, inner) => {
+            member(inner, MatrixOp::product(ops, MatrixRules::default()).inverse().transform_point3(p))
+        }
         Node::Primitive(shape) => shape.inside(p).unwrap(),
         Node::Mesh(_) => p.abs().max_element() < 1.0,
         Node::HeightField(_) | Node::Voxels(..) => false,

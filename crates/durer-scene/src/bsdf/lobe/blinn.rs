@@ -1,6 +1,6 @@
 //! The course's highlights as lobes.
 
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::warp;
 use crate::math::{Vec2, Vec3, fp, reflect};
 use crate::spectrum::Spectrum;
@@ -28,6 +28,11 @@ impl Blinn {
 }
 
 impl Scatter for Blinn {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind::GLOSSY
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let half = (wo + wi).normalize_or_zero();
         // What the power is of, and how much denser directions are than what is chosen.

@@ -4,7 +4,7 @@
 //! 14(1), 2025: Fujii's version of Oren and Nayar's, and a term that gives back what is scattered
 //! more than once.
 
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::albedo::Dielectric;
 use crate::bsdf::{Frame, warp};
 use crate::math::{Vec2, Vec3, fp};
@@ -102,6 +102,11 @@ impl<'a> Diffuse<'a> {
 }
 
 impl Scatter for Diffuse<'_> {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind::DIFFUSE
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let into = wi.dot(self.normal);
         if into <= 0.0 || wi.z <= 0.0 {
@@ -132,6 +137,11 @@ pub struct DiffuseTransmission {
 }
 
 impl Scatter for DiffuseTransmission {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind::DIFFUSE.transmitting()
+    }
+
     fn eval(&self, _: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let share = FRAC_1_PI * (-wi.z).max(0.0);
         (self.color * share, share)

@@ -4,9 +4,10 @@
 //! Neubelt and Pettineo, *Crafting a Next-Gen Material Pipeline for The Order: 1886*, 2013 (the
 //! masking).
 
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
+use crate::bsdf::microfacet::fuzz_value;
 use crate::bsdf::warp;
-use crate::math::{Vec2, Vec3, fp};
+use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 use std::f32::consts::PI;
 
@@ -17,19 +18,15 @@ pub struct Fuzz {
     pub roughness: f32,
 }
 
-/// The value without the cosine.
-pub fn value(roughness: f32, wo: Vec3, wi: Vec3) -> f32 {
-    let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return 0.0 };
-    let sharpness = 1.0 / (roughness * roughness).max(0.01);
-    let sine = (1.0 - h.z * h.z).max(0.0).sqrt();
-    let density = (2.0 + sharpness) * fp::pow(sine, sharpness) / (2.0 * PI);
-    density / (4.0 * (wo.z + wi.z - wo.z * wi.z).max(1e-6))
-}
-
 impl Scatter for Fuzz {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind::DIFFUSE
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         match wi.z > 0.0 {
-            true => (Spectrum::splat(wi.z * value(self.roughness, wo, wi)), 1.0 / (2.0 * PI)),
+            true => (Spectrum::splat(wi.z * fuzz_value(self.roughness, wo, wi)), 1.0 / (2.0 * PI)),
             false => NOTHING,
         }
     }

@@ -1,6 +1,6 @@
 //! Single directions: mirrors, smooth glass, and what goes straight on.
 
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
@@ -28,7 +28,7 @@ pub fn refracted(w: Vec3, h: Vec3, eta: f32) -> Option<Vec3> {
 }
 
 macro_rules! single_direction {
-    ($type:ty, |$lobe:ident, $wo:ident| $scattered:expr) => {
+    ($type:ty, |$own:ident| $kind:expr, |$lobe:ident, $wo:ident| $scattered:expr) => {
         impl Scatter for $type {
             fn eval(&self, _: Vec3, _: Vec3) -> (Spectrum, f32) {
                 NOTHING
@@ -37,16 +37,29 @@ macro_rules! single_direction {
                 let $lobe = self;
                 $scattered
             }
-            fn is_delta(&self) -> bool {
-                true
+            #[inline]
+            fn kind(&self) -> LobeKind {
+                let $own = self;
+                $kind
             }
         }
     };
 }
 
-single_direction!(Mirror, |_lobe, wo| Some(Scattered { wi: Vec3::new(-wo.x, -wo.y, wo.z), value: Spectrum::ONE }));
-single_direction!(Through, |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE }));
+single_direction!(Mirror, |_lobe| LobeKind::MIRROR, |_lobe, wo| Some(Scattered {
+    wi: Vec3::new(-wo.x, -wo.y, wo.z),
+    value: Spectrum::ONE
+}));
+single_direction!(
+    Through,
+    |_lobe| LobeKind { is_straight: true, ..LobeKind::MIRROR.transmitting() },
+    |_lobe, wo| Some(Scattered { wi: -wo, value: Spectrum::ONE })
+);
 // Radiance is denser where the index is higher: L / n^2 stays what it is. Source: Veach's thesis,
 // section 5.2.
-single_direction!(Refraction, |lobe, wo| refracted(wo, Vec3::Z, lobe.eta)
-    .map(|wi| Scattered { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));
+single_direction!(Refraction, |lobe| LobeKind::MIRROR.refracting(lobe.eta), |lobe, wo| refracted(
+    wo,
+    Vec3::Z,
+    lobe.eta
+)
+.map(|wi| Scattered { wi, value: Spectrum::splat(1.0 / (lobe.eta * lobe.eta)) }));

@@ -11,7 +11,7 @@
 //! Chiang, Bitterli, Tappan and Burley, *A Practical and Controllable Hair and Fur Model for
 //! Production Path Tracing*, Eurographics 2016 (the spread around it, roughness and colour).
 
-use super::{Scatter, Scattered};
+use super::{LobeKind, Scatter, Scattered};
 use crate::bsdf::fresnel;
 use crate::material::HairMaterial;
 use crate::math::{Color, Vec2, Vec3, fp};
@@ -179,6 +179,11 @@ impl Hair<'_> {
 }
 
 impl Scatter for Hair<'_> {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind { is_fibre: true, ..LobeKind::DIFFUSE.transmitting() }
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let (out, coming) = (Direction::of(wo), Direction::of(wi));
         let ways = self.ways(wo, &out);

@@ -34,9 +34,63 @@ pub trait Scatter {
     /// numbers.
     fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered>;
 
+    /// What a path tracer must know of it beyond its values.
+    fn kind(&self) -> LobeKind;
+
     /// Whether it scatters into single directions only.
+    #[inline]
     fn is_delta(&self) -> bool {
-        false
+        self.kind().spread == Spread::Delta
+    }
+}
+
+/// How widely a lobe scatters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spread {
+    /// Into single directions: a perfect mirror, clear glass.
+    Delta,
+    /// Mostly into a narrow cone, which many samples of a light would miss.
+    Glossy,
+    /// Into all directions alike, or nearly.
+    Diffuse,
+}
+
+/// The properties of a lobe that decide how lights are sampled for it. [`Scatter::kind`] states them
+/// for every lobe, so none can be forgotten.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LobeKind {
+    /// How widely it scatters.
+    pub spread: Spread,
+    /// Whether it scatters light that arrives from behind the surface.
+    pub transmits: bool,
+    /// Whether light goes on in its direction, as if nothing were there.
+    pub is_straight: bool,
+    /// Whether it is a fibre, which scatters light from any side to any side.
+    pub is_fibre: bool,
+    /// Index of refraction behind the surface over that before it; `None` where nothing is refracted.
+    pub eta: Option<f32>,
+}
+
+impl LobeKind {
+    /// A perfect mirror.
+    pub const MIRROR: LobeKind = LobeKind::reflection(Spread::Delta);
+    /// A rough mirror, or a highlight.
+    pub const GLOSSY: LobeKind = LobeKind::reflection(Spread::Glossy);
+    /// A matte surface.
+    pub const DIFFUSE: LobeKind = LobeKind::reflection(Spread::Diffuse);
+
+    const fn reflection(spread: Spread) -> LobeKind {
+        LobeKind { spread, transmits: false, is_straight: false, is_fibre: false, eta: None }
+    }
+
+    /// The kind of a lobe that scatters light from behind the surface as well, or only that.
+    pub const fn transmitting(self) -> LobeKind {
+        LobeKind { transmits: true, ..self }
+    }
+
+    /// The kind of a transmitting lobe that refracts by the relative index `eta`.
+    pub const fn refracting(self, eta: f32) -> LobeKind {
+        LobeKind { transmits: true, eta: Some(eta), ..self }
     }
 }
 
@@ -58,23 +112,13 @@ macro_rules! lobes {
             fn sample(&self, wo: Vec3, choice: f32, u: Vec2) -> Option<Scattered> {
                 match self { $(Lobe::$name(lobe) => lobe.sample(wo, choice, u),)+ }
             }
-            fn is_delta(&self) -> bool {
-                match self { $(Lobe::$name(lobe) => lobe.is_delta(),)+ }
+            #[inline]
+            fn kind(&self) -> LobeKind {
+                match self { $(Lobe::$name(lobe) => lobe.kind(),)+ }
             }
         }
 
         impl Lobe<'_> {
-            /// Whether it scatters light from behind the surface into many directions.
-            pub fn passes_light(&self) -> bool {
-                matches!(self, Lobe::DiffuseTransmission(_) | Lobe::RoughGlass(_) | Lobe::Hair(_))
-                    || matches!(self, Lobe::Rough(rough) if rough.behind)
-            }
-
-            /// Whether it may scatter much into a narrow part of all directions.
-            pub fn is_glossy(&self) -> bool {
-                matches!(self, Lobe::Rough(_) | Lobe::RoughGlass(_) | Lobe::Blinn(_))
-            }
-
             /// Its name, for explanations.
             pub fn name(&self) -> &'static str {
                 match self { $(Lobe::$name(_) => stringify!($name),)+ }

@@ -1,6 +1,6 @@
 //! Rough mirrors: GGX with the reflectance of a metal or of a dielectric.
 
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::film::Film;
 use crate::bsdf::fresnel::{self, F82, Sheet};
 use crate::bsdf::microfacet::Ggx;
@@ -55,6 +55,11 @@ impl Rough {
 }
 
 impl Scatter for Rough {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        if self.behind { LobeKind::GLOSSY.transmitting() } else { LobeKind::GLOSSY }
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let wi = self.above(wi);
         let Some(h) = (wo + wi).try_normalize().filter(|_| wi.z > 0.0) else { return NOTHING };

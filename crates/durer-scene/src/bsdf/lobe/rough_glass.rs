@@ -3,7 +3,7 @@
 //! Source: Walter and others, *Microfacet Models for Refraction through Rough Surfaces*, EGSR 2007.
 
 use super::glass::refracted;
-use super::{NOTHING, Scatter, Scattered};
+use super::{LobeKind, NOTHING, Scatter, Scattered};
 use crate::bsdf::fresnel;
 use crate::bsdf::microfacet::Ggx;
 use crate::math::{Vec2, Vec3};
@@ -53,6 +53,11 @@ impl RoughGlass {
 }
 
 impl Scatter for RoughGlass {
+    #[inline]
+    fn kind(&self) -> LobeKind {
+        LobeKind::GLOSSY.refracting(self.eta)
+    }
+
     fn eval(&self, wo: Vec3, wi: Vec3) -> (Spectrum, f32) {
         let passes = wi.z < 0.0;
         let Some((h, spread)) = facet(wo, wi, self.eta) else { return NOTHING };

@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 
 /// The ray of a camera in our own dialect.
 pub fn ray(camera: &impl Projection, sample: CameraSample) -> Option<Ray> {
-    camera.ray(&CameraBasis::of(camera, &rules(&[])), &sample)
+    camera.ray(&CameraBasis::of(camera, OURS), &sample)
 }
 
 /// What a point of the picture sees, x to the right, y up, -z ahead where nothing else is said.
@@ -25,7 +25,7 @@ fn dir(camera: &impl Projection, x: f32, y: f32) -> Vec3 {
 /// The solid angle of a whole picture, by the middle of each of 480 x 480 cells.
 fn solid_angle(camera: &impl Projection) -> f64 {
     const CELLS: u32 = 480;
-    let frame = CameraBasis::of(camera, &rules(&[]));
+    let frame = CameraBasis::of(camera, OURS);
     let side = 2.0 / f64::from(CELLS);
     let at = |i: u32| (-1.0 + side * (f64::from(i) + 0.5)) as f32;
     let cells = (0..CELLS * CELLS).map(|i| CameraSample::at(Vec2::new(at(i % CELLS), at(i / CELLS))));
@@ -157,7 +157,7 @@ fn walls_that_share_an_edge_show_the_same_along_it() {
     assert_eq!(camera.proportions(), Some(Vec2::new(6.0, 3.0)));
     // 600 x 300 pixels: the border between the last column of one wall and the first of the next,
     // seen for both.
-    let raster = Raster::new(600, 300, camera.proportions(), &rules(&[]));
+    let raster = Raster::new(600, 300, camera.proportions(), OURS);
     for (column, eye_row) in [(200.0, 0.0), (200.0, 150.0), (400.0, 0.0), (400.0, 150.0)] {
         for row in [0.5, 70.5, 149.5] {
             let at = |x: f32| raster.point(Vec2::new(x, eye_row + row));
@@ -209,7 +209,7 @@ fn a_closed_path_is_smooth_where_it_closes_and_sees_all_sides() {
     let mut path: Vec<[f32; 6]> = (0..12).map(row).collect();
     path.push(path[0]);
     let camera = MultipleCenterCamera { path, aspect: 2.0, ..MultipleCenterCamera::default() };
-    let frame = CameraBasis::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, OURS);
     let at = |x: f32| CameraSample::at(Vec2::new(x, 0.0));
     close(ray(&camera, at(1.0)).unwrap().origin, ray(&camera, at(-1.0)).unwrap().origin);
     // The footprint holds the path's slope.

@@ -70,7 +70,7 @@ fn all_rays_of_a_point_meet_in_the_plane_of_focus_and_nowhere_else() {
 #[test]
 fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
     let camera = PinholeCamera { angle: 90.0, hole: 0.2, film_distance: 0.5, ..PinholeCamera::default() };
-    let frame = CameraBasis::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, OURS);
     let (mut random, mut far, mut near) = (Random(3), 0f32, 0f32);
     for _ in 0..20_000 {
         let lens = Vec2::new(random.unit(), random.unit());
@@ -86,7 +86,7 @@ fn a_hole_blurs_far_points_to_its_own_size_and_near_ones_more() {
 fn pairs_of_eyes_agree_where_their_views_converge() {
     let camera = StereoCamera { angle: 60.0, separation: 0.3, convergence: 5.0, ..StereoCamera::default() };
     assert_eq!(camera.proportions(), Some(Vec2::new(2.0, 1.0)));
-    let frame = CameraBasis::of(&camera, &rules(&[]));
+    let frame = CameraBasis::of(&camera, OURS);
     let pair = |camera: &StereoCamera, point: Vec3| {
         let mut found = Vec::new();
         camera.project(&frame, point, Vec2::ZERO, &mut |p| found.push(p));
@@ -135,7 +135,7 @@ fn a_matrix_of_a_plain_camera_is_that_camera_at_any_scale() {
 
 #[test]
 fn lenses_distort_as_the_formula_says_and_see_nothing_behind_a_fold() {
-    let frame = CameraBasis::of(&photograph(), &rules(&[]));
+    let frame = CameraBasis::of(&photograph(), OURS);
     let seen = |camera: &ProjectiveCamera, x: f32, y: f32| {
         let mut found = None;
         camera.project(&frame, Vec3::new(1.0 + x, 2.0 - y, 2.0), Vec2::ZERO, &mut |point| found = Some(point));

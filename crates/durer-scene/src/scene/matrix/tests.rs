@@ -2,8 +2,10 @@
 
 use super::*;
 
+const LEFT: MatrixRules = MatrixRules { matrix_on_left: true, dropped_shear: false };
+
 fn image(ops: &[MatrixOp], p: [f64; 3]) -> [f64; 3] {
-    let image = MatrixOp::product(ops, 0).transform_point3(p.into());
+    let image = MatrixOp::product(ops, MatrixRules::default()).transform_point3(p.into());
     // Zeroes of either sign are alike.
     image.to_array().map(|x| x + 0.0)
 }
@@ -49,12 +51,9 @@ fn a_matrix_is_given_by_rows_and_stands_on_the_left_where_that_is_asked_for() {
     assert_eq!(image(&[shear], [1.0, 1.0, 1.0]), [8.0, 7.0, 8.0]);
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), shear];
     let point = glam::DVec3::ONE;
-    assert_eq!(MatrixOp::product(&ops, 0).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
-    assert_eq!(
-        MatrixOp::product(&ops, Compat::MatrixOnLeft.bit()).transform_point3(point).to_array(),
-        [35.0, 16.0, 17.0]
-    );
+    assert_eq!(MatrixOp::product(&ops, MatrixRules::default()).transform_point3(point).to_array(), [80.0, 70.0, 80.0]);
+    assert_eq!(MatrixOp::product(&ops, LEFT).transform_point3(point).to_array(), [35.0, 16.0, 17.0]);
     // Only a `Matrix` is.
     let ops = [MatrixOp::Scale(Vec3::splat(10.0)), MatrixOp::Translate(Vec3::X)];
-    assert_eq!(MatrixOp::product(&ops, Compat::MatrixOnLeft.bit()), MatrixOp::product(&ops, 0));
+    assert_eq!(MatrixOp::product(&ops, LEFT), MatrixOp::product(&ops, MatrixRules::default()));
 }

@@ -2,9 +2,8 @@
 
 use super::super::Assets;
 use super::*;
-use crate::camera::{CameraBasis, CameraSample, Projection};
+use crate::camera::{CameraBasis, CameraRules, CameraSample, Projection};
 use crate::describe::FileName;
-use crate::dialect::Dialect;
 use crate::math::Vec2;
 use crate::math::random::Random;
 use crate::scene::MatrixOp;
@@ -41,7 +40,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
             let staging = Staging { view: Some(view), up: Some(up), aspect: Some(aspect), ..Staging::default() };
             let scene = staged(scene(Vec::clone(&corners)), &staging);
             let camera = scene.camera.as_ref().unwrap();
-            let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+            let frame = CameraBasis::of(camera, CameraRules::default());
             // The picture's border: its larger side runs from -1 to 1.
             let border = Vec2::new(aspect.min(1.0), (1.0 / aspect).min(1.0));
             let (mut most, mut low, mut high) = (0f32, Vec2::INFINITY, Vec2::NEG_INFINITY);
@@ -82,7 +81,7 @@ fn points_flat_things_and_nothing_at_all_have_cameras_too() {
             let camera = scene.camera.as_ref().unwrap();
             let pose = camera.pose();
             assert!(pose.center.is_finite() && pose.direction.is_finite() && camera.validate().is_ok());
-            let frame = CameraBasis::of(camera, Dialect::Durer.rules());
+            let frame = CameraBasis::of(camera, CameraRules::default());
             points(&scene, &mut |p| {
                 let mut seen = false;
                 camera.project(&frame, p.as_vec3(), Vec2::splat(0.5), &mut |at| seen |= at.abs().max_element() <= 1.0);

@@ -140,7 +140,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rays that leave a surface hit it again (acne): the epsilon is 0 or too small",
         "hits count at t > 1e-4",
         "hits count at t > 0",
-        |v, _| v.world.edit().rules.epsilon = Some(0.0),
+        |v, _| v.change_rules(|rules| rules.epsilon = Some(0.0)),
     ),
     row(
         "index-inverted",

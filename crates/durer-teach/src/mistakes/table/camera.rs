@@ -3,6 +3,7 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Aspect, Rays};
 use durer_scene::camera::Projection;
+use durer_scene::camera::UpRule;
 use durer_scene::dialect::Compat;
 use durer_scene::math::{Vec2, Vec3, fp};
 
@@ -116,9 +117,8 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "as the year has it: v = cross(u, w), or `up` as it is written",
         "the other",
         |v, _| {
-            let raw = v.world.rules().has(Compat::RawUp) || v.world.rules().has(Compat::SkewUp);
-            v.world.edit().rules.compat &= !(Compat::RawUp.bit() | Compat::SkewUp.bit());
-            v.world.edit().rules.compat |= if raw { 0 } else { Compat::RawUp.bit() };
+            let raw = v.world.camera_rules().up != UpRule::Perpendicular;
+            v.world.edit().camera_rules.up = if raw { UpRule::Perpendicular } else { UpRule::Raw };
             v.reframe();
         },
     ),
@@ -129,8 +129,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "v = cross(u, w)",
         "v = normalize(up)",
         |v, _| {
-            v.world.edit().rules.compat &= !Compat::RawUp.bit();
-            v.world.edit().rules.compat |= Compat::SkewUp.bit();
+            v.world.edit().camera_rules.up = UpRule::Skew;
             v.reframe();
         },
     ),

@@ -3,8 +3,8 @@
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Behind, Normals, Pick};
 use durer_render::world::Geometry;
-use durer_scene::dialect::{Compat, CompatSet, MeshNormals};
-use durer_scene::scene::MatrixOp;
+use durer_scene::dialect::{Compat, MeshNormals};
+use durer_scene::scene::{MatrixOp, MatrixRules};
 use durer_scene::shape::Primitive;
 use glam::DAffine3;
 use std::sync::Arc;
@@ -24,7 +24,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "normals of transformed things go by M, not by its inverse transpose",
         "N = normalize(M^-T n)",
         "N = normalize(M n)",
-        |v, _| v.world.edit().rules.compat |= Compat::MovedNormals.bit(),
+        |v, _| v.world.edit().shading.moved_normals = true,
     ),
     row(
         "normals-inverse",
@@ -183,9 +183,9 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "M = M1 * M2 * M3",
         "M = M3 * M2 * M1",
         |v, _| {
-            v.place(|ops, compat| {
+            v.place(|ops, rules| {
                 let reversed: Vec<MatrixOp> = ops.iter().rev().copied().collect();
-                MatrixOp::product(&reversed, compat)
+                MatrixOp::product(&reversed, rules)
             });
         },
     ),
@@ -195,7 +195,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "angles of rotations are taken as radians",
         "angle * pi / 180",
         "angle",
-        |v, _| v.place(|ops, compat| turned(ops, compat, f32::to_degrees)),
+        |v, _| v.place(|ops, rules| turned(ops, rules, f32::to_degrees)),
     ),
     row(
         "rotation-negated",
@@ -203,7 +203,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "rotations turn the other way",
         "rotation by angle",
         "rotation by -angle, or the transposed matrix",
-        |v, _| v.place(|ops, compat| turned(ops, compat, |angle| -angle)),
+        |v, _| v.place(|ops, rules| turned(ops, rules, |angle| -angle)),
     ),
     row("transforms-ignored", "transforms", "transforms have no effect", "M = M1 * M2 * M3", "M = identity", |v, _| {
         v.place(|_, _| DAffine3::IDENTITY)
@@ -214,7 +214,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "things are transformed by the inverse of M",
         "ray to object space by M^-1",
         "ray to object space by M",
-        |v, _| v.place(|ops, compat| MatrixOp::product(ops, compat).inverse()),
+        |v, _| v.place(|ops, rules| MatrixOp::product(ops, rules).inverse()),
     ),
     row(
         "plane-negated",
@@ -372,14 +372,14 @@ pub(super) const MISTAKES: &[Mistake] = &[
     )
     .with(Values::Only(&[0.0, 1.0, 2.0, 3.0])),
     row("translations-ignored", "transforms", "translations have no effect", "M = T * R * S", "M without T", |v, _| {
-        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Translate(_))))
+        v.place(|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Translate(_))))
     }),
     row("scales-ignored", "transforms", "scales have no effect", "M = T * R * S", "M without S", |v, _| {
-        v.place(|ops, compat| without(ops, compat, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
+        v.place(|ops, rules| without(ops, rules, |op| matches!(op, MatrixOp::Scale(_) | MatrixOp::UniformScale(_))));
     }),
     row("rotations-ignored", "transforms", "rotations have no effect", "M = T * R * S", "M without R", |v, _| {
-        v.place(|ops, compat| {
-            without(ops, compat, |op| {
+        v.place(|ops, rules| {
+            without(ops, rules, |op| {
                 matches!(op, MatrixOp::XRotate(_) | MatrixOp::YRotate(_) | MatrixOp::ZRotate(_) | MatrixOp::Rotate(..))
             })
         });
@@ -400,13 +400,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
 ];
 
 /// The product without some of its matrices.
-fn without(ops: &[MatrixOp], compat: CompatSet, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
+fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
     let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
-    MatrixOp::product(&kept, compat)
+    MatrixOp::product(&kept, rules)
 }
 
 /// The product with other angles of rotation.
-fn turned(ops: &[MatrixOp], compat: CompatSet, change: fn(f32) -> f32) -> DAffine3 {
+fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
     let change = |op: &MatrixOp| match *op {
         MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),
         MatrixOp::YRotate(angle) => MatrixOp::YRotate(change(angle)),
@@ -415,5 +415,5 @@ fn turned(ops: &[MatrixOp], compat: CompatSet, change: fn(f32) -> f32) -> DAffin
         other => other,
     };
     let changed: Vec<MatrixOp> = ops.iter().map(change).collect();
-    MatrixOp::product(&changed, compat)
+    MatrixOp::product(&changed, rules)
 }

@@ -5,7 +5,7 @@ use durer_scene::shape::mesh::NO_INDEX;
 
 /// Triangles whose normals are odd, by number.
 #[derive(Debug, Default)]
-pub(super) struct Given {
+pub(in crate::check) struct Given {
     /// Whose normals point to the other side than the way round of their corners says.
     pub against: Vec<u32>,
     /// Without normals, where others have some.

@@ -1,7 +1,8 @@
-//! The mesh files of a scene, and what shows them.
+//! The mesh files of a scene, and the objects that show them.
 
-use super::normals::Given;
-use super::topology::Topology;
+pub(super) mod normals;
+pub(super) mod topology;
+
 use crate::check::finding::vector;
 use crate::check::probes::ProbeGrid;
 use durer_diag::{Diagnostic, Diagnostics, Span};
@@ -12,6 +13,8 @@ use durer_scene::describe::FileName;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{Group, Node, Object};
 use durer_scene::shape::MeshData;
+use normals::Given;
+use topology::Topology;
 
 /// Files of more bytes are not looked into: the check is to take no longer than the eye.
 const MAX_BYTES: usize = 64 << 20;

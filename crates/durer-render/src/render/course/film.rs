@@ -1,20 +1,16 @@
-//! The films of the course's assignments, kept as they are.
+//! The film of Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of
+//! the pixel they are for, also from neighbouring pixels.
 //!
-//! Here is Fall 2004, assignment 7: stored samples, weighted by their offset from the centre of the
-//! pixel they are for, also from neighbouring pixels. `jitter.rs` is Fall 2012, assignment 5.
-//! Each pixel is summed in one fixed order, so it is the same whatever part of the picture it is
-//! made with.
+//! Each pixel is summed in one fixed order, so it does not depend on the part of the picture that it
+//! is made with.
 
 use durer_scene::math::{Color, Vec2, fp};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 
-mod jitter;
 #[cfg(test)]
 mod tests;
-
-pub use jitter::{average_3x3, blur, blur_and_average, jittered_position};
 
 /// One sample of the 2004 film.
 #[derive(Clone, Copy, Debug, PartialEq)]

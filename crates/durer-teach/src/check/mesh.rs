@@ -1,16 +1,12 @@
 //! Meshes: their triangles, edges and normals, file by file.
 
-pub(super) mod files;
-mod normals;
-pub(super) mod topology;
-
 use super::finding::{Finding, counted, percent, vector};
+use super::mesh_files::MeshFile;
+use super::mesh_files::topology::Topology;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::{Material, Object as Placed};
 use durer_scene::dialect::Compat;
-use files::MeshFile;
-use topology::Topology;
 
 /// A share of triangles without area that is more than the poles of a turned body have.
 const MANY_FLAT: f32 = 0.03;

@@ -1,6 +1,6 @@
 //! Comparison with the official pictures. `DURER_CORPUS` names the folder that holds them.
 
-use super::super::course::StoredSample;
+use super::super::film::StoredSample;
 use super::*;
 use durer_scene::math::fp;
 use durer_scene::sampler::Sampler;

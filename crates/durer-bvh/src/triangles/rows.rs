@@ -1,0 +1,24 @@
+//! Rows of a leaf: the corners of its triangles by coordinate, then their numbers.
+
+use crate::build::is_finite;
+use crate::lanes::ROWS;
+use crate::math::Vec3;
+
+/// Bit that makes a triangle number below 2^28 an `f32` of ordinary size. Lanes past the end of a
+/// row are computed with too, and subnormal numbers are slow.
+pub(super) const TAG: u32 = 1 << 30;
+
+/// Number of the triangle in a lane of a leaf of `count` triangles.
+#[inline(always)]
+pub(super) fn number(rows: &[f32], count: usize, lane: usize) -> u32 {
+    rows[(ROWS - 1) * count + lane].to_bits() & !TAG
+}
+
+/// Writes a triangle into the rows of a leaf of `count` triangles. `rows` begins with its lane. A
+/// triangle with a corner that is not finite becomes NaN, which no ray hits.
+pub(super) fn put(rows: &mut [f32], count: usize, number: u32, corners: [Vec3; 3]) {
+    let [a, b, c] = if is_finite(&corners) { corners } else { [Vec3::NAN; 3] };
+    let tagged = f32::from_bits(number | TAG);
+    let column = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z, tagged];
+    rows.iter_mut().step_by(count).zip(column).for_each(|(to, x)| *to = x);
+}

@@ -1,0 +1,18 @@
+//! What is written to files and streams.
+
+use std::io::{self, Write};
+
+/// Content of a file: bytes, or a value that is serialised while it is written.
+pub trait Content {
+    /// Writes all of it to `out`.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()>;
+}
+
+impl<B: AsRef<[u8]>> Content for B {
+    fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
+        out.write_all(self.as_ref())
+    }
+}

@@ -1,0 +1,61 @@
+//! A quirk of Fall 2012: on a texture, ambient light is that of the pixel shaded before with the
+//! same material, in rows from the bottom.
+
+use crate::render::{Job, Sampling, center_ray};
+use crate::world::{Material, World};
+use durer_scene::camera::Raster;
+use durer_scene::math::Color;
+
+/// Whether a job has the quirk: one ray a pixel, in a world whose rules have it.
+pub(in crate::render) fn applies(world: &World, job: &Job) -> bool {
+    job.sampling == Sampling::Center && world.shading_rules().stale_texels
+}
+
+/// A material's number, and the colour of its texture, noise or plain surface.
+struct Texel {
+    material: u32,
+    color: Color,
+    /// The colour of the material where nothing was shaded before.
+    plain: Color,
+}
+
+/// The texel at a pixel's centre; `None` where nothing is hit, or a pattern of materials.
+fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
+    let ray = center_ray(world, raster, pixel)?;
+    let at = world.intersect(&ray, &mut ())?;
+    let Material::Phong(phong) = &world.materials()[at.material as usize] else { return None };
+    let color = world.diffuse_color(phong, &at.surface);
+    Some(Texel { material: at.material, color, plain: phong.diffuse })
+}
+
+/// What the quirk adds to each pixel of the whole picture. `stops` is asked before each pixel; once
+/// it says so, the rest is 0.
+pub(in crate::render) fn differences(
+    world: &World,
+    job: &Job,
+    raster: &Raster,
+    stops: impl Fn() -> bool,
+) -> Vec<Color> {
+    let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
+    let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
+    for (y, x) in (0..job.height).rev().flat_map(|y| (0..job.width).map(move |x| (y, x))) {
+        if stops() {
+            break;
+        }
+        let Some(Texel { material, color, plain }) = texel(world, raster, (x, y)) else { continue };
+        let before = last[material as usize].replace(color).unwrap_or(plain);
+        differences[y as usize * job.width as usize + x as usize] = world.ambient() * (before - color);
+    }
+    differences
+}
+
+/// What the quirk adds to one pixel.
+pub(in crate::render) fn difference(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
+    let own = texel(world, raster, (x, y))?;
+    // In rows from the bottom: first those of this row to the left, from right to left, then the
+    // rows below.
+    let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
+    let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));
+    let before = before.find_map(|pixel| texel(world, raster, pixel).filter(|found| found.material == own.material));
+    Some(world.ambient() * (before.map_or(own.plain, |found| found.color) - own.color))
+}

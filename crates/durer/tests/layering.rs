@@ -1,0 +1,209 @@
+//! The structure of the sources: crates name only crates below them, modules name each other in no
+//! circle, and files stay small.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use syn::{Item, UseTree};
+
+/// The crates by layer, as ARCHITECTURE.md draws them. A crate may name crates of lower layers only.
+const LAYERS: [&[&str]; 8] = [
+    &["durer-bvh", "durer-diag", "durer-photo"],
+    &["durer-image"],
+    &["durer-scene"],
+    &["durer-formats", "durer-render"],
+    &["durer-teach"],
+    &["durer"],
+    &["durer-cli"],
+    &["xtask"],
+];
+
+/// The one arrow that Cargo.toml has and a program has not: texts of scenes for tests.
+const FOR_TESTS: (&str, &str) = ("durer-render", "durer-formats");
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn folder_of(name: &str) -> PathBuf {
+    if name == "xtask" { root().join(name) } else { root().join("crates").join(name) }
+}
+
+fn layer(name: &str) -> Option<usize> {
+    LAYERS.iter().position(|crates| crates.contains(&name))
+}
+
+/// Crates of ours in the `[dependencies]` of a Cargo.toml, without those for tests.
+fn dependencies(manifest: &str) -> Vec<String> {
+    let mut section = "";
+    let mut found = Vec::new();
+    for line in manifest.lines() {
+        if line.starts_with('[') {
+            section = line.trim();
+        } else if section == "[dependencies]" {
+            let name = line.split(['.', '=', ' ']).next().unwrap_or("");
+            found.extend(Some(name.to_string()).filter(|name| name.starts_with("durer")));
+        }
+    }
+    found
+}
+
+#[test]
+fn crates_name_only_crates_below_them() {
+    for (own, crates) in LAYERS.iter().enumerate() {
+        for name in *crates {
+            let manifest = fs::read_to_string(folder_of(name).join("Cargo.toml")).unwrap();
+            for other in dependencies(&manifest) {
+                let below = layer(&other).unwrap_or_else(|| panic!("{other} is in no layer"));
+                let for_tests = (*name, &other[..]) == FOR_TESTS;
+                assert!(below < own || for_tests, "{name} may not name {other}");
+            }
+        }
+    }
+}
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+type Module = Vec<String>;
+
+/// The modules of a crate that have files of their own, by path from its root. Tests are left out.
+fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
+    let mut all = Vec::new();
+    files(source, &mut all);
+    let module = |path: PathBuf| {
+        let relative = path.strip_prefix(source).unwrap().with_extension("");
+        let mut module: Module = relative.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        if module == ["lib"] || module == ["main"] || module.last().is_some_and(|last| last == "mod") {
+            module.pop();
+        }
+        (module, path)
+    };
+    let is_test = |module: &Module| module.iter().any(|part| part.contains("test"));
+    all.into_iter().map(module).filter(|(module, _)| !is_test(module)).collect()
+}
+
+/// Paths of a `use`, each as its segments.
+fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
+    match tree {
+        UseTree::Path(path) => {
+            before.push(path.ident.to_string());
+            paths(&path.tree, before, found);
+            before.pop();
+        }
+        UseTree::Group(group) => group.items.iter().for_each(|tree| paths(tree, before, found)),
+        UseTree::Name(name) => found.push([&before[..], &[name.ident.to_string()]].concat()),
+        UseTree::Rename(name) => found.push([&before[..], &[name.ident.to_string()]].concat()),
+        _ => found.push(before.clone()),
+    }
+}
+
+/// The module of ours that a path of a `use` in `own` leads into; `None` for other crates.
+fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) -> Option<Module> {
+    let (mut at, rest) = match path[0].as_str() {
+        "crate" => (Vec::new(), &path[1..]),
+        "self" => (own.clone(), &path[1..]),
+        "super" => (own.clone(), path),
+        first => (own.clone(), modules.contains_key(&[&own[..], &[first.into()]].concat()).then_some(path)?),
+    };
+    for segment in rest {
+        if segment == "super" {
+            at.pop();
+            continue;
+        }
+        at.push(segment.clone());
+        if !modules.contains_key(&at) {
+            at.pop();
+            break;
+        }
+    }
+    Some(at)
+}
+
+/// Which of the modules in one folder name which, by the folder. The head of a folder declares its
+/// files and is named by them, so arrows to and from it do not count.
+fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> {
+    let modules = modules(source);
+    let mut arrows: BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
+    for (own, path) in &modules {
+        let text = fs::read_to_string(path).unwrap();
+        let file = syn::parse_file(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        let mut found = Vec::new();
+        for item in &file.items {
+            if let Item::Use(item) = item {
+                paths(&item.tree, &mut Vec::new(), &mut found);
+            }
+        }
+        for other in found.iter().filter_map(|path| target(path, own, &modules)) {
+            let shared = own.iter().zip(&other).take_while(|(a, b)| a == b).count();
+            if shared < own.len() && shared < other.len() {
+                let folder = arrows.entry(own[..shared].to_vec()).or_default();
+                folder.entry(own[shared].clone()).or_default().insert(other[shared].clone());
+            }
+        }
+    }
+    arrows
+}
+
+/// Modules of one folder that lead back to themselves.
+fn in_circles(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<&String> {
+    let reaches_itself = |start: &String| {
+        let mut seen = BTreeSet::new();
+        let mut waiting = vec![start];
+        while let Some(at) = waiting.pop() {
+            for next in arrows.get(at).into_iter().flatten() {
+                if next == start {
+                    return true;
+                }
+                if seen.insert(next) {
+                    waiting.push(next);
+                }
+            }
+        }
+        false
+    };
+    arrows.keys().filter(|name| reaches_itself(name)).collect()
+}
+
+#[test]
+fn modules_name_each_other_in_no_circle() {
+    let mut count = 0;
+    for name in LAYERS.concat() {
+        for (folder, arrows) in arrows(&folder_of(name).join("src")) {
+            count += arrows.values().map(BTreeSet::len).sum::<usize>();
+            let circle = in_circles(&arrows);
+            assert!(circle.is_empty(), "{name}, {}: {circle:?} name each other in a circle", folder.join("::"));
+        }
+    }
+    assert!(count > 500, "only {count} arrows were found");
+}
+
+#[test]
+fn a_circle_is_found() {
+    let arrow = |from: &str, to: &str| (from.to_string(), BTreeSet::from([to.to_string()]));
+    let arrows = BTreeMap::from([arrow("a", "b"), arrow("b", "c"), arrow("c", "b"), arrow("d", "a")]);
+    assert_eq!(in_circles(&arrows), ["b", "c"]);
+}
+
+#[test]
+fn files_stay_small() {
+    let mut sizes = Vec::new();
+    for name in LAYERS.concat() {
+        let mut all = Vec::new();
+        files(&folder_of(name).join("src"), &mut all);
+        sizes.extend(all.into_iter().map(|path| (fs::read_to_string(&path).unwrap().lines().count(), path)));
+    }
+    sizes.sort();
+    let (median, ninth, largest) = (sizes.len() / 2, sizes.len() * 9 / 10, sizes.len() - 1);
+    assert!(sizes[median].0 <= 150, "median {:?}", sizes[median]);
+    assert!(sizes[ninth].0 <= 400, "nine in ten {:?}", sizes[ninth]);
+    assert!(sizes[largest].0 <= 600, "largest {:?}", sizes[largest]);
+}
