@@ -7,9 +7,9 @@ mod written;
 
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::job::{accel, aspect, job, warn};
+use crate::job::{JobArgs, accel, aspect, job, warn};
 use crate::open::{load_options, open};
-use crate::options::{JobArgs, SceneArgs};
+use crate::options::SceneArgs;
 use crate::output::lengthened;
 use crate::progress;
 use crate::terminal::say;
@@ -70,7 +70,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     options.staging.aspect = aspect(&args.job);
     let opened = open(&args.scene, &options, args.quiet, &mut guard)?;
     let mut job = job(&args.job, None, &opened.loaded, false)?;
-    if args.job.size.is_none() {
+    if args.job.options.given_size().is_none() {
         let proportions = opened.world.camera().proportions();
         (job.width, job.height) = Raster::natural_size(proportions, (SIDE, SIDE));
     }

@@ -49,9 +49,14 @@ use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::Path;
 
+#[cfg(unix)]
+pub use terminal::look_at_standard_output;
+
 /// Does what a command line says, whose first word is the name of the program; gives the exit code.
-/// It hears signals, and may end the process.
-pub fn run(words: Vec<OsString>) -> u8 {
+/// It hears signals. `end` ends the process at once with an exit code: after a second Ctrl-C, or where
+/// standard output cannot be written to.
+pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
+    terminal::set_end(end);
     progress::hear_interrupts();
     if let Err(error) = durer::bvh::SimdLevel::from_environment() {
         return bad(error.to_string()).report();
@@ -97,9 +102,11 @@ pub fn run(words: Vec<OsString>) -> u8 {
 fn parsed(words: Vec<OsString>) -> Cli {
     Cli::try_parse_from(words).unwrap_or_else(|error| {
         if error.use_stderr() || std::io::stdout().is_terminal() {
-            error.exit();
+            // A closed terminal reads no message either.
+            let _ = error.print();
+            terminal::end(u8::try_from(error.exit_code()).unwrap_or(terminal::OTHER_FAILURE));
         }
         terminal::say(error.render().to_string().trim_end());
-        std::process::exit(0)
+        terminal::end(0)
     })
 }

@@ -2,6 +2,25 @@
 
 use std::process::ExitCode;
 
+/// Has to run before the standard library begins, which opens a device that swallows everything in
+/// the place of a standard output that is closed.
+#[cfg(unix)]
+#[ctor::ctor(unsafe)]
+fn before_main() {
+    durer_cli::look_at_standard_output();
+}
+
 fn main() -> ExitCode {
-    ExitCode::from(durer_cli::run(std::env::args_os().collect()))
+    let print = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        // Decoders' panics become errors.
+        if !durer::panics::are_expected() {
+            print(panic);
+        }
+    }));
+    ExitCode::from(durer_cli::run(std::env::args_os().collect(), end))
+}
+
+fn end(code: u8) -> ! {
+    std::process::exit(i32::from(code))
 }

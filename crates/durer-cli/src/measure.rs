@@ -2,7 +2,6 @@
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::job;
 use crate::method::MethodArgs;
 use crate::open::{load_options, open};
 use crate::options::SceneArgs;
@@ -52,7 +51,7 @@ pub struct MeasureArgs {
     #[command(flatten)]
     pub reading: SceneArgs,
     /// How often light may be scattered before it arrives
-    #[arg(long, default_value_t = job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
+    #[arg(long, default_value_t = durer::job::PATH_BOUNCES, value_parser = clap::value_parser!(u32).range(0..=256))]
     pub bounces: u32,
     #[command(flatten)]
     pub method: MethodArgs,
@@ -169,7 +168,7 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
         places.iter_mut().for_each(|place| place.1 = normal);
     }
     let settings = Settings { bounces: args.bounces, ..Job::default().settings };
-    let method = args.method.method(Method::PATH)?;
+    let method = args.method.0.resolved_method(Method::PATH).map_err(bad)?;
     let setup = Setup { world: &opened.world, settings, cone: None, seed: args.seed, cancel: None };
     let (Integrator::Path(path) | Integrator::Photons(path)) = method.over(setup) else {
         return Err(bad("illuminances are measured by paths: --integrator path, or photons"));

@@ -2,17 +2,15 @@
 
 use crate::denoise::Denoiser;
 use crate::display::DisplayArgs;
+use crate::job::JobArgs;
 use crate::memory::Memory;
-use crate::method::MethodArgs;
 use crate::staging::StagingArgs;
-use crate::values::{cells, compat, crop, noise, on_off, size, weight};
+use crate::values::{compat, crop};
 use clap::Args;
-use clap::builder::{ArgPredicate, PossibleValuesParser};
+use clap::builder::PossibleValuesParser;
 use durer::dialect::{Compat, Dialect};
-use durer::film::Filter;
 use durer::film::aov::AOVS;
 use durer::render::Shard;
-use durer::sampler::Sampler;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -96,86 +94,6 @@ pub struct ViewArgs {
     /// Pixels for a pixel in the pictures `samples` and `filter`
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub zoom: u32,
-}
-
-/// What the picture is
-#[derive(Args)]
-pub struct JobArgs {
-    /// Size in pixels [default: 512x512; with --dialect, that year's]
-    #[arg(long, value_name = "WIDTHxHEIGHT", value_parser = size)]
-    pub size: Option<(u32, u32)>,
-    /// Depths shown as the two ends of grey [default: those in the picture]
-    #[arg(long, num_args = 2, value_names = ["MIN", "MAX"], allow_negative_numbers = true)]
-    pub depth_range: Option<Vec<f32>>,
-    /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what
-    /// 98 % of the picture stay below]
-    #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
-    pub light_range: Option<Vec<f32>>,
-    /// False colours of light by equal ratios; --light-range begins above 0
-    #[arg(long, requires = "light_range")]
-    pub light_log: bool,
-    #[command(flatten)]
-    pub method: MethodArgs,
-    /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the
-    /// first time [default: 8, of paths 16; with --dialect, that year's]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(0..=256))]
-    pub bounces: Option<u32>,
-    /// Whether things cast shadows [default: on; with --dialect, off]
-    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
-    pub shadows: Option<bool>,
-    /// Whether surfaces are shaded from behind too [default: on; with --dialect, off]
-    #[arg(long, value_name = "on|off", num_args = 0..=1, require_equals = true, default_missing_value = "on", value_parser = on_off)]
-    pub shade_back: Option<bool>,
-    /// Let transparent things cast coloured shadows
-    #[arg(long)]
-    pub transparent_shadows: bool,
-    /// Leave mirrored rays out
-    #[arg(long)]
-    pub no_reflection: bool,
-    /// Leave transmitted rays out
-    #[arg(long)]
-    pub no_refraction: bool,
-    /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
-    #[arg(long = "min-throughput", alias = "weight", value_name = "SHARE", allow_negative_numbers = true, value_parser = weight)]
-    pub weight: Option<f32>,
-
-    /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
-    /// --dialect, 1; with --time-limit, no end; with --noise-threshold, 4096]
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=1 << 20))]
-    pub samples: Option<u32>,
-    /// Where samples lie; all but sobol are the course's, with its filters
-    #[arg(long, default_value = "sobol", value_parser = PossibleValuesParser::new(Sampler::NAMES.map(|n| n.0)))]
-    pub sampler: String,
-    /// Reconstruction filter [default: blackman-harris; none for the course's samplers]
-    #[arg(long, value_parser = PossibleValuesParser::new(Filter::NAMES.map(|n| n.0)))]
-    pub filter: Option<String>,
-    /// Radius of the filter in pixels; for the course's Gaussian, its standard deviation
-    #[arg(long, value_name = "PIXELS", requires = "filter")]
-    pub filter_radius: Option<f32>,
-    /// Three by three jittered sub-pixels, as in 2012
-    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
-    pub jitter: bool,
-    /// Blur by five taps, as in 2012
-    #[arg(long, conflicts_with_all = ["samples", "sampler", "filter"])]
-    pub blur: bool,
-    /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
-    /// from black to white
-    #[arg(long = "noise-threshold", alias = "noise", value_name = "ERROR", value_parser = noise)]
-    pub noise: Option<f32>,
-    /// Take --samples a pixel on average: more where the picture is noisier, as a quarter of them
-    /// tells
-    #[arg(long, conflicts_with_all = ["noise", "jitter", "blur"])]
-    pub adaptive: bool,
-    /// Seed of the random numbers
-    #[arg(long, default_value_t = 0)]
-    pub seed: u64,
-
-    /// What finds the objects that a ray may hit
-    #[arg(long, default_value = "bvh", default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
-    pub accel: String,
-    /// Cells of the grid, which is used then [default: suitable ones]
-    #[arg(long, value_name = "XxYxZ", value_parser = cells)]
-    pub grid: Option<[u32; 3]>,
 }
 
 /// When and with how much it is made

@@ -45,10 +45,10 @@ fn interrupt(signal: u8) {
     match &mut *phase {
         Phase::Rendering(control) if !control.cancel.swap(true, Relaxed) => {}
         Phase::Saving(asked @ false) => *asked = true,
-        Phase::Idle => std::process::exit(0),
+        Phase::Idle => crate::terminal::end(0),
         phase => {
             let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
-            std::process::exit(i32::from(Failure::Interrupted(what.into()).report()))
+            crate::terminal::end(Failure::Interrupted(what.into()).report())
         }
     }
 }

@@ -83,10 +83,10 @@ mod tests {
             matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)).unwrap()
         };
         for option in ["--min-throughput", "--weight"] {
-            assert_eq!(read(option, "0.5").render.job.weight, Some(0.5));
+            assert_eq!(read(option, "0.5").render.job.options.get("min-throughput").as_deref(), Some("0.5"));
         }
         for option in ["--noise-threshold", "--noise"] {
-            assert_eq!(read(option, "0.25").render.job.noise, Some(0.25));
+            assert_eq!(read(option, "0.25").render.job.options.get("noise-threshold").as_deref(), Some("0.25"));
         }
         for option in ["--time-limit", "--time"] {
             assert_eq!(read(option, "90s").render.work.time, Some(std::time::Duration::from_secs(90)));

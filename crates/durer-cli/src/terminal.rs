@@ -1,6 +1,7 @@
 //! Lines on standard output and on standard error.
 
 use std::io::{ErrorKind, Write};
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// Exit code after anything that failed but a wrong input: standard output among that.
@@ -9,11 +10,32 @@ pub const OTHER_FAILURE: u8 = 1;
 /// Whether the program was started without a standard output.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Finds that out. It has to be before the standard library begins, which then puts the device in
-/// its place that swallows everything.
+/// Ends the program with an exit code.
+pub type End = fn(u8) -> !;
+
+/// How the program ends before its work is done.
+static END: OnceLock<End> = OnceLock::new();
+
+/// Sets how the program ends; the first call counts.
+pub fn set_end(end: End) {
+    let _ = END.set(end);
+}
+
+/// Ends the program.
+///
+/// # Panics
+///
+/// If nobody said how: see [`set_end`].
+pub fn end(code: u8) -> ! {
+    match END.get() {
+        Some(end) => end(code),
+        None => panic!("the program would end with exit code {code}"),
+    }
+}
+
+/// Finds out whether there is a standard output.
 #[cfg(unix)]
-#[ctor::ctor(unsafe)]
-fn look_at_standard_output() {
+pub fn look_at_standard_output() {
     CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
 }
 
@@ -31,7 +53,7 @@ pub fn say(line: &str) {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             complain(&format!("error: cannot write to standard output: {error}"));
-            std::process::exit(i32::from(OTHER_FAILURE));
+            end(OTHER_FAILURE);
         }
         _ => {}
     }

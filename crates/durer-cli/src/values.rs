@@ -13,21 +13,9 @@ pub fn compat(text: &str) -> Result<(Compat, bool), String> {
     })
 }
 
-pub fn on_off(text: &str) -> Result<bool, String> {
-    match text {
-        "on" => Ok(true),
-        "off" => Ok(false),
-        _ => Err("say `on` or `off`".into()),
-    }
-}
-
 /// A weight below which rays are left out.
 pub fn weight(text: &str) -> Result<f32, String> {
     text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "say a number, 0 or more".into())
-}
-
-pub fn noise(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|n: &f32| n.is_finite() && *n > 0.0).ok_or_else(|| "say a number more than 0".into())
 }
 
 pub fn pixel(text: &str) -> Result<(u32, u32), String> {

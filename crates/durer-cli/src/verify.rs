@@ -2,8 +2,9 @@
 
 use crate::failure::Failure;
 use crate::guard::Guard;
+use crate::job::JobArgs;
 use crate::open::{load_options, open};
-use crate::options::{JobArgs, SceneArgs, ViewArgs};
+use crate::options::{SceneArgs, ViewArgs};
 use crate::terminal::say;
 use crate::{job, progress};
 use anyhow::Context;
@@ -67,7 +68,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     for (name, accel) in STRUCTURES {
         let mut options = load_options(&args.reading);
         options.accel = accel;
-        let (width, height) = args.job.size.unwrap_or(SIZE);
+        let (width, height) = args.job.options.given_size().unwrap_or(SIZE);
         options.staging.aspect = Some(width as f32 / height as f32);
         // What is found is said once.
         let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
@@ -75,7 +76,7 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         (job.width, job.height) = (width, height);
         // The work depends on the structure.
         job.aovs.retain(|aov| aov.name != "cost");
-        if args.job.samples.is_none() && args.job.noise.is_none() {
+        if ["samples", "noise-threshold"].iter().all(|name| args.job.options.get(name).is_none()) {
             job.sampling = job.sampling.with_samples(if job.adaptive { LEAST_ADAPTIVE } else { 8 });
         }
         wanted = Some(job);

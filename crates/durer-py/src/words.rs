@@ -13,5 +13,5 @@ pub fn options() -> Vec<(String, String, Option<String>, Vec<String>)> {
 /// may end the process.
 #[pyfunction]
 pub fn command(py: Python, words: Vec<std::ffi::OsString>) -> u8 {
-    py.detach(|| durer_cli::run(words))
+    py.detach(|| durer_cli::run(words, |code| std::process::exit(i32::from(code))))
 }

@@ -1,16 +1,53 @@
 //! Dürer: a ray tracer that is exact, explainable and deterministic.
 //!
-//! A scene file is read into a [`scene::Scene`] (plain data), compiled into a [`world::World`]
-//! (immutable tables), and rendered by a [`render::Job`] into pictures.
+//! A scene is built in code or read from a file, compiled into immutable tables, and rendered pass
+//! by pass:
 //!
-//! This crate is the face of the others: it passes on their modules, and loads files.
+//! ```
+//! use durer::prelude::*;
+//!
+//! fn main() -> Result<(), Error> {
+//!     let mut scene = Scene::builder();
+//!     scene.camera(PerspectiveCamera::look_at(vec3(1.0, 1.0, 6.0), Vec3::ZERO, 40.0));
+//!     scene.light(PointLight { position: vec3(3.0, 4.0, 5.0), candela: Some(60.0), ..Default::default() });
+//!     let red = scene.material(PrincipledMaterial { base_color: rgb(0.8, 0.2, 0.1), ..Default::default() });
+//!     let corners = [vec3(-1.0, 0.0, 0.0), vec3(1.0, 0.0, 0.0), vec3(0.0, 1.5, 0.0)];
+//!     let triangle = scene.mesh(&corners, &[[0, 1, 2]]);
+//!     scene.add(triangle).material(red).translate(vec3(1.0, -0.5, 0.0));
+//!     scene.add(Sphere { center: vec3(-1.0, 0.0, 0.0), radius: 1.0 }).material(red);
+//!     let world = scene.build()?.compile()?;
+//!
+//!     let mut render = Renderer::new(&world, RenderJob::for_scene(&world).size((64, 48)).samples(4_u32))?;
+//!     while let Some(progress) = render.next_pass()? {
+//!         println!("{} of {} samples", progress.samples, progress.all_samples);
+//!     }
+//!     let picture = render.image()?;
+//!     assert!(picture.pixel(20, 24).is_some_and(|color| color.x > color.z));
+//! #   let folder = std::env::temp_dir().join(format!("durer-doctest-{}.exr", std::process::id()));
+//! #   picture.save(&folder)?;
+//! #   std::fs::remove_file(&folder).unwrap();
+//! #   return Ok(());
+//!     picture.save("picture.exr")
+//! }
+//! ```
+//!
+//! This crate is the face of the others: it loads files ([`open`], [`load()`]), has the defaults of
+//! pictures ([`job`]) and passes on the modules of the crates that do the work.
 
+pub mod compiled;
+pub mod error;
 #[cfg(all(feature = "fs", any(test, feature = "testing")))]
 #[doc(hidden)]
 pub mod fuzz;
+pub mod job;
 #[cfg(feature = "fs")]
 pub mod load;
+pub mod prelude;
+pub mod renderer;
 
+#[cfg(feature = "fs")]
+pub use compiled::open;
+pub use compiled::{CompileScene, CompiledScene};
 pub use durer_bvh as bvh;
 pub use durer_diag as diag;
 pub use durer_formats as format;
@@ -21,5 +58,8 @@ pub use durer_scene::{
     bsdf, camera, describe, dialect, light, material, math, medium, sampler, scene, shape, source, spectrum, texture,
 };
 pub use durer_teach::{check, lesson, mistakes};
+pub use error::{Error, SceneError};
+pub use job::RenderJob;
 #[cfg(feature = "fs")]
 pub use load::{LoadOptions, Loaded, load, load_text};
+pub use renderer::{Canceller, Picture, Renderer};

@@ -1,7 +1,8 @@
 //! The command line of `durer check`.
 
 use crate::display::ExposureArgs;
-use crate::options::{JobArgs, SceneArgs, ViewArgs};
+use crate::job::JobArgs;
+use crate::options::{SceneArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
 

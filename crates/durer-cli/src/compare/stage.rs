@@ -67,8 +67,13 @@ pub fn stage(
         let others = Dialect::ALL.into_iter().filter(|dialect| Some(*dialect) != guessed && *dialect != Dialect::Durer);
         dialects.extend(others.map(Some));
     }
-    let shadows = if args.job.shadows.is_some() { vec![None] } else { vec![None, Some(true), Some(false)] };
-    let bounces = if args.job.bounces.is_some() { vec![None] } else { vec![None, Some(4), Some(0), Some(1), Some(2)] };
+    let shadows =
+        if args.job.options.get("shadows").is_some() { vec![None] } else { vec![None, Some(true), Some(false)] };
+    let bounces = if args.job.options.get("bounces").is_some() {
+        vec![None]
+    } else {
+        vec![None, Some(4), Some(0), Some(1), Some(2)]
+    };
     'found: for dialect in dialects {
         let options = LoadOptions { dialect, ..load_options(&args.reading) };
         // A year whose words are others cannot be meant.

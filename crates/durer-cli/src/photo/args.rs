@@ -1,6 +1,7 @@
 //! The command line of `durer photo`.
 
-use crate::options::{JobArgs, SceneArgs};
+use crate::job::JobArgs;
+use crate::options::SceneArgs;
 use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 

@@ -44,11 +44,11 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let mut with = read(&args.scene, &options, args.quiet, &mut guard)?.compile(&options, &mut guard)?;
     let stand_in = stand_ins(&with, &args.stand_in)?;
     let mut job = job::job(&args.job, None, &with.loaded, false)?;
-    if args.job.size.is_some_and(|size| size != (width, height)) {
+    if args.job.options.given_size().is_some_and(|size| size != (width, height)) {
         return Err(bad(format!("the picture has the photograph's size, {width}x{height}: leave --size out")));
     }
     (job.width, job.height) = (width, height);
-    if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, &args.job.filter) {
+    if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, args.job.options.get("filter")) {
         // A pixel of a photograph is the mean of what is in it.
         *filter = Filter::Box { radius: 0.5 };
     }

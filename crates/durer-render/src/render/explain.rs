@@ -9,6 +9,7 @@ use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
 pub use super::course::SubPixels;
 use super::course::{explain as course, stale};
+use super::run::Until;
 use super::samples::Samples;
 use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, raster, render};
 use crate::film::Film;
@@ -196,7 +197,7 @@ fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderErro
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };
     if job.adaptive {
         let part = PartialRender::new(world, &Job { crop: Some(window), ..job.clone() }, Shard::WHOLE)?;
-        part.render_to(world, &Control::default(), &mut |_, _| {}, pilot(samples))?;
+        part.render_to(world, &Control::default(), &mut |_, _| {}, Until::Samples(pilot(samples)))?;
         part.allocate();
         return Ok(part.target(x, y).unwrap_or(samples));
     }

@@ -358,7 +358,7 @@ pub(super) fn film_of(part: Crop) -> Film {
 
 /// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
 /// so each is a pass.
-pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32>> {
+pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
     let singly = job.method.prepares() && job.sampling.is_local();

@@ -75,7 +75,27 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Parti
     }
 }
 
+/// Until when work goes on.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Until {
+    /// All is done.
+    End,
+    /// All passes are done that end with so many samples a pixel, or fewer.
+    Samples(u32),
+    /// A single pass is done that ends with so many samples a pixel.
+    Pass(u32),
+}
+
 impl PartialRender {
+    /// Numbers of samples with which passes end.
+    fn ends(&self, until: Until) -> Box<dyn Iterator<Item = u32>> {
+        match until {
+            Until::End => Box::new(passes_of(&self.job, self.shard)),
+            Until::Samples(last) => Box::new(passes_of(&self.job, self.shard).take_while(move |&end| end <= last)),
+            Until::Pass(end) => Box::new(std::iter::once(end)),
+        }
+    }
+
     /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
     ///
     /// `watch` is called in the calling thread at the end of each pass and when it is time to save,
@@ -90,16 +110,16 @@ impl PartialRender {
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
     ) -> Result<RenderOutcome, RenderError> {
-        self.render_to(world, control, watch, u32::MAX)
+        self.render_to(world, control, watch, Until::End)
     }
 
-    /// The same, up to so many samples a pixel.
+    /// Goes on with the work until some moment: see [`PartialRender::render`].
     pub(super) fn render_to(
         &self,
         world: &World,
         control: &Control,
         watch: &mut dyn FnMut(&PartialRender, RenderEvent),
-        last: u32,
+        until: Until,
     ) -> Result<RenderOutcome, RenderError> {
         if self.scene != world.digest() || self.look != world.display_rules() {
             return Err(RenderError::OtherScene);
@@ -138,7 +158,7 @@ impl PartialRender {
                 let work = &work;
                 scope.spawn(move |_| {
                     work.rays(None);
-                    for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
+                    for end in self.ends(until) {
                         work.pass(end, None);
                         // Nobody listens after the end.
                         let _ = finished.send(());
@@ -156,7 +176,7 @@ impl PartialRender {
             // The calling thread does it all, and looks up between tiles.
             None => {
                 work.rays(Some(&mut || clock.look(self, watch)));
-                for end in passes_of(&self.job, self.shard).take_while(|&end| end <= last) {
+                for end in self.ends(until) {
                     work.pass(end, Some(&mut || clock.look(self, watch)));
                     clock.passed(self, watch);
                 }

@@ -33,6 +33,16 @@ pub(super) fn half_width(angle: f32) -> f64 {
     fp::tan_f64(f64::from(angle).to_radians() / 2.0)
 }
 
+impl PerspectiveCamera {
+    /// A camera at `eye` that looks at `target`, with y up where it does not look along y, else -z.
+    /// `angle` is the field of view across the picture's larger side, in degrees from 0 to 180.
+    pub fn look_at(eye: Vec3, target: Vec3, angle: f32) -> Self {
+        let direction = target - eye;
+        let along = direction.normalize_or_zero().cross(Vec3::Y).length() < 1e-6;
+        PerspectiveCamera { center: eye, direction, up: if along { Vec3::NEG_Z } else { Vec3::Y }, angle }
+    }
+}
+
 impl Projection for PerspectiveCamera {
     fn pose(&self) -> Pose {
         Pose { center: self.center, direction: self.direction, up: self.up }

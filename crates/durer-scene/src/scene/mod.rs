@@ -3,6 +3,7 @@
 //! Nothing here is computed, cached or looked up; `compile` turns it into a world.
 
 pub mod assets;
+pub mod builder;
 pub mod extent;
 pub mod matrix;
 pub mod staging;
@@ -20,6 +21,7 @@ use crate::texture::CieSky;
 use crate::texture::almanac::{self, Moment};
 use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
+pub use builder::{MaterialId, MeshId, SceneBuilder};
 use durer_diag::Span;
 pub use matrix::{MatrixOp, MatrixRules};
 use serde::{Deserialize, Serialize};

@@ -1,0 +1,85 @@
+//! A picture pass by pass, for callers that show it while it is made.
+
+use super::part::passes_of;
+use super::run::Until;
+use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
+use crate::world::World;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// How far a picture is after a pass over all pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Progress {
+    /// Samples that each pixel has; fewer where a noise threshold was met.
+    pub samples: u32,
+    /// Samples that each pixel gets at most.
+    pub all_samples: u32,
+    /// Rays traced so far.
+    pub rays: u64,
+}
+
+/// A picture that is made pass by pass. Its passes are those of [`PartialRender::render`], and so are
+/// its bits.
+pub struct ProgressiveRender<'w> {
+    world: &'w World,
+    part: PartialRender,
+    ends: Box<dyn Iterator<Item = u32> + 'w>,
+    is_over: bool,
+}
+
+impl std::fmt::Debug for ProgressiveRender<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.debug_struct("ProgressiveRender").field("job", self.part.job()).finish_non_exhaustive()
+    }
+}
+
+impl<'w> ProgressiveRender<'w> {
+    /// Begins with a picture of which nothing is made.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`PartialRender::new`].
+    pub fn new(world: &'w World, job: &Job) -> Result<Self, RenderError> {
+        let part = PartialRender::new(world, job, Shard::WHOLE)?;
+        Ok(ProgressiveRender { world, part, ends: Box::new(passes_of(job, Shard::WHOLE)), is_over: false })
+    }
+
+    /// Makes the next pass; `None` once the picture is finished, or a pass took longer than
+    /// [`Control::time`].
+    ///
+    /// # Errors
+    ///
+    /// [`RenderError::Cancelled`] once [`Control::cancel`] is set, [`RenderError::Memory`], and
+    /// [`RenderError::Panic`]. What was made before is kept, and a later call goes on with it.
+    pub fn next_pass(&mut self, control: &Control) -> Result<Option<Progress>, RenderError> {
+        if self.is_over {
+            return Ok(None);
+        }
+        let Some(samples) = self.ends.next() else {
+            self.is_over = true;
+            return Ok(None);
+        };
+        let outcome = self.part.render_to(self.world, control, &mut |_, _| {}, Until::Pass(samples));
+        let failed = match outcome? {
+            RenderOutcome::Finished => {
+                let all_samples = self.part.job().sampling.samples();
+                return Ok(Some(Progress { samples, all_samples, rays: control.rays.load(Relaxed) }));
+            }
+            RenderOutcome::OutOfTime => {
+                self.is_over = true;
+                return Ok(None);
+            }
+            RenderOutcome::Cancelled => RenderError::Cancelled,
+            RenderOutcome::Panicked(panicked) => panicked.into(),
+        };
+        // The pass is repeated for the blocks that lack it.
+        let rest = std::mem::replace(&mut self.ends, Box::new(std::iter::empty()));
+        self.ends = Box::new(std::iter::once(samples).chain(rest));
+        Err(failed)
+    }
+
+    /// What is made so far.
+    pub fn part(&self) -> &PartialRender {
+        &self.part
+    }
+}

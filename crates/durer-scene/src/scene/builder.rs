@@ -1,0 +1,268 @@
+//! Scenes built in code: things are named by handles, not by strings.
+
+use super::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
+use crate::camera::Camera;
+use crate::describe::FileName;
+use crate::light::Light;
+use crate::material::{HairMaterial, PhongMaterial, PrincipledMaterial};
+use crate::math::Vec3;
+use crate::medium::Fog;
+use crate::shape::{MeshData, Primitive, TriangleMesh};
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use std::sync::Arc;
+
+/// A material of a [`SceneBuilder`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MaterialId(u32);
+
+/// A mesh of a [`SceneBuilder`]. It may be added to the scene any number of times, and is kept once.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct MeshId(u32);
+
+/// Something that can be added to a scene: a primitive or a mesh.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A sphere, box, disc and so on.
+    Primitive(Primitive),
+    /// A mesh of the same builder.
+    Mesh(MeshId),
+}
+
+impl From<MeshId> for Shape {
+    fn from(mesh: MeshId) -> Self {
+        Shape::Mesh(mesh)
+    }
+}
+
+impl<T: Into<Primitive>> From<T> for Shape {
+    fn from(shape: T) -> Self {
+        Shape::Primitive(shape.into())
+    }
+}
+
+impl From<PhongMaterial> for Material {
+    fn from(material: PhongMaterial) -> Self {
+        Material::Phong(Box::new(material), None)
+    }
+}
+
+impl From<PrincipledMaterial> for Material {
+    fn from(material: PrincipledMaterial) -> Self {
+        Material::Principled(Box::new(material))
+    }
+}
+
+impl From<HairMaterial> for Material {
+    fn from(material: HairMaterial) -> Self {
+        Material::Hair(material)
+    }
+}
+
+/// A scene that is being built. Lengths are in one unit of any size, which is the metre where light
+/// is in candela or lumen; y is up.
+///
+/// ```
+/// use durer_scene::camera::PerspectiveCamera;
+/// use durer_scene::material::PrincipledMaterial;
+/// use durer_scene::math::Vec3;
+/// use durer_scene::scene::Scene;
+/// use durer_scene::shape::Sphere;
+///
+/// let mut scene = Scene::builder();
+/// scene.camera(PerspectiveCamera::look_at(Vec3::new(0.0, 0.0, 5.0), Vec3::ZERO, 30.0));
+/// let red = scene.material(PrincipledMaterial { base_color: Vec3::X, ..Default::default() });
+/// let triangle = scene.mesh(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
+/// scene.add(triangle).material(red).scale(2.0).translate(Vec3::new(1.0, 0.0, 0.0));
+/// scene.add(Sphere { radius: -1.0, ..Default::default() });
+/// let refused = scene.build().unwrap_err();
+/// let first = refused.iter().next().unwrap();
+/// assert_eq!(first.message, "Sphere: radius -1 must be more than 0");
+/// ```
+#[derive(Clone, Debug, Default)]
+pub struct SceneBuilder {
+    scene: Scene,
+    objects: Vec<Placed>,
+    meshes: u32,
+}
+
+/// An object of a [`SceneBuilder`]: its material, and where it stands.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    node: Node,
+    material: Option<MaterialId>,
+    ops: Vec<MatrixOp>,
+}
+
+impl Placed {
+    /// Sets its material. Objects without one are plain grey.
+    pub fn material(&mut self, material: MaterialId) -> &mut Self {
+        self.material = Some(material);
+        self
+    }
+
+    /// Transforms it by a matrix, after the transforms that it has.
+    pub fn transform(&mut self, op: MatrixOp) -> &mut Self {
+        // The first of a product's factors is applied last.
+        self.ops.insert(0, op);
+        self
+    }
+
+    /// Moves it, after the transforms that it has.
+    pub fn translate(&mut self, by: Vec3) -> &mut Self {
+        self.transform(MatrixOp::Translate(by))
+    }
+
+    /// Scales it about the origin, after the transforms that it has.
+    pub fn scale(&mut self, factor: f32) -> &mut Self {
+        self.transform(MatrixOp::UniformScale(factor))
+    }
+
+    /// Rotates it about an axis through the origin, of any length: counter-clockwise by so many
+    /// degrees, seen from where the axis points. Applied after the transforms that it has.
+    pub fn rotate(&mut self, axis: Vec3, degrees: f32) -> &mut Self {
+        self.transform(MatrixOp::Rotate(axis, degrees))
+    }
+}
+
+impl Scene {
+    /// A scene to be built in code.
+    pub fn builder() -> SceneBuilder {
+        SceneBuilder::default()
+    }
+}
+
+impl SceneBuilder {
+    /// Sets the camera.
+    pub fn camera(&mut self, camera: impl Into<Camera>) -> &mut Self {
+        self.scene.camera = Some(camera.into());
+        self
+    }
+
+    /// Sets what rays see that hit nothing, and the light that is everywhere.
+    pub fn background(&mut self, background: Background) -> &mut Self {
+        self.scene.background = background;
+        self
+    }
+
+    /// Fills the air.
+    pub fn fog(&mut self, fog: Fog) -> &mut Self {
+        self.scene.fog = Some(Spanned { value: fog, span: Span::default() });
+        self
+    }
+
+    /// Adds a light without extent. Surfaces shine by their material.
+    pub fn light(&mut self, light: impl Into<Light>) -> &mut Self {
+        self.scene.lights.get_or_insert_default().push(Spanned { value: light.into(), span: Span::default() });
+        self
+    }
+
+    /// Adds a material, for any number of objects.
+    pub fn material(&mut self, material: impl Into<Material>) -> MaterialId {
+        self.scene.materials.push(Spanned { value: material.into(), span: Span::default() });
+        MaterialId(self.scene.materials.len() as u32 - 1)
+    }
+
+    /// Takes a mesh: positions, and triangles by the numbers of their three positions,
+    /// counter-clockwise seen from outside. It is not in the scene before it is added.
+    pub fn mesh(&mut self, positions: &[impl Into<Vec3> + Copy], triangles: &[[u32; 3]]) -> MeshId {
+        let positions = positions.iter().map(|&position| position.into()).collect();
+        self.mesh_data(MeshData { positions, triangles: triangles.to_vec(), ..MeshData::default() })
+    }
+
+    /// Takes a mesh with all that it has: normals, texture coordinates, colours.
+    pub fn mesh_data(&mut self, data: impl Into<Arc<MeshData>>) -> MeshId {
+        let mesh = MeshId(self.meshes);
+        self.scene.assets.meshes.insert(mesh.name(), data.into());
+        self.meshes += 1;
+        mesh
+    }
+
+    /// Adds a primitive or a mesh; the result sets its material and place.
+    pub fn add(&mut self, shape: impl Into<Shape>) -> &mut Placed {
+        let node = match shape.into() {
+            Shape::Primitive(primitive) => Node::Primitive(primitive),
+            Shape::Mesh(mesh) => {
+                Node::Mesh(TriangleMesh { obj_file: FileName { path: mesh.name(), span: Span::default() } })
+            }
+        };
+        let at = self.objects.len();
+        self.objects.push(Placed { node, material: None, ops: Vec::new() });
+        &mut self.objects[at]
+    }
+
+    /// The scene, if it has a camera and all values are valid.
+    ///
+    /// # Errors
+    ///
+    /// What is wrong: see [`Scene::validate`].
+    pub fn build(&self) -> Result<Scene, Diagnostics> {
+        let mut scene = self.scene.clone();
+        let object = |placed: &Placed| {
+            let material = placed.material.map(|material| material.0);
+            let object = Object { node: placed.node.clone(), material, span: Span::default() };
+            match placed.ops.is_empty() {
+                true => object,
+                false => {
+                    let node = Node::Transform(placed.ops.clone(), Box::new(object));
+                    Object { node, material, span: Span::default() }
+                }
+            }
+        };
+        scene.root = Some(Group { objects: self.objects.iter().map(object).collect() });
+        let mut found = scene.validate();
+        if scene.camera.is_none() {
+            found.push(Diagnostic::error("the scene has no camera").code("no-camera"));
+        }
+        // A handle of another builder may name a mesh that this one lacks.
+        let meshes = self.objects.iter().filter_map(|placed| match &placed.node {
+            Node::Mesh(mesh) => Some(&mesh.obj_file.path),
+            _ => None,
+        });
+        if meshes.into_iter().any(|name| !scene.assets.meshes.contains_key(name)) {
+            found.push(Diagnostic::error("an object is a mesh of another builder").code("bad-value"));
+        }
+        if found.has_errors() { Err(found) } else { Ok(scene) }
+    }
+}
+
+impl MeshId {
+    /// The name of its asset, which is no file's name.
+    fn name(self) -> String {
+        format!("<mesh {}>", self.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera::PerspectiveCamera;
+    use crate::shape::Sphere;
+
+    #[test]
+    fn transforms_are_applied_in_the_order_of_calls() {
+        let mut scene = Scene::builder();
+        scene.camera(PerspectiveCamera::default());
+        scene.add(Sphere::default()).scale(2.0).translate(Vec3::X).rotate(Vec3::Y, 90.0);
+        let built = scene.build().unwrap();
+        let Some(Object { node: Node::Transform(ops, _), .. }) = built.root.as_ref().map(|root| &root.objects[0])
+        else {
+            panic!("{built:?}");
+        };
+        // (1, 0, 0) is doubled, moved to (3, 0, 0), and turned to (0, 0, -3).
+        let map = MatrixOp::product(ops, 0);
+        assert!((map.transform_point3(glam::DVec3::X) - glam::DVec3::new(0.0, 0.0, -3.0)).length() < 1e-12);
+    }
+
+    #[test]
+    fn handles_of_another_builder_are_refused() {
+        let mut other = Scene::builder();
+        let mesh = other.mesh(&[Vec3::ZERO, Vec3::X, Vec3::Y], &[[0, 1, 2]]);
+        let material = other.material(PhongMaterial::default());
+        let mut scene = Scene::builder();
+        scene.add(mesh).material(material);
+        let found: Vec<_> = scene.build().unwrap_err().iter().map(|d| d.message.clone()).collect();
+        let unknown = "an object has material 0, but the scene has 0, counted from 0";
+        assert_eq!(found, [unknown, "the scene has no camera", "an object is a mesh of another builder"]);
+    }
+}

@@ -1,0 +1,30 @@
+//! Looks for what is odd about a scene: here a camera that looks away from everything.
+
+use durer::check::{Subject, check};
+use durer::prelude::*;
+
+pub(crate) fn main() -> Result<(), Error> {
+    let mut scene = Scene::builder();
+    scene.camera(PerspectiveCamera::look_at(vec3(0.0, 0.0, 5.0), vec3(0.0, 0.0, 9.0), 40.0));
+    scene.light(DirectionalLight::default());
+    let grey = scene.material(PhongMaterial::default());
+    scene.add(Sphere::default()).material(grey);
+    let world = scene.build()?.compile()?;
+
+    let job = world.job(&RenderJob::for_scene(&world).size((64, 48)))?;
+    let subject = Subject {
+        scene: world.scene(),
+        world: world.world(),
+        dialect: world.dialect(),
+        files: world.files(),
+        job: &job,
+        exposure: 1.0,
+        rejected: None,
+    };
+    let findings = check(&subject, world.diagnostics());
+    for finding in &findings {
+        println!("{}: {}", finding.diagnostic.code, finding.diagnostic.message);
+    }
+    assert!(!findings.is_empty());
+    Ok(())
+}

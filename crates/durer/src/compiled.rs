@@ -1,0 +1,157 @@
+//! Scenes ready to be rendered and asked.
+
+use crate::error::{Error, SceneError};
+use crate::job::{JobContext, RenderJob, View};
+#[cfg(feature = "fs")]
+use crate::load::{LoadOptions, load};
+use durer_diag::{Diagnostics, Files};
+use durer_formats::Decoder;
+use durer_render::compile::{AccelKind, Resources, compile};
+use durer_render::render::Job;
+use durer_render::world::World;
+use durer_scene::dialect::{Dialect, Rules};
+use durer_scene::scene::Scene;
+use durer_scene::source::{AssetSource, MemorySource};
+use std::ops::Deref;
+#[cfg(feature = "fs")]
+use std::path::Path;
+
+/// A scene and the world that it was compiled to. Rays are asked of the [`World`], to which it
+/// dereferences.
+#[derive(Debug)]
+pub struct CompiledScene {
+    scene: Scene,
+    world: World,
+    rules: Rules,
+    dialect: Dialect,
+    emulates: bool,
+    diagnostics: Diagnostics,
+    files: Files,
+}
+
+impl Deref for CompiledScene {
+    type Target = World;
+
+    fn deref(&self) -> &World {
+        &self.world
+    }
+}
+
+impl CompiledScene {
+    /// The description.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The world.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The dialect whose meaning the words of its file have.
+    pub fn dialect(&self) -> Dialect {
+        self.dialect
+    }
+
+    /// Warnings and notes.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        &self.diagnostics
+    }
+
+    /// The texts to which the spans of diagnostics belong.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+
+    /// What a job's defaults follow from.
+    pub fn job_context(&self) -> JobContext<'_> {
+        JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates, timed: false }
+    }
+
+    /// The job of some options, in colour, with the scene's defaults for what is not given.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Options`].
+    pub fn job(&self, options: &RenderJob) -> Result<Job, Error> {
+        let job = options.resolve(&self.job_context(), Some(&View::default())).map_err(Error::Options)?;
+        job.validate()?;
+        Ok(job)
+    }
+}
+
+impl RenderJob {
+    /// The job that a scene has by default: its size, integrator, depth and samples are given, and
+    /// may be changed.
+    pub fn for_scene(scene: &CompiledScene) -> RenderJob {
+        let context = scene.job_context();
+        match RenderJob::default().resolve(&context, Some(&View::default())) {
+            Ok(job) => RenderJob::of(&job, &context)
+                .size((job.width, job.height))
+                .integrator(job.method.name())
+                .bounces(job.settings.bounces)
+                .samples(job.sampling.samples()),
+            Err(_) => RenderJob::default(),
+        }
+    }
+}
+
+/// Compiles scenes that are built in code.
+pub trait CompileScene {
+    /// Compiles the scene by the rules of Dürer's own language. All its meshes and pictures are in
+    /// memory.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`]: a value is invalid, or the scene names a file.
+    fn compile(self) -> Result<CompiledScene, Error>;
+
+    /// Compiles the scene, with files that it names from a source.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Scene`]: a value is invalid, or a file is missing or damaged.
+    fn compile_with(self, source: &dyn AssetSource) -> Result<CompiledScene, Error>;
+}
+
+impl CompileScene for Scene {
+    fn compile(self) -> Result<CompiledScene, Error> {
+        self.compile_with(&MemorySource::default())
+    }
+
+    fn compile_with(self, source: &dyn AssetSource) -> Result<CompiledScene, Error> {
+        let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+        let (dialect, rules) = (Dialect::Durer, Dialect::Durer.rules().clone());
+        let resources = Resources::new(source, &Decoder, &mut files);
+        match compile(&self, &rules, AccelKind::Bvh, resources, &mut diagnostics) {
+            Some(world) => {
+                Ok(CompiledScene { scene: self, world, rules, dialect, emulates: false, diagnostics, files })
+            }
+            None => Err(SceneError::new(diagnostics, files).into()),
+        }
+    }
+}
+
+/// Reads and compiles the scene in a file, of any format: the format and dialect are found out.
+///
+/// # Errors
+///
+/// [`Error::Source`]: the file cannot be read. [`Error::Scene`]: it has errors.
+#[cfg(feature = "fs")]
+pub fn open(path: impl AsRef<Path>) -> Result<CompiledScene, Error> {
+    let (options, mut files, mut diagnostics) = (LoadOptions::default(), Files::default(), Diagnostics::default());
+    let loaded = load(path.as_ref(), &options, &mut files, &mut diagnostics)?;
+    let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut diagnostics));
+    match (loaded, world) {
+        (Some(loaded), Some(world)) => Ok(CompiledScene {
+            emulates: false,
+            scene: loaded.scene,
+            world,
+            rules: loaded.rules,
+            dialect: loaded.dialect,
+            diagnostics,
+            files,
+        }),
+        _ => Err(SceneError::new(diagnostics, files).into()),
+    }
+}

@@ -1,0 +1,82 @@
+//! The one error of this crate's own functions.
+
+use durer_diag::{Diagnostics, Files, Severity};
+use durer_image::ImageError;
+#[cfg(feature = "fs")]
+use durer_image::SaveError;
+use durer_render::render::RenderError;
+use durer_scene::source::SourceError;
+
+/// Why there is no scene, no picture, or no file of it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The scene has errors.
+    #[error(transparent)]
+    Scene(#[from] SceneError),
+    /// Options of a job contradict each other or the scene, or have no such value.
+    #[error("{0}")]
+    Options(String),
+    /// The picture was not made.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The picture does not fit into the format of the file.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// The file was not written.
+    #[cfg(feature = "fs")]
+    #[error(transparent)]
+    Save(#[from] SaveError),
+    /// The scene's file was not read.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+}
+
+/// What is wrong with a scene, and the texts in which it is.
+#[derive(Debug)]
+pub struct SceneError {
+    diagnostics: Diagnostics,
+    files: Files,
+}
+
+impl SceneError {
+    pub(crate) fn new(diagnostics: Diagnostics, files: Files) -> Self {
+        SceneError { diagnostics, files }
+    }
+
+    /// What is wrong, and what else was found.
+    pub fn diagnostics(&self) -> &Diagnostics {
+        &self.diagnostics
+    }
+
+    /// The texts to which the spans of the diagnostics belong.
+    pub fn files(&self) -> &Files {
+        &self.files
+    }
+}
+
+impl std::error::Error for SceneError {}
+
+impl std::fmt::Display for SceneError {
+    /// One line an error: `file:line:column: message`.
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let errors = self.diagnostics.iter().filter(|found| found.severity == Severity::Error);
+        for (i, error) in errors.enumerate() {
+            if i > 0 {
+                writeln!(f)?;
+            }
+            let place = error.span.and_then(|span| Some((self.files.name(span.file)?, self.files.position(span)?)));
+            if let Some((name, (line, column))) = place {
+                write!(f, "{name}:{line}:{column}: ")?;
+            }
+            write!(f, "{}", error.message)?;
+        }
+        Ok(())
+    }
+}
+
+impl From<Diagnostics> for Error {
+    fn from(diagnostics: Diagnostics) -> Self {
+        SceneError::new(diagnostics, Files::default()).into()
+    }
+}

@@ -1,0 +1,83 @@
+use super::*;
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::scene::{Material, Spanned, Wishes};
+
+fn context<'a>(scene: &'a Scene, rules: &'a Rules) -> JobContext<'a> {
+    JobContext { scene, rules, emulates: false, timed: false }
+}
+
+#[test]
+fn defaults_follow_from_the_scene() {
+    let rules = Dialect::Durer.rules();
+    let job = |scene: &Scene| RenderJob::default().resolve(&context(scene, rules), None).unwrap();
+    let plain = job(&Scene::default());
+    assert_eq!((plain.width, plain.height, plain.method), (512, 512, Method::WHITTED));
+    assert_eq!(plain.sampling.samples(), 16);
+    assert_eq!(plain.settings.bounces, 8);
+    let layers = Material::Principled(Box::new(PrincipledMaterial::default()));
+    let wishes = Wishes { size: Some((64, 32)), samples: None, bounces: Some(3), crop: Some((1, 2, 3, 4)) };
+    let materials = vec![Spanned { value: layers, span: Default::default() }];
+    let scene = Scene { materials, wishes, ..Scene::default() };
+    let physical = job(&scene);
+    assert_eq!((physical.width, physical.height, physical.method), (64, 32, Method::PATH));
+    assert_eq!((physical.sampling.samples(), physical.settings.bounces), (64, 3));
+    let view = View::default();
+    let crop = |job: RenderJob| job.resolve(&context(&scene, rules), Some(&view)).unwrap().crop;
+    assert_eq!(crop(RenderJob::default()).map(|crop| crop.left), Some(1));
+    assert_eq!(crop(RenderJob::default().size((640, 320))), None);
+    let old = JobContext { emulates: true, ..context(&scene, rules) };
+    let job = RenderJob::default().resolve(&old, None).unwrap();
+    assert_eq!((job.sampling, job.settings.least_weight), (Sampling::Center, 0.0));
+    let timed = JobContext { timed: true, ..context(&scene, rules) };
+    assert_eq!(RenderJob::default().resolve(&timed, None).unwrap().sampling.samples(), 1 << 20);
+}
+
+#[test]
+fn options_are_set_by_name_and_spelled_again() {
+    let rules = Dialect::Durer.rules();
+    let scene = Scene::default();
+    let given = [
+        ("integrator", "path"),
+        ("clamp", "2"),
+        ("bounces", "3"),
+        ("shadows", "off"),
+        ("no-refraction", ""),
+        ("min-throughput", "0.25"),
+        ("samples", "9"),
+        ("filter", "mitchell"),
+        ("filter-radius", "3"),
+        ("noise-threshold", "0.5"),
+        ("adaptive", ""),
+        ("seed", "7"),
+    ];
+    let mut options = RenderJob::default();
+    for (name, text) in given {
+        options.set(name, text).unwrap();
+    }
+    let job = options.resolve(&context(&scene, rules), None).unwrap();
+    let again = RenderJob::of(&job, &context(&scene, rules));
+    let words = "--integrator path --clamp 2 --bounces 3 --shadows=off --no-refraction --min-throughput 0.25 \
+                 --samples 9 --filter mitchell --filter-radius 3 --noise-threshold 0.5 --adaptive --seed 7";
+    assert_eq!(again.spelled().join(" "), words);
+    let text = |job: &Job| serde_json::to_string(job).unwrap();
+    assert_eq!(text(&again.resolve(&context(&scene, rules), None).unwrap()), text(&job));
+    // Of a scene's defaults nothing is spelled but how many samples that is.
+    let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
+    assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).spelled(), ["--samples 16"]);
+}
+
+#[test]
+fn wrong_options_are_refused_in_a_sentence() {
+    let wrong = |name: &str, text: &str| RenderJob::default().set(name, text).unwrap_err();
+    assert_eq!(wrong("sample", "1"), "there is no option `sample`; did you mean `samples`?");
+    assert_eq!(wrong("samples", "0"), "0 is not in 1..=1048576");
+    assert_eq!(wrong("size", "0x3"), "a picture has at least one pixel");
+    assert_eq!(wrong("noise-threshold", "0"), "say a number more than 0");
+    assert!(wrong("filter", "cubic").starts_with("say one of box, tent"));
+    let scene = Scene::default();
+    let refused = |job: RenderJob| job.resolve(&context(&scene, Dialect::Durer.rules()), None).unwrap_err();
+    assert!(refused(RenderJob::default().integrator("paths")).starts_with("there is no integrator"));
+    assert!(refused(RenderJob::default().jitter(true).integrator("path")).contains("--jitter"));
+    assert!(refused(RenderJob::default().filter_radius(65.0)).contains("--filter-radius"));
+    assert!(refused(RenderJob::default().depth_range([1.0, 1.0])).contains("two different"));
+}

@@ -1,0 +1,151 @@
+//! Rendering a scene pass by pass, and the picture of it.
+
+use crate::compiled::CompiledScene;
+use crate::error::Error;
+use crate::job::RenderJob;
+use durer_image::{Image, Layer};
+#[cfg(feature = "fs")]
+use durer_image::{Transfer, WriteOptions, format_for, save};
+use durer_render::render::{Control, Progress, ProgressiveRender, RenderError};
+use durer_scene::math::Color;
+#[cfg(feature = "fs")]
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// Renders a scene pass by pass: see the example of [this crate](crate). It is an iterator over
+/// [`Progress`] too.
+#[derive(Debug)]
+pub struct Renderer<'w> {
+    render: ProgressiveRender<'w>,
+    control: Arc<Control>,
+}
+
+/// Stops a [`Renderer`], from any thread.
+#[derive(Clone, Debug)]
+pub struct Canceller(Arc<Control>);
+
+impl Canceller {
+    /// Stops the render; its next pass is [`RenderError::Cancelled`].
+    pub fn cancel(&self) {
+        self.0.cancel.store(true, Relaxed);
+    }
+}
+
+impl<'w> Renderer<'w> {
+    /// Begins a picture, by as many threads as the machine has.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Options`] and [`Error::Render`]: no picture can have these options.
+    pub fn new(scene: &'w CompiledScene, options: RenderJob) -> Result<Self, Error> {
+        Renderer::with_control(scene, options, Control::default())
+    }
+
+    /// Begins a picture that is made in some way: threads, memory and so on.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Renderer::new`].
+    pub fn with_control(scene: &'w CompiledScene, options: RenderJob, control: Control) -> Result<Self, Error> {
+        let job = scene.job(&options)?;
+        Ok(Renderer { render: ProgressiveRender::new(scene.world(), &job)?, control: Arc::new(control) })
+    }
+
+    /// Makes the next pass over all pixels; `None` once the picture is finished. Passes double the
+    /// samples at first, and short ones are joined.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Render`], among others if it was cancelled. What was made before is kept.
+    pub fn next_pass(&mut self) -> Result<Option<Progress>, Error> {
+        Ok(self.render.next_pass(&self.control)?)
+    }
+
+    /// Makes all passes that are left, and returns the picture.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Renderer::next_pass`].
+    pub fn finish(mut self) -> Result<Picture, Error> {
+        while self.next_pass()?.is_some() {}
+        self.image()
+    }
+
+    /// What stops this render from another thread.
+    pub fn canceller(&self) -> Canceller {
+        Canceller(Arc::clone(&self.control))
+    }
+
+    /// The picture so far; black where nothing is made.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Render`]: it does not fit into memory.
+    pub fn image(&self) -> Result<Picture, Error> {
+        let mut rendered = self.render.part().pictures()?;
+        match rendered.layers.is_empty() {
+            true => Err(RenderError::Job("no colour was asked for".into()).into()),
+            false => Ok(Picture { layer: rendered.layers.swap_remove(0), attributes: rendered.attributes }),
+        }
+    }
+}
+
+impl Iterator for Renderer<'_> {
+    type Item = Result<Progress, Error>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.next_pass().transpose()
+    }
+}
+
+/// A picture in linear light, sRGB primaries; 1 is white where nothing else is said.
+#[derive(Clone, Debug)]
+pub struct Picture {
+    layer: Layer,
+    #[cfg_attr(not(feature = "fs"), expect(dead_code))]
+    attributes: Vec<(&'static str, String)>,
+}
+
+impl Picture {
+    /// Columns.
+    pub fn width(&self) -> u32 {
+        self.layer.image.width
+    }
+
+    /// Rows.
+    pub fn height(&self) -> u32 {
+        self.layer.image.height
+    }
+
+    /// Colours, row by row from the top, each from the left.
+    pub fn pixels(&self) -> &[Color] {
+        &self.layer.image.pixels
+    }
+
+    /// The colour of a pixel, counted from 0 from the upper left; `None` outside.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<Color> {
+        self.layer.image.get(x, y)
+    }
+
+    /// The picture without what is told beside it.
+    pub fn image(&self) -> &Image {
+        &self.layer.image
+    }
+
+    /// Writes it into a file, whole or not at all. The name's ending says the format: `.exr`, `.hdr`
+    /// and `.pfm` keep linear light, others eight bits a channel by sRGB's curve.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Image`]: there is no such format, or it cannot have such pictures. [`Error::Save`]:
+    /// the file cannot be written.
+    #[cfg(feature = "fs")]
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
+        let path = path.as_ref();
+        let options = WriteOptions { display: Transfer::Srgb.into(), attributes: &self.attributes };
+        let mut bytes = Vec::new();
+        format_for(path)?.write(std::slice::from_ref(&self.layer), &options, &mut bytes)?;
+        Ok(save(path, &bytes)?)
+    }
+}
