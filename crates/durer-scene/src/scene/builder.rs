@@ -250,7 +250,7 @@ mod tests {
             panic!("{built:?}");
         };
         // (1, 0, 0) is doubled, moved to (3, 0, 0), and turned to (0, 0, -3).
-        let map = MatrixOp::product(ops, 0);
+        let map = MatrixOp::product(ops, MatrixRules::default());
         assert!((map.transform_point3(glam::DVec3::X) - glam::DVec3::new(0.0, 0.0, -3.0)).length() < 1e-12);
     }
 
