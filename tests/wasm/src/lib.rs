@@ -1,8 +1,11 @@
-//! Rays through each structure of `durer-bvh`, and a hash of the answers to compare between
+//! Rays through each structure of `durer-bvh`, pictures by each integrator, and a hash of the answers to compare between
 //! targets: see `.ci/wasm`.
 //!
 //! Input comes from integers, sums, products, quotients and square roots, which are the same on
 //! every machine; `sin` and its like are not.
+
+#[path = "pictures.rs"]
+mod pictures;
 
 use durer_bvh::glam::{DAffine3, DMat3, DVec3};
 use durer_bvh::math::random::Random;
@@ -19,7 +22,7 @@ const RAYS: usize = 10_000;
 type Part = (&'static str, fn() -> u64);
 
 /// All parts.
-pub const PARTS: [Part; 11] = [
+pub const PARTS: [Part; 14] = [
     ("trees", trees),
     ("single", single),
     ("packets", packets),
@@ -31,6 +34,9 @@ pub const PARTS: [Part; 11] = [
     ("heights", heights),
     ("boxes", boxes),
     ("packs", packs),
+    ("whitted", pictures::whitted),
+    ("path", pictures::path),
+    ("photons", pictures::photons),
 ];
 
 /// The number of parts.
