@@ -237,6 +237,7 @@ impl MeshId {
 mod tests {
     use super::*;
     use crate::camera::PerspectiveCamera;
+    use crate::scene::matrix::MatrixRules;
     use crate::shape::Sphere;
 
     #[test]
@@ -250,7 +251,7 @@ mod tests {
             panic!("{built:?}");
         };
         // (1, 0, 0) is doubled, moved to (3, 0, 0), and turned to (0, 0, -3).
-        let map = MatrixOp::product(ops, 0);
+        let map = MatrixOp::product(ops, MatrixRules::default());
         assert!((map.transform_point3(glam::DVec3::X) - glam::DVec3::new(0.0, 0.0, -3.0)).length() < 1e-12);
     }
 
