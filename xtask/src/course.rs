@@ -13,13 +13,16 @@ const SEEDS: u64 = 8;
 
 /// One row of the list.
 #[derive(Clone, Debug)]
-struct Row {
+pub struct Row {
     picture: String,
-    dialect: String,
+    /// The year whose scenes it is of, which is also the name of their folder.
+    pub dialect: String,
     shows: String,
     compare: String,
-    program: String,
-    arguments: String,
+    /// The official program.
+    pub program: String,
+    /// Its arguments; empty where they are not known.
+    pub arguments: String,
 }
 
 /// What a comparison found.
@@ -117,7 +120,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-fn rows(course: &Path) -> Result<Vec<Row>> {
+/// The rows of the list of reference pictures.
+pub fn rows(course: &Path) -> Result<Vec<Row>> {
     let mut reader = csv::Reader::from_path(course.join("reference.csv"))?;
     let mut rows = Vec::new();
     for record in reader.records() {
@@ -292,7 +296,7 @@ fn square(x: f64) -> f64 {
 }
 
 /// The output files among some arguments: the option and the place of its file.
-fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)> {
+pub fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)> {
     const OUTPUTS: [(&str, usize); 5] =
         [("-output", 1), ("-depth", 3), ("-normals", 1), ("-render_samples", 1), ("-render_filter", 1)];
     words

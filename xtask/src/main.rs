@@ -10,6 +10,7 @@ mod cost;
 mod course;
 mod explain;
 mod fuzz;
+mod hashes;
 mod lamps;
 mod long;
 mod manual;
@@ -39,6 +40,9 @@ const USAGE: &str = "Commands:
   cargo xtask explain [--pixels 100000] [--only TEXT]
       Explain random pixels of every scene of the repository and of the course, in every way of sampling: do the terms
       sum to the pixel, to the bit? And how long does an explanation take?
+  cargo xtask hashes [--program PATH] [--against FILE] [--only WORD] [-o FILE]
+      Hashes of the pictures and messages of all scenes, the course and the sample files. --against: print only what
+      differs from the hashes in FILE.
   cargo xtask torture [--kills 100] [--offsets 50] [--seed 1]
       Kill the program at random times while it works and saves, and go on with what it left; give it full disks and
       disks that cannot be written.
@@ -103,6 +107,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("course") => course::run(&arguments[1..]),
         Some("verify") => verify::run(&arguments[1..]),
         Some("explain") => explain::run(&arguments[1..]),
+        Some("hashes") => hashes::run(&arguments[1..]),
         Some("torture") => torture::run(&arguments[1..]),
         Some("bitterli") => bitterli::run(&arguments[1..]),
         Some("sheet") => sheet::run(&arguments[1..]),

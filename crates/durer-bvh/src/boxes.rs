@@ -153,10 +153,12 @@ impl<T: TraversalCounter> Visitor for Things<'_, T> {
     fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, _: u32) {
         let mut rest = met.mask;
         while rest != 0 {
-            // Of a leaf something is fetched that is of no use, and does no harm.
+            // For a leaf this is no address of a node: fetching there is of no use and does no harm.
+            // Where addresses have 32 bits the product may wrap around.
             let child = met.child(rest.trailing_zeros());
             rest &= rest - 1;
-            let from = self.nodes.as_ptr().cast::<u8>().wrapping_add((child & !LEAF) as usize * node::UNIT);
+            let offset = ((child & !LEAF) as usize).wrapping_mul(node::UNIT);
+            let from = self.nodes.as_ptr().cast::<u8>().wrapping_add(offset);
             (0..size_of::<WideNode>() / 64).for_each(|line| lanes.prefetch(from.wrapping_add(64 * line)));
         }
     }

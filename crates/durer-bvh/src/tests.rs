@@ -110,6 +110,7 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "no threads there")]
 fn a_tree_does_not_depend_on_the_number_of_threads() {
     let mut random = Random(3);
     let boxes: Vec<Aabb> = (0..30_000).map(|_| cube(random.point(), 0.01 * random.unit())).collect();

@@ -16,6 +16,8 @@ pub enum SimdLevel {
     Avx512,
     /// NEON, on 64-bit ARM.
     Neon,
+    /// WebAssembly's 128-bit SIMD, where the crate is compiled with `-C target-feature=+simd128`.
+    Simd128,
 }
 
 /// `DURER_SIMD` says something that this processor cannot do.
@@ -34,9 +36,10 @@ impl fmt::Display for UnknownSimdLevel {
 impl std::error::Error for UnknownSimdLevel {}
 
 impl SimdLevel {
-    const ALL: [(SimdLevel, &str); 4] = [
+    const ALL: [(SimdLevel, &str); 5] = [
         (SimdLevel::Scalar, "scalar"),
         (SimdLevel::Neon, "neon"),
+        (SimdLevel::Simd128, "simd128"),
         (SimdLevel::Avx2, "avx2"),
         (SimdLevel::Avx512, "avx512"),
     ];
@@ -85,6 +88,8 @@ impl SimdLevel {
             SimdLevel::Avx512 => super::avx512::is_available(),
             #[cfg(target_arch = "aarch64")]
             SimdLevel::Neon => true,
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            SimdLevel::Simd128 => true,
             #[allow(unreachable_patterns)]
             _ => false,
         }
@@ -151,6 +156,8 @@ impl Available {
             SimdLevel::Avx2 => unsafe { super::avx2::run(kernel) },
             #[cfg(target_arch = "aarch64")]
             SimdLevel::Neon => kernel.run(super::neon::Neon),
+            #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+            SimdLevel::Simd128 => kernel.run(super::wasm::Simd128),
             _ => plain(kernel),
         }
     }

@@ -18,6 +18,8 @@ mod operations;
 mod pages;
 mod scalar;
 mod stack;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+mod wasm;
 mod wide;
 
 pub(crate) use level::Available;

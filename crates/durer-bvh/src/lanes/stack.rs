@@ -92,7 +92,7 @@ impl<'a> Stack<'a> {
     /// # Safety
     ///
     /// So many entries must have been written to [`Stack::top`], eight at most.
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128")))]
     #[inline(always)]
     pub(super) unsafe fn grow(&mut self, count: u32) {
         self.height += count as usize;

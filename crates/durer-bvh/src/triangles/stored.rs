@@ -76,8 +76,9 @@ impl TriangleBvh {
         if count > node::MAX_ITEMS as u64 || items > node::MAX_ITEMS as u64 || nodes > node::MAX_NODES as u64 {
             return Err(LoadError::Invalid("it is too large"));
         }
+        // In 64 bits, where `usize` may have 32: the largest counts make more bytes than those hold.
+        let expected = (HEAD + CHECKSUM) as u64 + NODE as u64 * nodes + (4 * ROWS) as u64 * items;
         let [count, nodes, items] = [count, nodes, items].map(|count| count as usize);
-        let expected = (HEAD + CHECKSUM) as u64 + (NODE * nodes) as u64 + (4 * ROWS * items) as u64;
         if expected != bytes.len() as u64 {
             return Err(LoadError::Length { expected, found: bytes.len() });
         }
@@ -305,6 +306,13 @@ mod tests {
             assert_eq!(error(&bytes[..len]), LoadError::Length { expected, found: len });
         }
         assert!(matches!(error(&summed(with(12 + 7, 1))), LoadError::Invalid(_)));
+        // Nodes and items of too many bytes, by a multiple of 2^32.
+        let (nodes, items) = (1 + 10 * 4_400_582, (1 << 29) + 1 - 61 * 4_400_582);
+        assert_eq!((NODE as u64 * (nodes - 1) + (4 * ROWS) as u64 * (items - 1)) % (1 << 32), 0);
+        let mut wraps = bytes.clone();
+        wraps[20..28].copy_from_slice(&nodes.to_le_bytes());
+        wraps[28..36].copy_from_slice(&items.to_le_bytes());
+        assert!(matches!(error(&summed(wraps)), LoadError::Length { .. }));
         assert!((0..bytes.len()).all(|at| TriangleBvh::from_bytes(&with(at, !bytes[at])).is_err()));
     }
 }

@@ -405,6 +405,7 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
 }
 
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "no threads there")]
 fn a_tree_is_a_function_of_its_triangles() {
     // So many that every step has parts that run side by side.
     let (soup, bars) = (soup(&mut Random(5), 40_000, 0.05), bars(&mut Random(5), 20_000, 1_000));
@@ -423,6 +424,7 @@ fn a_tree_is_a_function_of_its_triangles() {
 
 /// It arrives where the tree was asked for, whichever thread found it, and the next tree is built.
 #[test]
+#[cfg_attr(target_family = "wasm", ignore = "a panic ends the program there")]
 fn an_index_that_leads_nowhere_panics() {
     let (vertices, mut triangles) = soup(&mut Random(3), 20_000, 0.1);
     for quality in BuildQuality::NAMES.map(|(_, quality)| quality) {

@@ -1,9 +1,9 @@
 //! In which order samples are taken, and when there are enough.
 
 use super::crop::Crop;
+use crate::clock::{Duration, Instant};
 use crate::film::{Film, luminance_of};
 use std::iter::Peekable;
-use std::time::{Duration, Instant};
 
 /// Samples before which nothing is decided about a block.
 pub const LEAST: u32 = 16;
@@ -52,7 +52,7 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
         let now = Instant::now();
         let mut end = self.ends.next()?;
         if self.joins && samples > 0 {
-            let each = (now - began) / samples;
+            let each = now.duration_since(began) / samples;
             let is_soon = |next: &u32| each.saturating_mul(next - done) < SOON;
             while !self.kept.contains(&end)
                 && let Some(next) = self.ends.next_if(is_soon)

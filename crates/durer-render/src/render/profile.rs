@@ -3,6 +3,7 @@
 
 use super::samples::Samples;
 use super::{Job, RenderError};
+use crate::clock::{Duration, Instant};
 use crate::integrator::trace::{NodeId, RayKind, RayRecord, TermKind};
 use crate::integrator::{Integrate, TraceListener};
 use crate::world::World;
@@ -11,7 +12,6 @@ use durer_scene::math::Ray;
 use durer_scene::sampler::SampleId;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
-use std::time::{Duration, Instant};
 
 /// What some samples of a picture took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

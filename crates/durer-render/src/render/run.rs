@@ -6,6 +6,7 @@ use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{SampleCursor, Samples, Stopped};
 use super::{BLOCK, Control, Job, Rendered, Shard, rays};
+use crate::clock::{Duration, Instant};
 use crate::film::Packed;
 use crate::integrator::Integrate;
 use crate::threads;
@@ -16,7 +17,6 @@ use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
-use std::time::{Duration, Instant};
 
 /// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are
 /// larger, as long as what is kept for one takes at most so many bytes.
@@ -236,7 +236,7 @@ impl Clock<'_> {
         let before = Instant::now();
         watch(part, moment);
         self.last = Instant::now();
-        self.pause = 10 * (self.last - before);
+        self.pause = 10 * self.last.duration_since(before);
     }
 }
 

@@ -5,7 +5,7 @@ use super::{Geometry, Interaction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{Change, TEXTURED};
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
-use durer_scene::shape::{Primitive, Shape};
+use durer_scene::shape::Shape;
 use durer_scene::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
 
@@ -191,17 +191,10 @@ impl World {
         let to_world = object.to_world.as_ref();
         let normal = to_world.map_or(surface.n_geo, |to_world| to_world.local_normal(surface.n_geo));
         let point = to_world.map_or(surface.position, |to_world| to_world.inverse_point(surface.position));
-        let around = |axis: Vec3, center: Vec3| Some(axis.cross(point - center));
         let own = match &object.geometry {
             Geometry::Mesh(tree) => tree.mesh.tangents(hit.part, surface.barycentric, normal, false).map(|[u, _]| u),
-            Geometry::Primitive(Primitive::Sphere(s)) => around(Vec3::Y, s.center),
-            Geometry::Primitive(Primitive::Ellipsoid(s)) => around(Vec3::Y, s.center),
-            Geometry::Primitive(Primitive::Cylinder(s)) => around(s.top - s.base, s.base),
-            Geometry::Primitive(Primitive::Cone(s)) => around(s.top - s.base, s.base),
-            Geometry::Primitive(Primitive::Torus(s)) => around(s.axis, s.center),
-            Geometry::Primitive(Primitive::Disc(s)) => around(s.normal, s.center),
-            Geometry::Primitive(Primitive::Rectangle(s)) => Some(s.edge0),
-            _ => None,
+            Geometry::Primitive(shape) => shape.tangent(point),
+            Geometry::Solid(_) => None,
         };
         let own = own.filter(|u| u.cross(normal).length_squared() > 1e-12 * u.length_squared());
         let own = own.unwrap_or_else(|| Vec3::Y.cross(normal));

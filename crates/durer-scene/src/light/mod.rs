@@ -1,5 +1,6 @@
 //! Lights. One file each; the list is [`Light`].
 
+pub mod area;
 pub mod directional;
 pub mod photometric;
 pub mod point;
@@ -7,6 +8,7 @@ pub mod spot;
 
 use crate::describe::{FileName, described_list};
 use crate::math::{Color, LUMINANCE, Vec3};
+pub use area::{EmitterPoint, EmitterShape, Placement};
 pub use directional::DirectionalLight;
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};

@@ -237,7 +237,7 @@ impl MeshId {
 mod tests {
     use super::*;
     use crate::camera::PerspectiveCamera;
-    use crate::scene::matrix::MatrixRules;
+    use crate::scene::MatrixRules;
     use crate::shape::Sphere;
 
     #[test]

@@ -2,9 +2,10 @@
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
-use super::{Shape, ShapeHit, Surface, exactly, inset};
+use super::{MeshData, Shape, ShapeHit, Surface, exactly, inset, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -114,5 +115,17 @@ impl Shape for Cone {
         } else {
             Ok(())
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, point: Vec3) -> Option<Vec3> {
+        Some((self.top - self.base).cross(point - self.base))
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::round([(self.base, self.base_radius), (self.top, self.top_radius)]))
     }
 }

@@ -1,9 +1,10 @@
 //! The box whose faces are parallel to the coordinate planes.
 
 use super::chord::Chord;
-use super::{Shape, ShapeHit, Surface, exactly, inset, padded};
+use super::{MeshData, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -62,5 +63,17 @@ impl Shape for Cuboid {
             true => Ok(()),
             false => Err("`min` of a `Box` must be less than its `max` in x, y and z".into()),
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::block(self.min, self.max))
     }
 }

@@ -1,8 +1,10 @@
 //! The disc, whole or with a hole.
 
-use super::{Shape, ShapeHit, Surface, Uv, disc_reach, padded};
+use super::{MeshData, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
+use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3};
 use glam::{DVec2, DVec3};
 
@@ -63,5 +65,21 @@ impl Shape for Disc {
             true => Ok(()),
             false => Err("`innerRadius` of a `Disc` must be less than its `radius`".into()),
         }
+    }
+
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        let n = self.normal.normalize_or(Vec3::Y);
+        let frame = Frame::around(n);
+        let axes = [frame.tangent, frame.bitangent].map(|axis| place.vector(self.radius * axis));
+        let ellipse = EmitterShape::Ellipse(place.point(self.center), axes, self.inner_radius / self.radius);
+        Some((ellipse, place.normal(n)))
+    }
+
+    fn tangent(&self, point: Vec3) -> Option<Vec3> {
+        Some(self.normal.cross(point - self.center))
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::ring(self.center, self.normal, [self.inner_radius, self.radius]))
     }
 }

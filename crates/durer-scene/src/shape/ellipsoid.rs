@@ -1,8 +1,9 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
-use super::{Shape, ShapeHit, Surface, padded, turn};
+use super::{MeshData, Shape, ShapeHit, Surface, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
 
@@ -60,5 +61,17 @@ impl Shape for Ellipsoid {
             true => Ok(()),
             false => Err("all `radii` of an `Ellipsoid` must be more than 0".into()),
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, point: Vec3) -> Option<Vec3> {
+        Some(Vec3::Y.cross(point - self.center))
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::ellipsoid(self.center, self.radii))
     }
 }

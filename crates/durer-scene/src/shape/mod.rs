@@ -15,6 +15,7 @@ pub mod quadric;
 pub mod rectangle;
 pub mod sphere;
 mod tangents;
+mod tessellate;
 #[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod testing;
@@ -26,6 +27,7 @@ pub mod uv;
 pub mod voxels;
 
 use crate::describe::described_list;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 pub use cone::Cone;
 pub use cuboid::Cuboid;
@@ -63,6 +65,15 @@ macro_rules! delegate {
             }
             fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
                 match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
+            }
+            fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+                match self { $(Primitive::$variant(s) => s.emitter(place),)+ }
+            }
+            fn tangent(&self, point: Vec3) -> Option<Vec3> {
+                match self { $(Primitive::$variant(s) => s.tangent(point),)+ }
+            }
+            fn to_mesh(&self) -> Option<MeshData> {
+                match self { $(Primitive::$variant(s) => s.to_mesh(),)+ }
             }
             fn inside(&self, point: DVec3) -> Option<bool> {
                 match self { $(Primitive::$variant(s) => s.inside(point),)+ }
@@ -272,6 +283,17 @@ pub trait Shape {
 
     /// The surface at a crossing, next to a point that is on it but for rounding.
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
+
+    /// Surface to sample as a light, in world space, and its outward unit normal there; the normal is
+    /// zero where it varies. `None`: its light is found by rays that hit it alone, which is noisy.
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)>;
+
+    /// Direction of the texture coordinate u at a point, in object space, of any length. Highlights
+    /// are brushed along it. `None`: horizontally across the normal.
+    fn tangent(&self, point: Vec3) -> Option<Vec3>;
+
+    /// Triangles that approximate it, in object space. `None` for a shape without end.
+    fn to_mesh(&self) -> Option<MeshData>;
 
     /// Whether a point is inside; `None` for shapes that are surfaces only.
     fn inside(&self, _point: DVec3) -> Option<bool> {

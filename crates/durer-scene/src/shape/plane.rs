@@ -1,8 +1,9 @@
 //! The plane normal · p = offset, without end.
 
-use super::{Shape, ShapeHit, Surface, Uv};
+use super::{MeshData, Shape, ShapeHit, Surface, Uv};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -68,5 +69,17 @@ impl Shape for Plane {
             color: [1.0; 4],
             solid: None,
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        None
     }
 }

@@ -1,8 +1,9 @@
 //! The general quadric: where a polynomial of degree two in x, y and z is zero.
 
-use super::{Shape, ShapeHit, Surface, padded, turn};
+use super::{MeshData, Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::{DMat3, DVec3};
 
@@ -111,5 +112,17 @@ impl Shape for Quadric {
             true => Err("a `Quadric` needs a number beside its `constant` that is not 0".into()),
             false => Ok(()),
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        None
     }
 }

@@ -1,8 +1,9 @@
 //! The rectangle, or any parallelogram.
 
-use super::{Shape, ShapeHit, Surface, inset, padded};
+use super::{MeshData, Shape, ShapeHit, Surface, inset, padded, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -89,5 +90,19 @@ impl Shape for Rectangle {
             true => Err("the edges of a `Rectangle` must not be parallel".into()),
             false => Ok(()),
         }
+    }
+
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        let n = self.edge0.as_dvec3().cross(self.edge1.as_dvec3()).normalize_or_zero().as_vec3();
+        let edges = [place.vector(self.edge0), place.vector(self.edge1)];
+        Some((EmitterShape::Parallelogram(place.point(self.corner), edges), place.normal(n)))
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        Some(self.edge0)
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::parallelogram(self.corner, [self.edge0, self.edge1]))
     }
 }

@@ -1,8 +1,9 @@
 //! The sphere |p - center|^2 = radius^2.
 
-use super::{Shape, ShapeHit, Surface, Uv};
+use super::{MeshData, Shape, ShapeHit, Surface, Uv, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -96,5 +97,23 @@ impl Shape for Sphere {
             color: [1.0; 4],
             solid: None,
         }
+    }
+
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| place.vector(self.radius * axis));
+        let radius = axes[0].length();
+        // A transform may leave an ellipsoid, which cannot be sampled.
+        let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
+            && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
+                < 1e-5 * radius * radius;
+        round.then(|| (EmitterShape::Sphere(place.point(self.center), radius), Vec3::ZERO))
+    }
+
+    fn tangent(&self, point: Vec3) -> Option<Vec3> {
+        Some(Vec3::Y.cross(point - self.center))
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::ball(self.center, self.radius))
     }
 }

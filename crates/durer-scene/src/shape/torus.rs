@@ -1,8 +1,9 @@
 //! The torus: all points at one distance from a circle.
 
-use super::{Shape, ShapeHit, Surface, disc_reach, padded, turn};
+use super::{MeshData, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -107,5 +108,17 @@ impl Shape for Torus {
             true => Ok(()),
             false => Err("`minorRadius` of a `Torus` must be less than its `majorRadius`".into()),
         }
+    }
+
+    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
+        None
+    }
+
+    fn tangent(&self, point: Vec3) -> Option<Vec3> {
+        Some(self.axis.cross(point - self.center))
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::torus(self.center, self.axis, [self.major_radius, self.minor_radius]))
     }
 }

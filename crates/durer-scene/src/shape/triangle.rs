@@ -1,9 +1,10 @@
 //! A single triangle.
 
 use super::watertight::{self, WatertightRay};
-use super::{INSET, Shape, ShapeHit, Surface, Uv, exactly};
+use super::{INSET, MeshData, Shape, ShapeHit, Surface, Uv, exactly, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -60,6 +61,18 @@ impl Shape for Triangle {
 
     fn surface(&self, _point: DVec3, crossing: &ShapeHit) -> Surface {
         Surface { uv: Uv::At(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
+    }
+
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        Some(EmitterShape::triangle(self.corners(), place))
+    }
+
+    fn tangent(&self, _: Vec3) -> Option<Vec3> {
+        None
+    }
+
+    fn to_mesh(&self) -> Option<MeshData> {
+        Some(tessellate::triangle(self.corners()))
     }
 }
 

@@ -4,7 +4,7 @@ use super::finding::{Finding, MAX_SOUGHT};
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::integrator::Method;
-use durer_render::world::emitters::Form;
+use durer_render::world::emitters::emitter_of;
 use durer_render::world::{Geometry, Material, Object};
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::scene::Material as Written;
@@ -98,7 +98,7 @@ fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
                     (*place - (*place - on).dot(n) * n, n)
                 }
                 _ if object.parts() == 1 => {
-                    let (form, normal) = Form::of(object, 0)?;
+                    let (form, normal) = emitter_of(object, 0)?;
                     flat &= normal != Vec3::ZERO;
                     let (point, n, _) = form.point(normal, u)?;
                     (point.as_vec3(), n)
@@ -125,7 +125,7 @@ fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
 
 /// How far a lamp's light goes from its middle, as a share of the scene; `None`: on and on.
 fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
-    let (form, normal) = Form::of(object, 0)?;
+    let (form, normal) = emitter_of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
     let ray = Ray { t_min: 1e-5, ..Ray::new(point.as_vec3(), n) };
     let hit = scout.world().closest(&ray, &mut ())?;

@@ -143,7 +143,7 @@ fn double_precision_says_the_same() {
     let mut cut = 0;
     for (number, (name, mesh)) in dozen().into_iter().enumerate() {
         cut += usize::from(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Best).items() > mesh.1.len());
-        let part = |i: usize| try_rays(name, &mesh, (number << 32 | i) as u64, AT_ONCE);
+        let part = |i: usize| try_rays(name, &mesh, (number as u64) << 32 | i as u64, AT_ONCE);
         let tried = (0..all.div_ceil(AT_ONCE)).into_par_iter().map(part).reduce(Tried::default, |mut a, b| {
             a += b;
             a

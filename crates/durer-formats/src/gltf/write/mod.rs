@@ -6,7 +6,6 @@
 mod material;
 mod mesh;
 mod picture;
-mod solid;
 
 #[cfg(test)]
 mod tests;
@@ -20,7 +19,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object, Scene};
-use durer_scene::shape::MeshData;
+use durer_scene::shape::{MeshData, Shape as _};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use serde_json::{Map, Value, json};
 use std::collections::{BTreeMap, BTreeSet};
@@ -129,7 +128,7 @@ impl Writer<'_> {
                 self.shown(name, &data, object.material)
             }
             Node::Primitive(primitive) => {
-                let Some(data) = solid::mesh(primitive) else {
+                let Some(data) = primitive.to_mesh() else {
                     let name = DescribedList::keyword(primitive, Dialect::Durer);
                     self.left_out(format!("glTF has triangles only: `{name}` is left out"));
                     return None;

@@ -2,7 +2,6 @@
 //! how one of them is chosen.
 
 pub mod emission;
-pub mod shape;
 pub mod tree;
 
 use super::material::Emission;
@@ -10,11 +9,11 @@ use super::object::Geometry;
 use super::{Hit, Object, World};
 use durer_bvh::internal::{bring_near, room};
 use durer_scene::bsdf::{Frame, warp};
-use durer_scene::light::Emitter as _;
+use durer_scene::light::{Emitter as _, EmitterShape, Placement};
 use durer_scene::math::{Aabb, Color, Vec2, Vec3, fp, gamma};
+use durer_scene::shape::Shape as _;
 use glam::DVec3;
 use serde::Serialize;
-pub use shape::{Form, Place};
 use std::f32::consts::PI;
 use tree::{Bounds, LightTree};
 
@@ -25,7 +24,7 @@ const MANY: usize = 10_000;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
     /// Where it is.
-    pub form: Form,
+    pub form: EmitterShape,
     /// Its normal; zero for what has normals to all sides.
     pub normal: Vec3,
     /// Number of the object.
@@ -253,7 +252,7 @@ impl Emitters {
             let two_sided = two_sided && !has_empty_inside(world, number);
             let (start, error) = (emitters.sources.len(), object.rounding());
             for part in 0..object.parts() {
-                let Some((form, normal)) = Form::of(object, part) else { break };
+                let Some((form, normal)) = emitter_of(object, part) else { break };
                 let area = AreaLight { form, normal, object: number as u32, part, two_sided, error, radiance };
                 bounds.push(area.bounds());
                 emitters.sources.push(Source::Area(area));
@@ -379,7 +378,7 @@ impl Emitters {
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
-            Source::Area(area) if matches!(area.form, Form::Sphere(..)) => Some(Vec2::ZERO),
+            Source::Area(area) if matches!(area.form, EmitterShape::Sphere(..)) => Some(Vec2::ZERO),
             _ => Some(Vec2::splat(0.5)),
         }
     }
@@ -430,6 +429,17 @@ impl Emitters {
     }
 }
 
+/// Surface of one part of an object to sample as a light, and its unit normal in world space; `None`
+/// where only rays that hit it find its light.
+pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
+    let place = Placement(object.to_world.as_ref());
+    match &object.geometry {
+        Geometry::Mesh(tree) => Some(EmitterShape::triangle(tree.mesh.corners(part), &place)),
+        Geometry::Primitive(shape) => shape.emitter(&place),
+        Geometry::Solid(_) => None,
+    }
+}
+
 /// Whether an object is a closed mesh whose normals point outwards, with no other object in it: to
 /// choose points of it for what is inside would be in vain. Rays that meet its inside find it
 /// shining all the same.
@@ -439,8 +449,8 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
     let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
     let center = bounds.center().as_dvec3();
     // Six times the volume of the cone from the middle to a part.
-    let cone = |part| match Form::of(object, part) {
-        Some((Form::Triangle(p, [e, f]), normal)) => {
+    let cone = |part| match emitter_of(object, part) {
+        Some((EmitterShape::Triangle(p, [e, f]), normal)) => {
             e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
         }
         _ => 0.0,

@@ -1,17 +1,35 @@
-//! The forms of emitters in world space, and how points of them are chosen as seen from a point.
+//! Area lights: surfaces that emit, in world space, and how points on them are sampled.
 
-use crate::world::Object;
-use crate::world::object::Geometry;
-use durer_scene::bsdf::{Frame, warp};
-use durer_scene::math::{Aabb, Vec2, Vec3, fp};
-use durer_scene::shape::Primitive;
+use crate::bsdf::{Frame, warp};
+use crate::math::{Aabb, Affine, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
 
-/// A form whose points can be chosen at random. Places are known in double precision, as those of
-/// things are that rays meet.
+/// Placement of an object in the world; `None` is the identity.
+#[derive(Clone, Copy, Debug)]
+pub struct Placement<'a>(pub Option<&'a Affine>);
+
+impl Placement<'_> {
+    /// A point in world space.
+    pub fn point(&self, p: Vec3) -> DVec3 {
+        self.0.map_or(p.as_dvec3(), |to_world| to_world.point64(p))
+    }
+
+    /// A vector in world space.
+    pub fn vector(&self, v: Vec3) -> Vec3 {
+        self.0.map_or(v, |to_world| to_world.vector(v))
+    }
+
+    /// A unit normal in world space, by the inverse transpose.
+    pub fn normal(&self, n: Vec3) -> Vec3 {
+        self.0.map_or(n, |to_world| to_world.normal(n))
+    }
+}
+
+/// Surface in world space whose points can be sampled. Positions are in double precision, as those
+/// of ray hits are.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Form {
+pub enum EmitterShape {
     /// A corner and two edges.
     Triangle(DVec3, [Vec3; 2]),
     /// A corner and two edges.
@@ -24,9 +42,9 @@ pub enum Form {
     Cylinder(DVec3, Vec3, f32),
 }
 
-/// A chosen point of an emitter, as seen from somewhere.
+/// Point sampled on an emitter, as seen from a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct EmitterPoint {
     /// Unit vector to it.
     pub wi: Vec3,
     /// How far it is.
@@ -37,86 +55,44 @@ pub struct Place {
     pub pdf: f32,
 }
 
-impl Form {
-    /// The form of one part of an object, with its normal; `None` for what is found by hits alone.
-    pub fn of(object: &Object, part: u32) -> Option<(Form, Vec3)> {
-        let point = |p: Vec3| object.to_world.as_ref().map_or(p.as_dvec3(), |m| m.point64(p));
-        let vector = |v: Vec3| object.to_world.as_ref().map_or(v, |m| m.vector(v));
-        let normal = |n: Vec3| object.to_world.as_ref().map_or(n, |m| m.normal(n));
-        Some(match &object.geometry {
-            Geometry::Mesh(tree) => {
-                let [a, b, c] = tree.mesh.corners(part);
-                let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Triangle(point(a), [vector(b - a), vector(c - a)]), normal(n))
-            }
-            Geometry::Primitive(Primitive::Triangle(triangle)) => {
-                let [a, b, c] = triangle.corners();
-                let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Triangle(point(a), [vector(b - a), vector(c - a)]), normal(n))
-            }
-            Geometry::Primitive(Primitive::Rectangle(r)) => {
-                let n = r.edge0.as_dvec3().cross(r.edge1.as_dvec3()).normalize_or_zero().as_vec3();
-                (Form::Parallelogram(point(r.corner), [vector(r.edge0), vector(r.edge1)]), normal(n))
-            }
-            Geometry::Primitive(Primitive::Disc(disc)) => {
-                let n = disc.normal.normalize_or(Vec3::Y);
-                let frame = Frame::around(n);
-                let axes = [frame.tangent, frame.bitangent].map(|axis| vector(disc.radius * axis));
-                (Form::Ellipse(point(disc.center), axes, disc.inner_radius / disc.radius), normal(n))
-            }
-            Geometry::Primitive(Primitive::Sphere(sphere)) => {
-                let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| vector(sphere.radius * axis));
-                let radius = axes[0].length();
-                let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
-                    && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
-                        < 1e-5 * radius * radius;
-                return round.then(|| (Form::Sphere(point(sphere.center), radius), Vec3::ZERO));
-            }
-            Geometry::Primitive(Primitive::Cylinder(cylinder)) => {
-                let way = cylinder.top - cylinder.base;
-                let frame = Frame::around(way.normalize_or(Vec3::Y));
-                let [x, y] = [frame.tangent, frame.bitangent].map(|axis| vector(cylinder.radius * axis));
-                let (way, radius) = (vector(way), x.length());
-                // Only what is still round and upright can be chosen.
-                let off = x.dot(y).abs()
-                    + way.normalize_or(Vec3::Y).dot(x).abs() * radius
-                    + way.normalize_or(Vec3::Y).dot(y).abs() * radius
-                    + (y.length() - radius).abs() * radius;
-                let round = off < 1e-5 * radius * radius && way != Vec3::ZERO;
-                return round.then(|| (Form::Cylinder(point(cylinder.base), way, radius), Vec3::ZERO));
-            }
-            Geometry::Primitive(_) | Geometry::Solid(_) => return None,
-        })
+impl EmitterShape {
+    /// Triangle of corners in object space, with its unit normal in world space.
+    pub fn triangle([a, b, c]: [Vec3; 3], place: &Placement) -> (EmitterShape, Vec3) {
+        let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
+        let edges = [place.vector(b - a), place.vector(c - a)];
+        (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
     }
 
     /// Its area.
     pub fn area(&self) -> f32 {
         match self {
-            Form::Triangle(_, [e, f]) => 0.5 * e.cross(*f).length(),
-            Form::Parallelogram(_, [e, f]) => e.cross(*f).length(),
-            Form::Ellipse(_, [u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
-            Form::Sphere(_, radius) => 4.0 * PI * radius * radius,
-            Form::Cylinder(_, way, radius) => 2.0 * PI * radius * (way.length() + radius),
+            EmitterShape::Triangle(_, [e, f]) => 0.5 * e.cross(*f).length(),
+            EmitterShape::Parallelogram(_, [e, f]) => e.cross(*f).length(),
+            EmitterShape::Ellipse(_, [u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
+            EmitterShape::Sphere(_, radius) => 4.0 * PI * radius * radius,
+            EmitterShape::Cylinder(_, way, radius) => 2.0 * PI * radius * (way.length() + radius),
         }
     }
 
     /// Whether it has normals to all sides.
     pub fn is_round(&self) -> bool {
-        matches!(self, Form::Sphere(..) | Form::Cylinder(..))
+        matches!(self, EmitterShape::Sphere(..) | EmitterShape::Cylinder(..))
     }
 
     /// The box around it.
     pub fn bounds(&self) -> Aabb {
         let near = |p: DVec3| p.as_vec3();
         match *self {
-            Form::Triangle(p, [e, f]) => Aabb::around([near(p), near(p) + e, near(p) + f]),
-            Form::Parallelogram(p, [e, f]) => Aabb::around([near(p), near(p) + e, near(p) + f, near(p) + e + f]),
-            Form::Ellipse(p, [u, v], _) => {
+            EmitterShape::Triangle(p, [e, f]) => Aabb::around([near(p), near(p) + e, near(p) + f]),
+            EmitterShape::Parallelogram(p, [e, f]) => {
+                Aabb::around([near(p), near(p) + e, near(p) + f, near(p) + e + f])
+            }
+            EmitterShape::Ellipse(p, [u, v], _) => {
                 let reach = (u * u + v * v).map(f32::sqrt);
                 Aabb { min: near(p) - reach, max: near(p) + reach }
             }
-            Form::Sphere(center, radius) => Aabb { min: near(center) - radius, max: near(center) + radius },
-            Form::Cylinder(base, way, radius) => {
+            EmitterShape::Sphere(center, radius) => Aabb { min: near(center) - radius, max: near(center) + radius },
+            EmitterShape::Cylinder(base, way, radius) => {
                 let [base, top] = [near(base), near(base) + way];
                 Aabb::around([base - radius, base + radius, top - radius, top + radius])
             }
@@ -124,28 +100,33 @@ impl Form {
     }
 
     /// Chooses a point of it, as seen from a point; `None` where none can be seen.
-    pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<Place> {
+    pub fn sample(&self, normal: Vec3, from: DVec3, u: Vec2) -> Option<EmitterPoint> {
         let to = match *self {
-            Form::Triangle(p, [e, f]) => {
+            EmitterShape::Triangle(p, [e, f]) => {
                 let b = warp::triangle(u);
                 offset(p, from) + b.y * e + b.z * f
             }
-            Form::Parallelogram(p, [e, f]) => {
+            EmitterShape::Parallelogram(p, [e, f]) => {
                 let corner = offset(p, from);
                 if let Some(window) = Window::new(corner, e, f) {
                     let wi = window.sample(u);
                     let distance = wi.length();
                     let wi = wi / distance;
-                    return Some(Place { wi, distance, cosine: -wi.dot(normal), pdf: 1.0 / window.solid_angle as f32 });
+                    return Some(EmitterPoint {
+                        wi,
+                        distance,
+                        cosine: -wi.dot(normal),
+                        pdf: 1.0 / window.solid_angle as f32,
+                    });
                 }
                 corner + u.x * e + u.y * f
             }
-            Form::Ellipse(p, [x, y], inner) => {
+            EmitterShape::Ellipse(p, [x, y], inner) => {
                 let d = in_ring(u, inner);
                 offset(p, from) + d.x * x + d.y * y
             }
-            Form::Sphere(center, radius) => return cone(offset(center, from), radius, u),
-            Form::Cylinder(..) => {
+            EmitterShape::Sphere(center, radius) => return cone(offset(center, from), radius, u),
+            EmitterShape::Cylinder(..) => {
                 let (point, normal, density) = self.point(normal, u)?;
                 let to = (point - from).as_vec3();
                 let distance = to.length();
@@ -154,21 +135,21 @@ impl Form {
                 let pdf = density * distance * distance / cosine.abs();
                 // The far side cannot be seen.
                 let seen = cosine > 0.0 && pdf.is_finite() && pdf > 0.0;
-                return seen.then_some(Place { wi, distance, cosine, pdf });
+                return seen.then_some(EmitterPoint { wi, distance, cosine, pdf });
             }
         };
         let distance = to.length();
         let wi = to / distance;
         let cosine = -wi.dot(normal);
         let pdf = distance * distance / (cosine.abs() * self.area());
-        (pdf.is_finite() && pdf > 0.0).then_some(Place { wi, distance, cosine, pdf })
+        (pdf.is_finite() && pdf > 0.0).then_some(EmitterPoint { wi, distance, cosine, pdf })
     }
 
-    /// The density per solid angle with which [`Form::sample`] chooses a direction that meets it at
+    /// The density per solid angle with which [`EmitterShape::sample`] chooses a direction that meets it at
     /// a distance.
     pub fn pdf(&self, normal: Vec3, from: DVec3, wi: Vec3, distance: f32) -> f32 {
         match *self {
-            Form::Sphere(center, radius) => {
+            EmitterShape::Sphere(center, radius) => {
                 let to = offset(center, from);
                 let (d2, r2) = (to.length_squared(), radius * radius);
                 if d2 <= r2 {
@@ -176,11 +157,11 @@ impl Form {
                 }
                 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
             }
-            Form::Cylinder(base, way, radius) => {
+            EmitterShape::Cylinder(base, way, radius) => {
                 let normal = outwards(distance * wi - offset(base, from), way, radius);
                 distance * distance / (wi.dot(normal).abs() * self.area())
             }
-            Form::Parallelogram(p, [e, f]) => match Window::new(offset(p, from), e, f) {
+            EmitterShape::Parallelogram(p, [e, f]) => match Window::new(offset(p, from), e, f) {
                 Some(window) => 1.0 / window.solid_angle as f32,
                 None => distance * distance / (wi.dot(normal).abs() * self.area()),
             },
@@ -191,20 +172,20 @@ impl Form {
     /// A point chosen evenly over its area, its normal there, and the density per area.
     pub fn point(&self, normal: Vec3, u: Vec2) -> Option<(DVec3, Vec3, f32)> {
         let (point, normal) = match *self {
-            Form::Triangle(p, [e, f]) => {
+            EmitterShape::Triangle(p, [e, f]) => {
                 let b = warp::triangle(u);
                 (p + (b.y * e + b.z * f).as_dvec3(), normal)
             }
-            Form::Parallelogram(p, [e, f]) => (p + (u.x * e + u.y * f).as_dvec3(), normal),
-            Form::Ellipse(p, [x, y], inner) => {
+            EmitterShape::Parallelogram(p, [e, f]) => (p + (u.x * e + u.y * f).as_dvec3(), normal),
+            EmitterShape::Ellipse(p, [x, y], inner) => {
                 let d = in_ring(u, inner);
                 (p + (d.x * x + d.y * y).as_dvec3(), normal)
             }
-            Form::Sphere(center, radius) => {
+            EmitterShape::Sphere(center, radius) => {
                 let n = warp::sphere(u);
                 (center + f64::from(radius) * n.as_dvec3(), n)
             }
-            Form::Cylinder(base, way, radius) => {
+            EmitterShape::Cylinder(base, way, radius) => {
                 let height = way.length();
                 let axis = way / height;
                 let frame = Frame::around(axis);
@@ -266,7 +247,7 @@ fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
 /// A point of a sphere, evenly over the solid angle in which it is seen.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.2.4.
-fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
+fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (d2, r2) = (to.length_squared(), radius * radius);
     let d = d2.sqrt();
     if d2 <= r2 {
@@ -277,7 +258,7 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
         let cosine = sphere_cosine(to, wi, distance, radius);
         let pdf = distance * distance / (4.0 * PI * r2 * cosine);
         // Its outside cannot be seen.
-        return pdf.is_finite().then_some(Place { wi, distance, cosine: -cosine, pdf });
+        return pdf.is_finite().then_some(EmitterPoint { wi, distance, cosine: -cosine, pdf });
     }
     let all = one_minus_cosine(r2 / d2);
     let below = all * u.x;
@@ -289,7 +270,7 @@ fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<Place> {
     // Where that direction first meets the sphere.
     let half = (r2 - d2 * sine2).max(0.0).sqrt();
     let distance = d * cosine - half;
-    Some(Place { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
+    Some(EmitterPoint { wi, distance, cosine: half / radius, pdf: 1.0 / (2.0 * PI * all) })
 }
 
 /// A rectangle whose edges are less than this share of its distance is sampled evenly over its area:

@@ -1,0 +1,277 @@
+//! WebAssembly's `simd128`: eight lanes as two vectors of four.
+//!
+//! A module either has these instructions or has not: there is no test at run time. The compiler
+//! option `-C target-feature=+simd128` chooses this level. Relaxed SIMD is not used, because its
+//! results may differ between machines.
+
+use super::operations::{Columns, Lanes, Numbers, Rows};
+use super::stack::Stack;
+use super::wide::Two;
+use crate::math::Doubles;
+use crate::node::WIDTH;
+use std::arch::wasm32::*;
+
+/// The target has `simd128` wherever this type exists.
+#[derive(Clone, Copy)]
+pub struct Simd128;
+
+/// Eight `f32`.
+#[derive(Clone, Copy)]
+pub struct Pair(v128, v128);
+
+/// A vector read from an array, from a place in it on. It needs no alignment.
+macro_rules! load {
+    ($from:expr, $at:expr) => {
+        // SAFETY: callers name a place from which the array has sixteen bytes or more.
+        unsafe { v128_load($from.as_ptr().add($at).cast()) }
+    };
+}
+
+/// A vector written into an array.
+macro_rules! store {
+    ($to:expr, $at:expr, $vector:expr) => {
+        // SAFETY: as above.
+        unsafe { v128_store($to.as_mut_ptr().add($at).cast(), $vector) }
+    };
+}
+
+/// Two `f64`.
+#[derive(Clone, Copy)]
+pub struct TwoDoubles(v128);
+
+impl Doubles for TwoDoubles {
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        TwoDoubles(f64x2_add(self.0, other.0))
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        TwoDoubles(f64x2_sub(self.0, other.0))
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        TwoDoubles(f64x2_mul(self.0, other.0))
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        TwoDoubles(f64x2_div(self.0, other.0))
+    }
+    // `pmin(x, y)` is `if y < x { y } else { x }`, and `pmax(x, y)` is `if x < y { y } else { x }`.
+    // With the operands exchanged they are what the trait asks for, NaN and zeros included.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        TwoDoubles(f64x2_pmin(other.0, self.0))
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        TwoDoubles(f64x2_pmax(other.0, self.0))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        TwoDoubles(f64x2_sqrt(self.0))
+    }
+    #[inline(always)]
+    fn copysign(self, sign: Self) -> Self {
+        TwoDoubles(v128_bitselect(sign.0, self.0, u64x2_splat(1 << 63)))
+    }
+}
+
+/// Operations on both halves, one instruction each.
+macro_rules! operations {
+    ($($name:ident($($x:ident),+) = $instruction:ident($($y:ident),+);)*) => {$(
+        #[inline(always)]
+        fn $name(self, $($x: Pair),+) -> Pair {
+            Pair($instruction($($y.0),+), $instruction($($y.1),+))
+        }
+    )*};
+}
+
+/// The first bit of each lane.
+#[inline(always)]
+fn bits(low: v128, high: v128) -> u32 {
+    u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
+}
+
+impl Numbers for Simd128 {
+    type Floats = Pair;
+
+    operations! {
+        add(a, b) = f32x4_add(a, b);
+        sub(a, b) = f32x4_sub(a, b);
+        mul(a, b) = f32x4_mul(a, b);
+        div(a, b) = f32x4_div(a, b);
+        abs(a) = f32x4_abs(a);
+        // The operands are exchanged as in `TwoDoubles`.
+        min(a, b) = f32x4_pmin(b, a);
+        max(a, b) = f32x4_pmax(b, a);
+    }
+
+    #[inline(always)]
+    fn splat(self, x: f32) -> Pair {
+        Pair(f32x4_splat(x), f32x4_splat(x))
+    }
+    #[inline(always)]
+    fn mul_add(self, a: Pair, b: Pair, c: Pair) -> Pair {
+        self.add(self.mul(a, b), c)
+    }
+    #[inline(always)]
+    fn le(self, a: Pair, b: Pair) -> u32 {
+        bits(f32x4_le(a.0, b.0), f32x4_le(a.1, b.1))
+    }
+    #[inline(always)]
+    fn lt(self, a: Pair, b: Pair) -> u32 {
+        bits(f32x4_lt(a.0, b.0), f32x4_lt(a.1, b.1))
+    }
+}
+
+impl Lanes for Simd128 {
+    type Wide = Two<Self>;
+    type Doubles = ((TwoDoubles, TwoDoubles), (TwoDoubles, TwoDoubles));
+    type Triple = [f64; 3];
+
+    operations! {
+        sooner(a, b) = i32x4_min(a, b);
+        later(a, b) = i32x4_max(a, b);
+        before(a, b) = i32x4_lt(a, b);
+    }
+
+    #[inline(always)]
+    fn wide(self) -> Two<Self> {
+        Two(self)
+    }
+    #[inline(always)]
+    fn join(self, [low, high]: [Pair; 2]) -> (Pair, Pair) {
+        (low, high)
+    }
+    #[inline(always)]
+    fn doubles(self, a: Pair) -> Self::Doubles {
+        let two = |a| TwoDoubles(f64x2_promote_low_f32x4(a));
+        let four = |a| (two(a), two(i64x2_shuffle::<1, 1>(a, a)));
+        (four(a.0), four(a.1))
+    }
+    #[inline(always)]
+    fn splat_double(self, x: f64) -> Self::Doubles {
+        let two = TwoDoubles(f64x2_splat(x));
+        ((two, two), (two, two))
+    }
+    #[inline(always)]
+    fn load_doubles(self, from: &[f64; WIDTH]) -> Self::Doubles {
+        let two = |at| TwoDoubles(load!(from, at));
+        ((two(0), two(2)), (two(4), two(6)))
+    }
+    #[inline(always)]
+    fn store_doubles(self, ((a, b), (c, d)): Self::Doubles) -> [f64; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        for (i, two) in [a, b, c, d].into_iter().enumerate() {
+            store!(to, 2 * i, two.0);
+        }
+        to
+    }
+    #[inline(always)]
+    fn le_doubles(self, (low, high): Self::Doubles, (low_b, high_b): Self::Doubles) -> u32 {
+        let two = |a: TwoDoubles, b: TwoDoubles| u32::from(i64x2_bitmask(f64x2_le(a.0, b.0)));
+        let four = |a: (_, _), b: (_, _)| two(a.0, b.0) | two(a.1, b.1) << 2;
+        four(low, low_b) | four(high, high_b) << 4
+    }
+    #[inline(always)]
+    fn singles(self, (low, high): Self::Doubles) -> Pair {
+        let two = |a: TwoDoubles| f32x4_demote_f64x2_zero(a.0);
+        let four = |(a, b)| i64x2_shuffle::<0, 2>(two(a), two(b));
+        Pair(four(low), four(high))
+    }
+    #[inline(always)]
+    fn triple(self, v: glam::Vec3A) -> [f64; 3] {
+        v.as_dvec3().to_array()
+    }
+    #[inline(always)]
+    fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
+        // Four bytes for each component: 4k, 4k + 1, 4k + 2, 4k + 3.
+        let first = i32x4_mul(load!(order, 0), u32x4_splat(0x0404_0404));
+        u8x16_swizzle(v.into(), i32x4_add(first, u32x4_splat(0x0302_0100))).into()
+    }
+    #[inline(always)]
+    fn load(self, from: &[f32; WIDTH]) -> Pair {
+        Pair(load!(from, 0), load!(from, 4))
+    }
+    #[inline(always)]
+    fn corners(self, from: &Rows, Columns { starts, corner }: Columns) -> [[Pair; 3]; 3] {
+        // By `Columns::new` each row begins in one of the first nine, so eight numbers follow.
+        std::array::from_fn(|k| {
+            starts.map(|start| Pair(load!(from, k * corner + start), load!(from, k * corner + start + 4)))
+        })
+    }
+    #[inline(always)]
+    fn store(self, a: Pair) -> [f32; WIDTH] {
+        let mut to = [0.0; WIDTH];
+        store!(to, 0, a.0);
+        store!(to, 4, a.1);
+        to
+    }
+    #[inline(always)]
+    fn signs(self, a: Pair) -> u32 {
+        bits(a.0, a.1)
+    }
+    #[inline(always)]
+    fn nearest(self, a: Pair, which: Pair, child_tags: &[u8; WIDTH]) -> u32 {
+        let key = |a, which, tags| {
+            let key = v128_or(v128_andnot(a, u32x4_splat(255)), tags);
+            v128_or(key, v128_not(which))
+        };
+        let tags = u16x8_load_extend(child_tags);
+        let low = key(a.0, which.0, u32x4_extend_low_u16x8(tags));
+        let four = u32x4_min(low, key(a.1, which.1, u32x4_extend_high_u16x8(tags)));
+        let two = u32x4_min(four, i32x4_shuffle::<2, 3, 0, 1>(four, four));
+        u32x4_extract_lane::<0>(u32x4_min(two, i32x4_shuffle::<1, 0, 3, 2>(two, two)))
+    }
+    #[inline(always)]
+    fn select(self, mask: u32, a: Pair, b: Pair) -> Pair {
+        let mask = u32x4_splat(mask);
+        let lanes = |weights| u32x4_eq(v128_and(mask, weights), weights);
+        let (low, high) = (lanes(u32x4(1, 2, 4, 8)), lanes(u32x4(16, 32, 64, 128)));
+        Pair(v128_bitselect(a.0, b.0, low), v128_bitselect(a.1, b.1, high))
+    }
+    #[inline(always)]
+    fn transpose(self, [a, b, c, d, e, f, g, h]: [Pair; WIDTH]) -> [Pair; WIDTH] {
+        // Four blocks of four by four, of which two change places.
+        let ([a0, b0, c0, d0], [e0, f0, g0, h0]) = (block([a.0, b.0, c.0, d.0]), block([a.1, b.1, c.1, d.1]));
+        let ([a1, b1, c1, d1], [e1, f1, g1, h1]) = (block([e.0, f.0, g.0, h.0]), block([e.1, f.1, g.1, h.1]));
+        [Pair(a0, a1), Pair(b0, b1), Pair(c0, c1), Pair(d0, d1), Pair(e0, e1), Pair(f0, f1), Pair(g0, g1), Pair(h0, h1)]
+    }
+    #[inline(always)]
+    fn push(self, stack: &mut Stack, children: &[u32; WIDTH], near: Pair, order: &[u8; WIDTH], count: u32) {
+        let (near, count) = (self.store(near), count.min(WIDTH as u32));
+        let (to, to_near) = stack.top();
+        for (i, &lane) in order.iter().enumerate().take(count as usize) {
+            let lane = usize::from(lane) % WIDTH;
+            // SAFETY: `top` has room for a vector.
+            unsafe {
+                to.add(i).write(children[lane]);
+                to_near.add(i).write(near[lane]);
+            }
+        }
+        // SAFETY: so many were written.
+        unsafe { stack.grow(count) };
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, _: *const T) {}
+}
+
+/// Eight bytes, each as sixteen bits.
+#[inline(always)]
+fn u16x8_load_extend(from: &[u8; WIDTH]) -> v128 {
+    // SAFETY: a reference is valid for its eight bytes, and the instruction needs no alignment.
+    unsafe { u16x8_load_extend_u8x8(from.as_ptr()) }
+}
+
+/// Rows to columns, four by four.
+#[inline(always)]
+fn block([a, b, c, d]: [v128; 4]) -> [v128; 4] {
+    let (ab, cd) = (i32x4_shuffle::<0, 4, 1, 5>(a, b), i32x4_shuffle::<0, 4, 1, 5>(c, d));
+    let (ab_high, cd_high) = (i32x4_shuffle::<2, 6, 3, 7>(a, b), i32x4_shuffle::<2, 6, 3, 7>(c, d));
+    [
+        i64x2_shuffle::<0, 2>(ab, cd),
+        i64x2_shuffle::<1, 3>(ab, cd),
+        i64x2_shuffle::<0, 2>(ab_high, cd_high),
+        i64x2_shuffle::<1, 3>(ab_high, cd_high),
+    ]
+}

@@ -1,0 +1,427 @@
+//! `cargo xtask hashes`: hashes of the pictures and messages that the scenes, the course and the
+//! sample files give, one a line, to be kept and compared with. A change of the code's structure
+//! must leave every line as it was.
+//!
+//! A line is a kind, a path (with options, or the name of a picture), and the hash, with tabs
+//! between them:
+//!
+//! | kind | hash of |
+//! | --- | --- |
+//! | `film` | the film, as `durer render --hash` prints it; or the exit code of a refusal |
+//! | `pixels` | a picture of that film, in single precision |
+//! | `course` | a picture that `durer course` writes |
+//! | `converted` | all files that `durer convert` writes |
+//! | `error` | nothing: the first error of a refusal, as text |
+//! | `messages` | what these commands print on standard error |
+//! | `info`, `check` | what `durer info` and `durer check` print |
+//!
+//! The paths of temporary files are left out of messages, and bytes of memory out of `info`.
+
+use anyhow::{Context, Result, ensure};
+use durer::source::Digest;
+use std::collections::{BTreeMap, BTreeSet, HashSet};
+use std::fs::{self, File};
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode, Stdio};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Cases that run at a time, each with one thread.
+const WORKERS: usize = 2;
+
+/// Time that a case may take: many times what the slowest takes, as the machine may be busy.
+const LIMIT: Duration = Duration::from_secs(240);
+
+/// Memory that a case may take. A share of the machine's would refuse other files on another one.
+const MEMORY: &str = "4G";
+
+/// Endings of scenes and models, in lower case.
+const ENDINGS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "xml"];
+
+/// What makes pictures, each run with one thread.
+const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";
+const PROGRAM: &str = "course --threads 1";
+
+/// Options for each of our scenes: first with all pictures that take no further samples, then with
+/// the other integrators and ways of sampling, smaller.
+const OURS: [&str; 6] = [
+    "--size 64x48 --samples 4 --show color,depth,normals,geometric-normals,position,uv,barycentric,albedo,object,\
+     material,luminance,illuminance,sample-count,variance",
+    "--size 32x24 --samples 2 --integrator whitted --transparent-shadows",
+    "--size 32x24 --samples 2 --integrator path --color spectral",
+    "--size 32x24 --samples 2 --integrator photons --photons 2000",
+    "--size 32x24 --samples 4 --integrator ao --sampler jittered --filter gaussian",
+    "--size 16x12 --samples 16 --integrator path --adaptive --accel grid",
+];
+
+/// Options for each file of another program.
+const THEIRS: &str = "--size 32x24 --samples 2";
+
+/// Options for the course's scenes of which there is no reference picture.
+const COURSE: &str = "-size 48 48 -output @color.tga -depth 0 20 @depth.tga -normals @normals.tga";
+
+/// Folders with meshes of the course's scenes that come without theirs.
+const MESHES: &str = "--assets course/scenes/f04 --assets course/scenes/f16";
+
+/// Stands between the name of a case and that of one of its pictures.
+const PICTURE: &str = ": ";
+
+/// Lines by their kind and path: the hash, or the text of an error.
+type Lines = BTreeMap<(String, String), String>;
+
+/// One run of the program.
+struct Case {
+    kind: Kind,
+    /// The path on its lines.
+    name: String,
+    /// The folder in which it runs, so that messages have relative paths.
+    folder: PathBuf,
+    /// The arguments; a word after [`OUTPUT`] is a file that is written.
+    arguments: Vec<String>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// `durer render`.
+    Film,
+    /// `durer course`.
+    Course,
+    /// `durer convert`.
+    Converted,
+    /// `durer info`.
+    Info,
+    /// `durer check`.
+    Check,
+}
+
+/// Precedes the name of a file that is written.
+const OUTPUT: &str = "@";
+
+/// How a run of the program ended.
+struct Ended {
+    /// The exit code; `None` after a signal.
+    code: Option<i32>,
+    late: bool,
+    out: Vec<u8>,
+    errors: Vec<u8>,
+}
+
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let value = |name| crate::value(arguments, name);
+    let only = value("--only");
+    let durer = match value("--program") {
+        Some(program) => Path::new(program).canonicalize().with_context(|| program.clone())?,
+        None => crate::build::durer()?,
+    };
+    let old = value("--against").map(|file| {
+        let text = fs::read_to_string(file).with_context(|| file.clone())?;
+        parsed(&text).with_context(|| format!("{file} was not written by `hashes`"))
+    });
+    let mut old = old.transpose()?;
+    let cases = cases(only)?;
+    ensure!(!cases.is_empty(), "there is no such case");
+    let lines = all(&durer, &cases)?;
+    let text = written(&lines);
+    if let Some(file) = value("-o") {
+        fs::write(file, &text).with_context(|| file.clone())?;
+    }
+    let Some(old) = &mut old else {
+        if value("-o").is_none() {
+            print!("{text}");
+        }
+        eprintln!("{} lines of {} runs", lines.len(), cases.len());
+        return Ok(ExitCode::SUCCESS);
+    };
+    if let Some(only) = only {
+        old.retain(|(_, path), _| path.split(PICTURE).next().is_some_and(|name| name.contains(only.as_str())));
+    }
+    let differences = differences(old, &lines);
+    differences.iter().for_each(|difference| println!("{difference}"));
+    eprintln!("{} lines of {} runs: {} differ", lines.len(), cases.len(), differences.len());
+    Ok(if differences.is_empty() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn cases(only: Option<&String>) -> Result<Vec<Case>> {
+    let mut cases = Vec::new();
+    let root = crate::root()?;
+    for folder in ["scenes", "scenes/photographs"] {
+        for file in below(&root, folder, false)? {
+            cases.extend(OURS.iter().enumerate().map(|(i, options)| {
+                let name = if i == 0 { file.clone() } else { format!("{file} {options}") };
+                Case::new(Kind::Film, name, &root, &format!("{RENDER} {options}"), Some(&file))
+            }));
+            read_only(&root, &file, "", &mut cases);
+        }
+    }
+    let corpus = crate::corpus().canonicalize().context("there are no sample files; set DURER_CORPUS")?;
+    course(&corpus, &mut cases)?;
+    for folder in ["samples", "meshes"] {
+        // Text files there are licences and tables.
+        for file in below(&corpus, folder, true)?.iter().filter(|file| !file.ends_with(".txt")) {
+            cases.push(Case::new(Kind::Film, file.clone(), &corpus, &format!("{RENDER} {THEIRS}"), Some(file)));
+            cases.push(converted(&corpus, file, "json", ""));
+        }
+    }
+    cases.retain(|case| only.is_none_or(|only| case.name.contains(only.as_str())));
+    Ok(cases)
+}
+
+/// The runs with a scene that make no picture.
+fn read_only(folder: &Path, file: &str, assets: &str, cases: &mut Vec<Case>) {
+    cases.extend(["json", "txt", "glb"].map(|ending| converted(folder, file, ending, assets)));
+    let case = |kind, words| Case::new(kind, file.into(), folder, &format!("{words} {assets}"), Some(file));
+    cases.push(case(Kind::Info, "info"));
+    cases.push(case(Kind::Check, "check --size 64x48 --samples 4"));
+}
+
+fn converted(folder: &Path, file: &str, ending: &str, assets: &str) -> Case {
+    let words = format!("convert -o {OUTPUT}p.{ending} {assets}");
+    Case::new(Kind::Converted, format!("{file} as {ending}"), folder, &words, Some(file))
+}
+
+/// The runs of which there are reference pictures, then the other scenes.
+fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
+    let mut runs = BTreeSet::new();
+    for row in crate::course::rows(&corpus.join("course"))? {
+        if !row.arguments.is_empty() {
+            runs.insert([row.dialect, row.program, row.arguments]);
+        }
+    }
+    let mut known = HashSet::new();
+    for [dialect, program, arguments] in runs {
+        let words: Vec<&str> = arguments.split_whitespace().collect();
+        let input = words.iter().skip_while(|word| **word != "-input").nth(1).context("a row has no -input")?;
+        known.insert(format!("course/scenes/{dialect}/{input}"));
+        let outputs: HashSet<usize> = crate::course::files(&words).map(|(_, at)| at).collect();
+        let mut all = format!("{PROGRAM} --program {program}");
+        for (at, word) in words.iter().enumerate() {
+            all = all + " " + if outputs.contains(&at) { OUTPUT } else { "" } + word;
+        }
+        let folder = corpus.join("course/scenes").join(&dialect);
+        cases.push(Case::new(Kind::Course, format!("{dialect} {program} {arguments}"), &folder, &all, None));
+    }
+    for file in below(corpus, "course/scenes", true)?.iter().filter(|file| file.ends_with(".txt")) {
+        read_only(corpus, file, MESHES, cases);
+        if !known.contains(file) {
+            let dialect = file.split('/').nth(2).context("a scene is in no folder")?;
+            // The meshes of 2003 are among those of 2004.
+            let meshes = if dialect == "f03" { "f04" } else { dialect };
+            let words = format!("{PROGRAM} --dialect {dialect} --assets course/scenes/{meshes} {COURSE} -input");
+            cases.push(Case::new(Kind::Course, format!("{dialect} {file}"), corpus, &words, Some(file)));
+        }
+    }
+    Ok(())
+}
+
+/// The scenes and models in a folder, as paths from `root`, sorted; with `deep` also those in the
+/// folders below.
+fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
+        let entry = entry?;
+        let name = entry.file_name().into_string().ok().with_context(|| format!("{folder}: a name is not text"))?;
+        let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending).to_lowercase();
+        let path = format!("{folder}/{name}");
+        if entry.path().is_dir() {
+            if deep {
+                found.extend(below(root, &path, deep)?);
+            }
+        } else if ENDINGS.contains(&ending.as_str()) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Runs all cases.
+fn all(durer: &Path, cases: &[Case]) -> Result<Lines> {
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let lines = Mutex::new(Lines::new());
+    let visible = std::io::stderr().is_terminal();
+    let work = || -> Result<()> {
+        while let Some(case) = cases.get(next.fetch_add(1, Relaxed)) {
+            let found = case.lines(durer).with_context(|| case.name.clone())?;
+            let mut lines = lines.lock().unwrap_or_else(PoisonError::into_inner);
+            for (kind, path, value) in found {
+                let before = lines.insert((kind.into(), path.clone()), value);
+                ensure!(before.is_none(), "two lines are {kind} of {path}");
+            }
+            let done = done.fetch_add(1, Relaxed) + 1;
+            if visible {
+                eprint!("\r{done} of {} runs", cases.len());
+            }
+        }
+        Ok(())
+    };
+    thread::scope(|scope| {
+        let workers: Vec<_> = (0..WORKERS).map(|_| scope.spawn(work)).collect();
+        workers
+            .into_iter()
+            .try_for_each(|worker| worker.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)))
+    })?;
+    if visible {
+        eprint!("\r\x1b[K");
+    }
+    Ok(lines.into_inner().unwrap_or_else(PoisonError::into_inner))
+}
+
+impl Case {
+    /// A run with these words, then the file.
+    fn new(kind: Kind, name: String, folder: &Path, words: &str, file: Option<&str>) -> Case {
+        let arguments = words.split_whitespace().chain(file).map(String::from).collect();
+        Case { kind, name, folder: folder.into(), arguments }
+    }
+
+    /// Runs it: kind, path and value of each of its lines.
+    fn lines(&self, durer: &Path) -> Result<Vec<(&'static str, String, String)>> {
+        let place = tempfile::tempdir()?;
+        let files = place.path().join("files");
+        fs::create_dir(&files)?;
+        let mut command = Command::new(durer);
+        command.current_dir(&self.folder);
+        for argument in &self.arguments {
+            match argument.strip_prefix(OUTPUT) {
+                Some(name) => command.arg(files.join(name)),
+                None => command.arg(argument),
+            };
+        }
+        if self.kind != Kind::Course {
+            command.args(["--memory", MEMORY]);
+        }
+        let ended = ended(&mut command, place.path())?;
+        let kind = self.kind.word();
+        let line = |kind, value: String| (kind, self.name.clone(), value);
+        if ended.late {
+            return Ok(vec![line(kind, format!("no end within {} s", LIMIT.as_secs()))]);
+        }
+        let code = ended.code.map_or_else(|| "a signal".into(), |code| code.to_string());
+        let plain = |text: &[u8]| {
+            let text = String::from_utf8_lossy(text).replace(&*place.path().to_string_lossy(), "PLACE");
+            text.replace(&*self.folder.to_string_lossy(), "FOLDER")
+        };
+        let (out, errors) = (plain(&ended.out), plain(&ended.errors));
+        if let Kind::Info | Kind::Check = self.kind {
+            // Bytes of memory are those of the structures, which may change.
+            let lines = out.lines().filter(|line| !line.starts_with("memory "));
+            let said = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
+            return Ok(vec![line(kind, Digest::of(said.as_bytes()).to_string())]);
+        }
+        let mut lines = vec![line("messages", Digest::of(errors.as_bytes()).to_string())];
+        if ended.code != Some(0) {
+            let first = errors.lines().find(|line| line.starts_with("error")).or_else(|| errors.lines().next());
+            lines.push(line("error", first.unwrap_or_default().replace('\t', " ")));
+            lines.push(line(kind, format!("refused: {code}")));
+            return Ok(lines);
+        }
+        let mut written = Vec::new();
+        hashed(&files, "", &mut written)?;
+        match self.kind {
+            // One line for all files of a scene.
+            Kind::Converted => {
+                written.sort();
+                lines.push(line(kind, Digest::of(format!("{written:?}").as_bytes()).to_string()));
+            }
+            Kind::Film => {
+                lines.push(line(kind, out.lines().last().unwrap_or_default().into()));
+                // `p.pfm` alone, or `p.depth.pfm` among several.
+                lines.extend(written.into_iter().map(|(name, digest)| {
+                    match name.strip_prefix("p.").and_then(|name| name.strip_suffix(".pfm")) {
+                        None => line("pixels", digest),
+                        Some(picture) => ("pixels", format!("{}{PICTURE}{picture}", self.name), digest),
+                    }
+                }));
+            }
+            _ => {
+                let named = |(name, digest)| (kind, format!("{}{PICTURE}{name}", self.name), digest);
+                lines.extend(written.into_iter().map(named));
+            }
+        }
+        Ok(lines)
+    }
+}
+
+impl Kind {
+    /// The first word of its lines.
+    fn word(self) -> &'static str {
+        match self {
+            Kind::Film => "film",
+            Kind::Course => "course",
+            Kind::Converted => "converted",
+            Kind::Info => "info",
+            Kind::Check => "check",
+        }
+    }
+}
+
+/// The files in and below a folder, by their paths from it, with the hashes of their bytes.
+fn hashed(folder: &Path, path: &str, found: &mut Vec<(String, String)>) -> Result<()> {
+    for entry in fs::read_dir(folder.join(path))? {
+        let entry = entry?;
+        let name = format!("{path}{}", entry.file_name().to_string_lossy());
+        if entry.path().is_dir() {
+            hashed(folder, &format!("{name}/"), found)?;
+        } else {
+            found.push((name, Digest::of(&fs::read(entry.path())?).to_string()));
+        }
+    }
+    Ok(())
+}
+
+/// Runs a command with its output in files, and kills it after a while.
+fn ended(command: &mut Command, place: &Path) -> Result<Ended> {
+    let [out, errors] = ["out", "errors"].map(|name| place.join(name));
+    let mut child = command.stdin(Stdio::null()).stdout(File::create(&out)?).stderr(File::create(&errors)?).spawn()?;
+    let start = Instant::now();
+    let mut late = false;
+    let status = loop {
+        if let Some(status) = child.try_wait()? {
+            break status;
+        }
+        if start.elapsed() > LIMIT {
+            late = true;
+            child.kill()?;
+            break child.wait()?;
+        }
+        thread::sleep(Duration::from_millis(2));
+    };
+    Ok(Ended { code: status.code(), late, out: fs::read(out)?, errors: fs::read(errors)? })
+}
+
+fn written(lines: &Lines) -> String {
+    lines.iter().map(|((kind, path), value)| format!("{kind}\t{path}\t{value}\n")).collect()
+}
+
+/// Reads lines that [`written`] wrote; `None` if they are not such lines.
+fn parsed(text: &str) -> Option<Lines> {
+    let line = |line: &str| {
+        let (kind, rest) = line.split_once('\t')?;
+        let (path, value) = rest.split_once('\t')?;
+        Some(((kind.into(), path.into()), value.into()))
+    };
+    text.lines().map(line).collect()
+}
+
+/// The lines that are not in both, or that have other values.
+fn differences(old: &Lines, new: &Lines) -> Vec<String> {
+    let keys: BTreeSet<_> = old.keys().chain(new.keys()).collect();
+    let absent = "absent".to_string();
+    let of = |lines: &'_ Lines, key| lines.get(key).unwrap_or(&absent).clone();
+    let differing = keys.into_iter().filter(|key| old.get(*key) != new.get(*key));
+    differing.map(|key| format!("{}\t{}\t{} -> {}", key.0, key.1, of(old, key), of(new, key))).collect()
+}
+
+#[test]
+fn lines_that_changed_appeared_or_vanished_are_told() {
+    let lines = |text: &str| parsed(text).unwrap();
+    let old = lines("film\ta b.txt\t01\nfilm\tgone.txt\t02\npixels\ta b.txt: depth\t03\n");
+    let new = lines("film\ta b.txt\t01\nfilm\tnew.txt\t02\npixels\ta b.txt: depth\t04\n");
+    assert_eq!(differences(&old, &old), [""; 0]);
+    assert_eq!(lines(&written(&new)), new);
+    let told = ["film\tgone.txt\t02 -> absent", "film\tnew.txt\tabsent -> 02", "pixels\ta b.txt: depth\t03 -> 04"];
+    assert_eq!(differences(&old, &new), told);
+    assert_eq!(parsed("film without tabs\n"), None);
+}
