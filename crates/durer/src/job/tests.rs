@@ -14,7 +14,7 @@ fn defaults_follow_from_the_scene() {
     assert_eq!((plain.width, plain.height, plain.method), (512, 512, Method::WHITTED));
     assert_eq!(plain.sampling.samples(), 16);
     assert_eq!(plain.settings.bounces, 8);
-    let layers = Material::Principled(Box::new(PrincipledMaterial::default()));
+    let layers = Material::from(PrincipledMaterial::default());
     let wishes = Wishes { size: Some((64, 32)), samples: None, bounces: Some(3), crop: Some((1, 2, 3, 4)) };
     let materials = vec![Spanned { value: layers, span: Default::default() }];
     let scene = Scene { materials, wishes, ..Scene::default() };

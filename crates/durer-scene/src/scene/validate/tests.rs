@@ -51,7 +51,7 @@ fn a_value_against_its_rule_is_named_with_its_thing_and_field() {
         specular_ior: f32::NAN,
         ..PrincipledMaterial::default()
     };
-    let found = messages(&with_materials(vec![Material::Principled(Box::new(layers))]));
+    let found = messages(&with_materials(vec![layers.into()]));
     let wanted = ["specular_roughness -3 must be from 0 to 1", "specular_ior NaN must be finite"];
     assert_eq!(found, wanted.map(|text| format!("PrincipledMaterial: {text}")));
     let camera = PerspectiveCamera { angle: 180.0, ..PerspectiveCamera::default() };
@@ -95,7 +95,7 @@ fn fields_are_checked_together_once_each_is_valid() {
 fn numbers_of_materials_must_exist_but_for_objects_of_files() {
     let scene = |span| {
         let mut scene = with_shape(Sphere::default());
-        scene.materials.push(bare(Material::Phong(Box::new(PhongMaterial::default()), None)));
+        scene.materials.push(bare(PhongMaterial::default().into()));
         for object in scene.root.iter_mut().flat_map(|root| &mut root.objects) {
             (object.material, object.span) = (Some(7), span);
         }
@@ -104,7 +104,7 @@ fn numbers_of_materials_must_exist_but_for_objects_of_files() {
     assert_eq!(messages(&scene(Span::default())), ["an object has material 7, but the scene has 1, counted from 0"]);
     assert_eq!(messages(&scene(Span { file: 0, start: 3, end: 9 })), [""; 0]);
     let board = |material1, material2| Material::Solid(Checkerboard { material1, material2 }.into(), Vec::new());
-    let plain = || Material::Phong(Box::new(PhongMaterial::default()), None);
+    let plain = || Material::from(PhongMaterial::default());
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 0)])), [""; 0]);
     assert_eq!(messages(&with_materials(vec![plain(), board(0, 1)])), ["a solid material is made of earlier ones"]);
 }
