@@ -23,9 +23,9 @@
 //!     }
 //!     let picture = render.image()?;
 //!     assert!(picture.pixel(20, 24).is_some_and(|color| color.x > color.z));
-//! #   let folder = std::env::temp_dir().join(format!("durer-doctest-{}.exr", std::process::id()));
-//! #   picture.save(&folder)?;
-//! #   std::fs::remove_file(&folder).unwrap();
+//! #   let file = std::env::temp_dir().join(format!("durer-doctest-{}.exr", std::process::id()));
+//! #   picture.save(&file)?;
+//! #   std::fs::remove_file(&file).unwrap();
 //! #   return Ok(());
 //!     picture.save("picture.exr")
 //! }
