@@ -1,6 +1,6 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
-use super::{MeshData, Shape, ShapeHit, Surface, padded, turn, tessellate};
+use super::{MeshData, Shape, ShapeHit, Surface, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};

@@ -1,6 +1,6 @@
 //! The torus: all points at one distance from a circle.
 
-use super::{MeshData, Shape, ShapeHit, Surface, disc_reach, padded, turn, tessellate};
+use super::{MeshData, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
