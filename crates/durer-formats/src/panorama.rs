@@ -4,7 +4,7 @@
 use durer_diag::Span;
 use durer_image::{self as image, Image, ImageError, Layer, WriteOptions};
 use durer_scene::describe::FileName;
-use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::math::{Color, Vec2, Vec3, fp};
 use durer_scene::scene::{Picture, PictureBytes, Scene};
 use durer_scene::texture::Mapping;
 use glam::DVec3;
@@ -55,6 +55,21 @@ pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
     let texel = |share: f32, count: u32| ((share * count as f32) as u32).min(count.saturating_sub(1));
     picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
+}
+
+/// Bilinear lookup at a place in widths and heights of the picture from its upper left corner; the
+/// picture repeats beyond its borders.
+pub(super) fn between(image: &Image, place: Vec2) -> Color {
+    let (width, height) = (image.width as i64, image.height as i64);
+    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
+    let (low_x, low_y) = (x.floor(), y.floor());
+    let texel = |dx: i64, dy: i64| {
+        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
+        let value = image.get(i as u32, j as u32).unwrap_or_default();
+        if value.is_finite() { value } else { Color::ZERO }
+    };
+    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
+    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
 /// The light of all directions, as [`Environment`](durer_scene::texture::Environment) has them.

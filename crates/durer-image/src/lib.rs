@@ -23,7 +23,7 @@ mod transfer;
 #[cfg(test)]
 mod conformance;
 
-pub use color::{Color, LUMINANCE};
+pub use color::{Color, LUMINANCE, LUMINANCE_F64};
 pub use content::Content;
 pub use display::{Display, Tone};
 pub use error::ImageError;

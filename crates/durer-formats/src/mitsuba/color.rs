@@ -6,8 +6,9 @@
 
 use super::plugin::{Plugin, Property, Value};
 use super::state::Reader;
-use crate::pbrt::spectrum::{Spectrum, radiance};
-use durer_scene::math::{Color, Vec3, fp};
+use durer_scene::math::{Color, Vec3};
+use durer_scene::spectrum::black_body::planck;
+use durer_scene::spectrum::{SpectrumSource, radiance};
 
 impl Reader<'_> {
     /// The colour of what reflects, lets through or absorbs; `None`: it is no colour.
@@ -16,7 +17,7 @@ impl Reader<'_> {
             Value::Number(number) => Some(Vec3::splat(*number as f32)),
             Value::Even(number) => Some(Vec3::splat(*number)),
             Value::Rgb(color) => Some(*color),
-            Value::Curve(curve) => Some(Spectrum::Curve(curve.clone()).coefficient()),
+            Value::Curve(curve) => Some(SpectrumSource::Curve(curve.clone()).coefficient()),
             _ => self.spectrum_plugin(property, false),
         }
     }
@@ -28,7 +29,7 @@ impl Reader<'_> {
             Value::Even(number) => Some(*number * radiance(|_| 1.0)),
             Value::Rgb(color) => Some(*color),
             Value::Curve(curve) => {
-                let curve = Spectrum::Curve(curve.clone());
+                let curve = SpectrumSource::Curve(curve.clone());
                 Some(radiance(|nm| curve.at(nm)))
             }
             _ => self.spectrum_plugin(property, true),
@@ -55,7 +56,7 @@ impl Reader<'_> {
                 radiance(|nm| planck(nm, kelvin)) * plugin.number(said, "scale").unwrap_or(1.0)
             }
             "regular" | "irregular" => {
-                let curve = Spectrum::Curve(self.listed(&plugin)?);
+                let curve = SpectrumSource::Curve(self.listed(&plugin)?);
                 if shines { radiance(|nm| curve.at(nm)) } else { curve.coefficient() }
             }
             _ => return None,
@@ -89,16 +90,4 @@ impl Reader<'_> {
         }
         curve
     }
-}
-
-/// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's
-/// law.
-fn planck(nm: f32, kelvin: f32) -> f32 {
-    // 2 h c², such that a wavelength in micrometres gives watts for each nanometre; h c / k in nm
-    // K; both by CODATA 2018.
-    const FIRST: f32 = 1.191_043e5;
-    const SECOND: f32 = 1.438_777e7;
-    let um = nm * 1e-3;
-    let value = FIRST / (um * um * um * um * um * (fp::exp(SECOND / (nm * kelvin)) - 1.0));
-    if value.is_finite() { value } else { 0.0 }
 }

@@ -1,12 +1,12 @@
 //! Files of curves: each line is a point and the radius there, an empty one ends a curve.
 
+use crate::files::named_bytes;
 use crate::model::Input;
 use crate::number::parse_f32;
-use crate::pbrt::mesh::named_bytes;
 use crate::said::Said;
-use crate::tubes::{Piece, add_tube, of_spline, places, rounded, straight};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::shape::MeshData;
+use durer_scene::shape::tessellate::tube::{Piece, add_tube, of_spline, places, rounded, straight};
 use glam::DVec4;
 use std::ops::Range;
 

@@ -9,11 +9,11 @@ use super::plugin::{Key, Plugin, Value};
 use super::rough::Boundary;
 use super::state::Reader;
 use super::texture::Texture;
-use crate::pbrt::made::Medium;
-use crate::pbrt::spectrum::{Spectrum, metal};
+use crate::medium::Medium;
 use crate::pictures::asset;
 use crate::said::meant;
 use durer_diag::{Diagnostic, Span};
+use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
@@ -21,6 +21,7 @@ use durer_scene::material::principled::Walls;
 use durer_scene::material::{HairMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Spanned};
+use durer_scene::spectrum::SpectrumSource;
 use std::rc::Rc;
 
 const KNOWN: [&str; 18] = [
@@ -275,8 +276,8 @@ impl Reader<'_> {
                 [[0.0; 3], [1.0; 3]]
             });
             let [eta, k] = [("eta", named[0]), ("k", named[1])]
-                .map(|(name, usual)| Spectrum::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
-            metal(&eta, &k, self.index(plugin, "ext_eta", 1.0))
+                .map(|(name, usual)| SpectrumSource::Rgb(self.color(plugin, name, Vec3::from_array(usual))));
+            conductor_colors(&eta, &k, self.index(plugin, "ext_eta", 1.0))
         };
         // A tint counts at all angles: it is in what is reflected at 82 degrees too, over Schlick's.
         let over = |tint: Vec3| f82 * tint / schlick_82(f0 * tint).max(Vec3::splat(1e-6));

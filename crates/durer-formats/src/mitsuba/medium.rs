@@ -2,8 +2,8 @@
 
 use super::plugin::{Key, Plugin};
 use super::state::Reader;
-use crate::pbrt::made::{Density, Medium};
-use crate::pbrt::mesh::named_bytes;
+use crate::files::named_bytes;
+use crate::medium::{Density, Medium};
 use crate::vol;
 use durer_diag::Diagnostics;
 use durer_scene::describe::FileName;

@@ -6,8 +6,8 @@
 //! corners. The file ends with the places of all meshes and their number. Source: Mitsuba 3's
 //! documentation, `serialized`.
 
+use crate::files::named_bytes;
 use crate::model::Input;
-use crate::pbrt::mesh::named_bytes;
 use crate::said::Said;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};

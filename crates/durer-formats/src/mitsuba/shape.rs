@@ -8,9 +8,8 @@ use super::serialized;
 use super::solid;
 use super::state::Reader;
 use super::transform::frame;
-use crate::pbrt::made::Medium;
-use crate::pbrt::mesh::{oriented, written_in_file};
-use crate::pbrt::shape::placed;
+use crate::files::mesh_file;
+use crate::medium::Medium;
 use crate::said::meant;
 use crate::smooth::smoothed;
 use durer_diag::{Diagnostic, Span};
@@ -81,7 +80,7 @@ impl Reader<'_> {
             match self.number(material.as_ref(), shine.as_ref(), inside, at) {
                 Some(number) => {
                     let inner = Object { node, material: Some(number), span: at };
-                    self.add(objects, placed(map, inner));
+                    self.add(objects, inner.placed(map));
                 }
                 None if shine.is_some() => said.once(at, "what is not there (`null`) does not shine"),
                 None => {}
@@ -122,7 +121,7 @@ impl Reader<'_> {
         };
         if self.room_for(count, property.at) {
             let inner = Object { node: Node::Group((*group).clone()), material: None, span: plugin.at };
-            objects.push(placed(map, inner));
+            objects.push(inner.placed(map));
         }
         None
     }
@@ -254,14 +253,14 @@ impl Reader<'_> {
         self.mesh(plugin, &key, map, || {
             let mut data = match number {
                 Some(number) => serialized::mesh(input, said, (&path, at), number)?,
-                None => written_in_file(input, said, &path, at)?,
+                None => mesh_file(input, said, &path, at)?,
             };
             if flat {
                 (data.normals, data.triangle_normals) = (Vec::new(), Vec::new());
             }
             // The sides of faces without normals are told by their corners in the world.
             if mirrored && data.triangle_normals.is_empty() {
-                data = oriented(data, true);
+                data = data.oriented(true);
             }
             if !flat && data.triangle_normals.is_empty() {
                 // Vertices at one place with other texture coordinates are others.
@@ -309,7 +308,7 @@ impl Reader<'_> {
             None => {
                 let data = make().filter(|data| !data.triangles.is_empty()).map(|data| {
                     let flat = data.flat;
-                    Arc::new(MeshData { flat, ..oriented(solid::turned_over(data), flipped) })
+                    Arc::new(MeshData { flat, ..solid::turned_over(data).oriented(flipped) })
                 });
                 self.meshes.insert(name.clone(), data.clone());
                 data

@@ -1,9 +1,9 @@
 //! Shapes that are meshes here.
 
-use crate::pbrt::mesh::tube;
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
+use durer_scene::shape::tessellate::revolution;
 
 /// Corners of the faces of a cube, each with its normal; the texture's four corners lie on them in
 /// the order of [`AROUND`].
@@ -75,7 +75,7 @@ pub(super) fn disk() -> MeshData {
 
 /// A tube about z of length 1, with v downwards.
 pub(super) fn cylinder(radius: f32) -> MeshData {
-    tube(radius, [0.0, 1.0], 360.0)
+    revolution::cylinder(radius, [0.0, 1.0], 360.0)
 }
 
 /// The same with tangents: across the normal from where u grows lies the other, whatever way v

@@ -5,11 +5,9 @@
 
 use super::params::Params;
 use crate::said::meant;
-use crate::tubes::{Piece, add_strip, add_tube, of_spline, places};
-use durer_scene::math::{Vec2, fp};
 use durer_scene::shape::MeshData;
+use durer_scene::shape::tessellate::tube::{add_tube, of_spline, places, raised, ribbon, widened};
 use glam::{DVec3, DVec4};
-use std::f64::consts::PI;
 
 /// Points of one curve.
 const MAX_POINTS: usize = 1 << 14;
@@ -49,44 +47,15 @@ pub(super) fn mesh(params: &Params, reversed: bool, many: bool) -> Option<MeshDa
     if places.len() < 2 {
         return None;
     }
-    let mut data = MeshData::default();
-    if kind == "ribbon" {
+    let data = if kind == "ribbon" {
         let normals: Vec<DVec3> = normals.iter().map(|n| n.as_dvec3().normalize_or(DVec3::Z)).collect();
-        for place in &places {
-            let normal = turned_between([normals[place.piece], normals[place.piece + 1]], place.part);
-            let across = normal.cross(place.along).normalize_or(place.along.any_orthonormal_vector());
-            let faced = place.along.cross(across).as_vec3();
-            for (side, v) in [(-0.5, 0.0), (0.5, 1.0)] {
-                data.positions.push((place.point + side * place.width * across).as_vec3());
-                data.normals.push(faced);
-                data.uvs.push(Vec2::new(place.share as f32, v));
-            }
-        }
-        add_strip(&mut data, 0, places.len(), 2);
+        ribbon(&places, &normals)
     } else {
+        let mut data = MeshData::default();
         add_tube(&mut data, &places, many);
-    }
-    Some(super::mesh::oriented(data, reversed))
-}
-
-/// Pieces of a curve whose width grows evenly from one to another.
-fn widened(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
-    let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
-    let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));
-    pieces.iter().enumerate().map(wide).collect()
-}
-
-/// What lies between two directions, at an even pace.
-fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
-    let cosine = from.dot(to).clamp(-1.0, 1.0);
-    let across = to - cosine * from;
-    let Some(across) = across.try_normalize().filter(|_| cosine < 0.999_999) else {
-        return from.lerp(to, share).normalize_or(from);
+        data
     };
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    let angle = if cosine == -1.0 { PI } else { 2.0 * fp::atan_f64(sine / (1.0 + cosine)) };
-    let (sin, cos) = fp::sin_cos_f64(share * angle);
-    from * cos + across * sin
+    Some(data.oriented(reversed))
 }
 
 /// The pieces of a curve, as cubic ones of Bézier's.
@@ -133,9 +102,4 @@ fn pieces(params: &Params) -> Option<Vec<[DVec3; 4]>> {
         _ => of_spline(&[p[0], p[1], p[2], p[3]].map(|p| p.extend(0.0))).map(DVec4::truncate),
     };
     Some(points.windows(degree + 1).step_by(step).map(piece).collect())
-}
-
-/// A quadratic piece as a cubic one.
-fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
-    [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
 }

@@ -3,13 +3,13 @@
 use super::language::Language;
 use super::lexer::{Lexer, Token};
 use super::params::read as read_params;
-use super::spectrum::Space;
 use super::state::{Asked, Open, Reader, Scope};
 use super::transform::{look_at, matrix, numbers, rotation, sound};
 use crate::said::meant;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Node, Object, Scene};
 use durer_scene::source::SourceError;
+use durer_scene::spectrum::space::RgbSpace;
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
@@ -229,10 +229,10 @@ impl Reader<'_> {
                     said.bad_with(name_at, format!("there is no coordinate system `{name}`"), help);
                 }
             },
-            "ColorSpace" => match Space::named(&name) {
+            "ColorSpace" => match RgbSpace::named(&name) {
                 Some(space) => self.state.space = space,
                 None => {
-                    let help = meant(&name, Space::names());
+                    let help = meant(&name, RgbSpace::names());
                     said.bad_with(name_at, format!("there is no space of colours `{name}`"), help);
                 }
             },
@@ -399,7 +399,7 @@ impl Reader<'_> {
             return;
         }
         let inner = Object { node: Node::Group((*group).clone()), material: None, span: at };
-        let object = super::shape::placed(self.map(at), inner);
+        let object = inner.placed(self.map(at));
         self.add(object);
     }
 

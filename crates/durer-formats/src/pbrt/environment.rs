@@ -3,7 +3,7 @@
 
 use super::made::{Infinite, Map};
 use super::state::Reader;
-use crate::panorama;
+use crate::panorama::{self, between};
 use crate::pictures::unusable;
 use durer_diag::{Diagnostic, Span};
 use durer_image::{self as image, Encoded, Image};
@@ -110,21 +110,6 @@ impl Source {
         let light = if light.is_finite() { light.max(Color::ZERO) } else { Color::ZERO };
         self.scale * light
     }
-}
-
-/// The value at a place of a picture, in its widths and heights from the upper left corner: linear
-/// between texels, and beyond its border it begins again.
-pub(crate) fn between(image: &Image, place: Vec2) -> Color {
-    let (width, height) = (image.width as i64, image.height as i64);
-    let (x, y) = (place.x * width as f32 - 0.5, place.y * height as f32 - 0.5);
-    let (low_x, low_y) = (x.floor(), y.floor());
-    let texel = |dx: i64, dy: i64| {
-        let (i, j) = ((low_x as i64 + dx).rem_euclid(width), (low_y as i64 + dy).rem_euclid(height));
-        let value = image.get(i as u32, j as u32).unwrap_or_default();
-        if value.is_finite() { value } else { Color::ZERO }
-    };
-    let upper = texel(0, 0).lerp(texel(1, 0), x - low_x);
-    upper.lerp(texel(0, 1).lerp(texel(1, 1), x - low_x), y - low_y)
 }
 
 /// The place of a unit vector in the square onto which the sphere is laid with all areas in

@@ -3,53 +3,52 @@
 use super::language::Language;
 use super::named;
 use super::params::{Kind, Param, Params, Values};
-use super::spectrum::{Spectrum, of_xyz};
 use crate::number::parse_f32;
 use crate::said::meant;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
+use durer_scene::spectrum::SpectrumSource;
+use durer_scene::spectrum::space::color_of_xyz;
 
-impl Spectrum {
-    /// The spectrum of a parameter. Those of pbrt-v3 are three numbers from the beginning on.
-    pub(super) fn of(param: &Param, params: &Params) -> Option<Spectrum> {
-        let found = Self::written(param, params)?;
-        if params.language == Language::Fourth {
-            return Some(found);
-        }
-        // What is not 1 by its unit, but by a number behind the temperature.
-        let factor = match (&found, param.numbers()) {
-            (Spectrum::Blackbody(_), [_, factor, ..]) => *factor as f32,
-            _ => 1.0,
-        };
-        Some(Spectrum::Rgb(factor.max(0.0) * found.plain()))
+/// The spectrum of a parameter. Those of pbrt-v3 are three numbers from the beginning on.
+pub(super) fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
+    let found = written(param, params)?;
+    if params.language == Language::Fourth {
+        return Some(found);
     }
+    // What is not 1 by its unit, but by a number behind the temperature.
+    let factor = match (&found, param.numbers()) {
+        (SpectrumSource::Blackbody(_), [_, factor, ..]) => *factor as f32,
+        _ => 1.0,
+    };
+    Some(SpectrumSource::Rgb(factor.max(0.0) * found.plain()))
+}
 
-    fn written(param: &Param, params: &Params) -> Option<Spectrum> {
-        let said = params.said;
-        match (param.kind, &param.values) {
-            (Kind::Xyz, _) => {
-                let xyz = *param.triples().first()?;
-                Some(Spectrum::Rgb(of_xyz(xyz.as_dvec3()).max(Vec3::ZERO)))
-            }
-            (Kind::Rgb, _) => Some(Spectrum::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
-            (Kind::Blackbody, _) => {
-                let kelvin = param.number();
-                if !(kelvin > 0.0 && kelvin < 1e6) {
-                    said.bad(param.values_at, "a black body needs more than 0 kelvin, and less than a million");
-                    return None;
-                }
-                Some(Spectrum::Blackbody(kelvin))
-            }
-            (_, Values::Numbers(all)) => {
-                let curve = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
-                rising(curve, param.values_at, params)
-            }
-            _ => named(param.text(), param.values_at, params),
+fn written(param: &Param, params: &Params) -> Option<SpectrumSource> {
+    let said = params.said;
+    match (param.kind, &param.values) {
+        (Kind::Xyz, _) => {
+            let xyz = *param.triples().first()?;
+            Some(SpectrumSource::Rgb(color_of_xyz(xyz.as_dvec3()).max(Vec3::ZERO)))
         }
+        (Kind::Rgb, _) => Some(SpectrumSource::Rgb(params.space.color(*param.triples().first()?).max(Vec3::ZERO))),
+        (Kind::Blackbody, _) => {
+            let kelvin = param.number();
+            if !(kelvin > 0.0 && kelvin < 1e6) {
+                said.bad(param.values_at, "a black body needs more than 0 kelvin, and less than a million");
+                return None;
+            }
+            Some(SpectrumSource::Blackbody(kelvin))
+        }
+        (_, Values::Numbers(all)) => {
+            let curve = all.chunks_exact(2).map(|pair| [pair[0] as f32, pair[1] as f32]).collect();
+            rising(curve, param.values_at, params)
+        }
+        _ => named(param.text(), param.values_at, params),
     }
 }
 
-fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectrum> {
+fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<SpectrumSource> {
     if params.language == Language::Third {
         curve.sort_by(|a, b| a[0].total_cmp(&b[0]));
         curve.dedup_by_key(|row| row[0]);
@@ -59,11 +58,11 @@ fn rising(mut curve: Vec<[f32; 2]>, at: Span, params: &Params) -> Option<Spectru
         params.said.bad(at, message);
         return None;
     }
-    Some(Spectrum::Curve(curve))
+    Some(SpectrumSource::Curve(curve))
 }
 
 /// A spectrum by name: one that pbrt knows, or a file of wavelengths and values.
-fn named(name: &str, at: Span, params: &Params) -> Option<Spectrum> {
+fn named(name: &str, at: Span, params: &Params) -> Option<SpectrumSource> {
     if params.language == Language::Fourth
         && let Some(known) = named::spectrum(name)
     {

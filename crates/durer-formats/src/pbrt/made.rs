@@ -40,26 +40,6 @@ pub(super) enum Texture {
     Picture(Picture, Color),
 }
 
-/// What absorbs and scatters light.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Medium {
-    pub absorption: Color,
-    pub scattering: Color,
-    /// The mean cosine of scattering.
-    pub anisotropy: f32,
-    /// How dense it is, if not the same everywhere.
-    pub density: Option<Density>,
-}
-
-/// Densities, and where they are.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Density {
-    /// The name of an asset or file.
-    pub name: FileName,
-    /// From the unit cube to the world; none: the file's own box.
-    pub placed: Option<DAffine3>,
-}
-
 /// The light of a surface.
 #[derive(Debug)]
 pub(super) struct AreaLight {

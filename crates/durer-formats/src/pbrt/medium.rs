@@ -4,17 +4,17 @@
 //! chapter 11. Coefficients are per unit of the world.
 
 use super::language::Language;
-use super::made::{Density, Made, Medium};
+use super::made::Made;
 use super::params::{Param, Params};
 use super::state::Reader;
-use crate::said::{Said, meant};
+use crate::medium::{Density, Medium};
+use crate::said::meant;
 use durer_diag::Span;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
-use durer_scene::math::{Aabb, Color, Vec3, fp};
-use durer_scene::medium::{DensityGrid, Fog};
-use durer_scene::scene::Spanned;
+use durer_scene::math::{Aabb, Vec3};
+use durer_scene::medium::DensityGrid;
 use glam::{DAffine3, DQuat, DVec3};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -41,81 +41,38 @@ const MEASURED: [(&str, [f32; 3], [f32; 3]); 12] = [
 /// What is absorbed and scattered where nothing is written.
 const USUAL: [[f32; 3]; 2] = [[0.0011, 0.0024, 0.014], [2.55, 3.21, 3.77]];
 
-impl Medium {
-    /// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
-    /// which a parameter has.
-    pub(super) fn of(params: &Params, preset: &'static str) -> Medium {
-        Medium::with(params, preset, USUAL)
-    }
+/// By the parameters `sigma_a`, `sigma_s`, `g` and `scale`, or by the name of something measured,
+/// which a parameter has.
+pub(super) fn medium_of(params: &Params, preset: &'static str) -> Medium {
+    with(params, preset, USUAL)
+}
 
-    /// The same where nothing that is written means some absorption and scattering.
-    fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
-        let scale = params.float("scale").unwrap_or(1.0).max(0.0);
-        if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
-            match MEASURED.iter().find(|row| row.0 == name) {
-                Some((_, scattering, absorption)) => {
-                    params.known(&["sigma_a", "sigma_s", "g"]);
-                    let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
-                    return Medium { absorption, scattering, anisotropy: 0.0, density: None };
-                }
-                None => {
-                    let message = format!("the medium `{name}` is not known here: its coefficients count");
-                    params.said.once(params.place(preset), message);
-                }
+/// The same where nothing that is written means some absorption and scattering.
+fn with(params: &Params, preset: &'static str, [usual_a, usual_s]: [[f32; 3]; 2]) -> Medium {
+    let scale = params.float("scale").unwrap_or(1.0).max(0.0);
+    if let Some(name) = params.text(preset).filter(|name| !name.is_empty()) {
+        match MEASURED.iter().find(|row| row.0 == name) {
+            Some((_, scattering, absorption)) => {
+                params.known(&["sigma_a", "sigma_s", "g"]);
+                let [scattering, absorption] = [scattering, absorption].map(|row| scale * Vec3::from_array(*row));
+                return Medium { absorption, scattering, anisotropy: 0.0, density: None };
+            }
+            None => {
+                let message = format!("the medium `{name}` is not known here: its coefficients count");
+                params.said.once(params.place(preset), message);
             }
         }
-        let coefficient = |name, usual: [f32; 3]| {
-            let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
-            scale * given.unwrap_or(Vec3::from_array(usual))
-        };
-        params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
-        Medium {
-            absorption: coefficient("sigma_a", usual_a),
-            scattering: coefficient("sigma_s", usual_s),
-            anisotropy: params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99),
-            density: None,
-        }
     }
-
-    fn extinction(&self) -> Color {
-        self.absorption + self.scattering
-    }
-
-    /// Fills what light goes into.
-    pub fn fill(&self, m: &mut PrincipledMaterial) {
-        let most = self.extinction().max_element();
-        if most <= 0.0 {
-            return;
-        }
-        let depth = 1.0 / most;
-        m.transmission_depth = depth;
-        m.transmission_color = self.extinction().map(|sigma| fp::exp(-sigma * depth));
-        m.transmission_scatter = depth * self.scattering;
-        m.transmission_scatter_anisotropy = self.anisotropy;
-        if let Some(Density { name, placed }) = &self.density {
-            m.transmission_density = Some(name.clone());
-            let DAffine3 { matrix3: edges, translation } = placed.unwrap_or_default();
-            let rows = [translation, edges.x_axis, edges.y_axis, edges.z_axis];
-            m.transmission_density_box = placed.iter().flat_map(|_| rows.map(|row| row.as_vec3().to_array())).collect();
-        }
-    }
-
-    /// The same around a camera; `None` for what is clear.
-    pub fn fog(&self, at: Span, said: &Said) -> Option<Spanned<Fog>> {
-        let extinction = self.extinction();
-        let most = extinction.max_element();
-        if most <= 0.0 {
-            return None;
-        }
-        if self.density.is_some() {
-            said.once(at, "what is around the camera is the same everywhere here, and this is not: it is left out");
-            return None;
-        }
-        if extinction.min_element() < 0.99 * most {
-            said.once(at, "what is around the camera thins all colours alike: the strongest counts");
-        }
-        let (color, anisotropy) = (self.scattering / most, self.anisotropy);
-        Some(Spanned { value: Fog { extinction: most, color, anisotropy, ..Fog::default() }, span: at })
+    let coefficient = |name, usual: [f32; 3]| {
+        let given = params.spectrum(name).map(|spectrum| spectrum.coefficient());
+        scale * given.unwrap_or(Vec3::from_array(usual))
+    };
+    params.left_out(&["Le", "Lescale", "Le_scale"], "the medium does not shine");
+    Medium {
+        absorption: coefficient("sigma_a", usual_a),
+        scattering: coefficient("sigma_s", usual_s),
+        anisotropy: params.float("g").unwrap_or(0.0).clamp(-0.99, 0.99),
+        density: None,
     }
 }
 
@@ -125,7 +82,7 @@ impl Reader<'_> {
         let kind = params.text("type").unwrap_or("homogeneous").to_string();
         let medium = match kind.as_str() {
             "homogeneous" => {
-                let medium = Medium::of(&params, "preset");
+                let medium = medium_of(&params, "preset");
                 params.finish(&format!("the medium `{name}`"));
                 Some(medium)
             }
@@ -153,7 +110,7 @@ impl Reader<'_> {
             Language::Third => USUAL,
             Language::Fourth => [[1.0; 3]; 2],
         };
-        let medium = Medium::with(params, "preset", usual);
+        let medium = with(params, "preset", usual);
         params.left_out(&["temperature", "temperaturescale", "temperatureoffset"], "the medium does not shine");
         let counts = ["nx", "ny", "nz"].map(|name| params.whole(name).unwrap_or(1));
         let corner = |name, usual| params.triple(name).unwrap_or(usual).as_dvec3();

@@ -22,9 +22,7 @@ mod params;
 mod pictured;
 mod round;
 pub(super) mod shape;
-pub(super) mod spectrum;
-mod state;
-mod subdivision;
+pub(super) mod state;
 mod texture;
 mod transform;
 

@@ -1,7 +1,8 @@
 //! Spectra that pbrt knows by name, and colours of light by wavelength.
 
-use super::spectrum::{Spectrum, of_chromaticity};
 use durer_scene::math::Vec3;
+use durer_scene::spectrum::SpectrumSource;
+use durer_scene::spectrum::space::color_of_chromaticity;
 
 /// Indices of metals, for red, green and blue: such that what is reflected at 0 and at 82 degrees
 /// has the colour that the spectrum's reflectance has under D65, to 0.002; red of gold, which
@@ -55,19 +56,19 @@ const ILLUMINANTS: [(&str, [f64; 2]); 16] = [
 ];
 
 /// The spectrum of a name.
-pub(super) fn spectrum(name: &str) -> Option<Spectrum> {
+pub(super) fn spectrum(name: &str) -> Option<SpectrumSource> {
     if let Some((metal, which)) = name.strip_prefix("metal-").and_then(|rest| rest.rsplit_once('-')) {
         let (_, eta, k) = METALS.iter().find(|row| row.0 == metal)?;
         return match which {
-            "eta" => Some(Spectrum::Rgb(Vec3::from_array(*eta))),
-            "k" => Some(Spectrum::Rgb(Vec3::from_array(*k))),
+            "eta" => Some(SpectrumSource::Rgb(Vec3::from_array(*eta))),
+            "k" => Some(SpectrumSource::Rgb(Vec3::from_array(*k))),
             _ => None,
         };
     }
     if let Some(glass) = name.strip_prefix("glass-") {
-        return GLASSES.iter().find(|row| row.0 == glass).map(|row| Spectrum::Rgb(Vec3::splat(row.1)));
+        return GLASSES.iter().find(|row| row.0 == glass).map(|row| SpectrumSource::Rgb(Vec3::splat(row.1)));
     }
-    ILLUMINANTS.iter().find(|row| row.0 == name).map(|row| Spectrum::Illuminant(of_chromaticity(row.1)))
+    ILLUMINANTS.iter().find(|row| row.0 == name).map(|row| SpectrumSource::Illuminant(color_of_chromaticity(row.1)))
 }
 
 /// Names, for messages.

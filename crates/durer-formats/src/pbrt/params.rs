@@ -1,13 +1,15 @@
 //! Lists of parameters: `"float radius" [ 2 ]`.
 
+use super::given::spectrum_of;
 use super::language::Language;
 use super::lexer::{Found, Lexer, Token};
-use super::spectrum::{Space, Spectrum};
 use crate::model::Input;
 use crate::report::counted;
 use crate::said::{Said, meant};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
+use durer_scene::spectrum::SpectrumSource;
+use durer_scene::spectrum::space::RgbSpace;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
@@ -130,7 +132,7 @@ pub(super) struct Params<'s> {
     pub said: &'s Said,
     pub input: &'s Input<'s>,
     /// What red, green and blue are.
-    pub space: Space,
+    pub space: RgbSpace,
     pub language: Language,
     asked: RefCell<Vec<&'static str>>,
 }
@@ -313,7 +315,7 @@ impl<'s> Params<'s> {
         others: &[Rc<Param>],
         at: Span,
         (input, said): (&'s Input<'s>, &'s Said),
-        (language, space): (Language, Space),
+        (language, space): (Language, RgbSpace),
     ) -> Self {
         let count = own.len();
         let list = own.into_iter().chain(others.iter().cloned()).collect();
@@ -399,9 +401,9 @@ impl<'s> Params<'s> {
     }
 
     /// A colour or spectrum that is no texture.
-    pub fn spectrum(&self, name: &'static str) -> Option<Spectrum> {
+    pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
         let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
-        Spectrum::of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
+        spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 
     /// Takes note that parameters are known which have no counterpart here.

@@ -4,11 +4,12 @@
 //! Source of meanings: *Physically Based Rendering*, 3rd edition, sections 12.3.2 and 12.3.3, and 4th
 //! edition, sections 12.2.2 and 12.2.3.
 
-use super::environment::{between, equal_area};
+use super::environment::equal_area;
 use super::language::Language;
 use super::params::Params;
 use super::state::Reader;
 use crate::lamps::{Axes, Lamps, steps};
+use crate::panorama::between;
 use crate::pictures::{Pictures, unusable};
 use durer_image::{self as image, Encoded, Image};
 use durer_scene::math::{Color, Vec2, Vec3, fp};

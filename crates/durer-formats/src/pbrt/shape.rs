@@ -4,13 +4,14 @@ use super::language::Language;
 use super::made::Opacity;
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, SHAPE};
-use super::{curve, mesh, net, round, subdivision};
+use super::{curve, mesh, net, round};
+use crate::files::mesh_file;
 use crate::said::meant;
 use durer_diag::Span;
 use durer_scene::math::{Color, Vec3};
-use durer_scene::scene::{MatrixOp, Node, Object};
+use durer_scene::scene::{Node, Object};
 use durer_scene::shape::{Disc, MeshData, Sphere};
-use glam::{DAffine3, DMat3, DMat4, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use std::f32::consts::PI;
 use std::rc::Rc;
 use std::sync::Arc;
@@ -28,16 +29,6 @@ struct Made {
     lights: usize,
     /// Where it is in the world.
     map: DAffine3,
-}
-
-/// An object in its place.
-pub(crate) fn placed(map: DAffine3, inner: Object) -> Object {
-    if map == DAffine3::IDENTITY {
-        return inner;
-    }
-    let matrix = DMat4::from(map).transpose().to_cols_array().map(|x| x as f32);
-    let (material, span) = (inner.material, inner.span);
-    Object { node: Node::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(inner)), material, span }
 }
 
 impl Reader<'_> {
@@ -64,7 +55,7 @@ impl Reader<'_> {
                 data.and_then(|data| self.grown(data, map, at))
             }
             "loopsubdiv" => {
-                let data = subdivision::smooth(&params, self.state.reversed, MAX_GROWN - self.grown);
+                let data = mesh::subdivided(&params, self.state.reversed, MAX_GROWN - self.grown);
                 data.and_then(|data| self.grown(data, map, at))
             }
             "plymesh" => self.ply(&params, map, at),
@@ -133,7 +124,7 @@ impl Reader<'_> {
         };
         if self.room_for(0, at) {
             let inner = Object { node: made.node, material: Some(material), span: at };
-            self.add(placed(made.map, inner));
+            self.add(inner.placed(made.map));
         }
     }
 
@@ -227,7 +218,7 @@ impl Reader<'_> {
             Some(known) => known.clone(),
             None => {
                 let place = params.get("filename").map_or(at, |param| param.values_at);
-                let data = Arc::new(mesh::file(self.input, self.said, &name, place, reversed)?);
+                let data = Arc::new(mesh_file(self.input, self.said, &name, place)?.oriented(reversed));
                 self.meshes.insert(key, data.clone());
                 data
             }

@@ -2,15 +2,16 @@
 
 use super::language::{Decided, Language};
 use super::lexer::Lexer;
-use super::made::{AreaLight, Infinite, Made, Medium, Texture};
+use super::made::{AreaLight, Infinite, Made, Texture};
 use super::params::{Param, Params};
-use super::spectrum::Space;
 use super::transform::Transforms;
+use crate::medium::Medium;
 use crate::model::Input;
 use crate::said::Said;
 use durer_diag::Span;
 use durer_scene::scene::{Group, Object, Scene};
 use durer_scene::shape::MeshData;
+use durer_scene::spectrum::space::RgbSpace;
 use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::rc::Rc;
@@ -39,7 +40,7 @@ pub(super) struct State {
     pub outside: Option<String>,
     /// What `Attribute` gives shapes, lights, materials, media and textures.
     pub given: [Vec<Rc<Param>>; 5],
-    pub space: Space,
+    pub space: RgbSpace,
 }
 
 /// What a directive opened, and so what must close it.
@@ -58,7 +59,7 @@ pub(super) struct Asked {
     pub list: Vec<Rc<Param>>,
     pub at: Span,
     pub transforms: Transforms,
-    pub space: Space,
+    pub space: RgbSpace,
 }
 
 /// A file that is being read.

@@ -3,7 +3,6 @@
 use super::model::{Group, Mesh, Model, Object, Place};
 use super::package::Package;
 use super::parser;
-use crate::pbrt::shape::placed;
 use crate::pictures::asset;
 use crate::said::{Said, meant};
 use crate::sticks::{ball, stick};
@@ -91,7 +90,7 @@ impl Show<'_> {
             let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
             // Places are in the unit of the part that says them.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
-            objects.push(placed(DAffine3 { translation: unit * place.map.translation, ..place.map }, inner));
+            objects.push(inner.placed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
         }
         objects
     }

@@ -1,7 +1,7 @@
 //! Exact sums: samples are added as integers, so the order of adding and merging changes nothing.
 
 use super::bytes::{Bytes, put, put_signed};
-use durer_scene::math::{Color, Vec3};
+use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
 
 #[cfg(test)]
 mod tests;
@@ -208,8 +208,6 @@ const GREATEST_COLOR: f64 = (1_u64 << 44) as f64;
 const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
 const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
-/// What red, green and blue of Rec. 709 give to the luminance. Source: ITU-R BT.709.
-const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// A sample that was left out because it is infinite or not a number. Ordered by row, column,
 /// sample.
@@ -441,7 +439,7 @@ fn rounded(sum: i128) -> f64 {
 
 /// The luminance of a colour.
 pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
-    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
+    LUMINANCE_F64[0] * r + LUMINANCE_F64[1] * g + LUMINANCE_F64[2] * b
 }
 
 /// The same of a colour in single precision.

@@ -1,7 +1,7 @@
 //! How much light a smooth boundary reflects.
 
-use crate::math::{Color, fp};
-use crate::spectrum::Spectrum;
+use crate::math::{Color, Vec3, fp};
+use crate::spectrum::{Spectrum, SpectrumSource, under_daylight};
 
 /// The share of unpolarised light that a boundary of two dielectrics reflects. `cosine` is that of
 /// the light's way to the normal, from 0 to 1; `eta` is the index behind the boundary over the
@@ -23,6 +23,32 @@ fn polarised(cosine: f32, eta: f32) -> [f32; 2] {
     let parallel = (eta * cosine - behind) / (eta * cosine + behind);
     let perpendicular = (cosine - eta * behind) / (cosine + eta * behind);
     [parallel * parallel, perpendicular * perpendicular]
+}
+
+/// The colours that a metal reflects at normal incidence and at cosine 1/7, seen from a medium of
+/// the index `outside`.
+pub fn conductor_colors(eta: &SpectrumSource, k: &SpectrumSource, outside: f32) -> [Color; 2] {
+    [1.0, 1.0 / 7.0].map(|cosine| match (eta, k) {
+        (SpectrumSource::Rgb(n), SpectrumSource::Rgb(k)) => {
+            Vec3::from_array(std::array::from_fn(|i| conductor(cosine, n[i] / outside, k[i] / outside)))
+        }
+        _ => under_daylight(|nm| conductor(cosine, eta.at(nm) / outside, k.at(nm) / outside)),
+    })
+}
+
+/// The reflectance of a metal of index n + i k for unpolarised light.
+///
+/// Source: Fresnel's equations, as in *Physically Based Rendering*, 4th edition, section 9.3.6.
+pub fn conductor(cosine: f32, n: f32, k: f32) -> f32 {
+    let (c, n, k) = (f64::from(cosine), f64::from(n), f64::from(k));
+    let sine2 = 1.0 - c * c;
+    let t = n * n - k * k - sine2;
+    let both = (t * t + 4.0 * n * n * k * k).sqrt();
+    let a = (0.5 * (both + t)).max(0.0).sqrt();
+    let across = (both + c * c - 2.0 * c * a) / (both + c * c + 2.0 * c * a);
+    let (sum, twice) = (c * c * both + sine2 * sine2, 2.0 * c * a * sine2);
+    let share = 0.5 * across * (1.0 + (sum - twice) / (sum + twice));
+    if share.is_finite() { share as f32 } else { 1.0 }
 }
 
 /// A thin sheet of a dielectric: light is reflected to and fro in it.
@@ -130,5 +156,39 @@ impl F82 {
         let power5 = rest * rest * rest * rest * rest;
         (self.f0 + (Spectrum::ONE - self.f0) * power5 - self.dip * cosine * power5 * rest)
             .clamp(Spectrum::ZERO, Spectrum::ONE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conductors_reflect_what_fresnel_says() {
+        // At normal incidence ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2); without k the equations of glass.
+        for (n, k) in [(0.2, 3.4), (1.5, 0.0), (2.9, 3.1)] {
+            let right = ((n - 1.0_f32) * (n - 1.0) + k * k) / ((n + 1.0) * (n + 1.0) + k * k);
+            assert!((conductor(1.0, n, k) - right).abs() < 1e-6);
+        }
+        for cosine in [0.05, 0.3, 0.8] {
+            assert!((conductor(cosine, 1.5, 0.0) - dielectric(cosine, 1.5)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_metal_by_its_spectrum_is_the_metal_by_its_colours() {
+        // Gold of three wavelengths, and of three colours.
+        let curve = |c: [f32; 3]| {
+            let rows = [[300.0, c[2]], [489.0, c[2]], [490.0, c[1]], [579.0, c[1]], [580.0, c[0]], [900.0, c[0]]];
+            SpectrumSource::Curve(rows.to_vec())
+        };
+        let rgb = |c: [f32; 3]| SpectrumSource::Rgb(Vec3::from_array(c));
+        let (n, k) = ([0.2, 0.4, 1.5], [3.4, 2.4, 1.7]);
+        let [f0, f82] = conductor_colors(&curve(n), &curve(k), 1.0);
+        let [g0, g82] = conductor_colors(&rgb(n), &rgb(k), 1.0);
+        assert!(
+            (f0 - g0).abs().max_element() < 0.12 && (f82 - g82).abs().max_element() < 0.12,
+            "{f0} {g0} {f82} {g82}"
+        );
     }
 }

@@ -23,6 +23,7 @@ use crate::texture::cie_sky::OVERCAST;
 pub use assets::{Assets, NamedTexture, Picture, PictureBytes};
 pub use builder::{MaterialId, MeshId, SceneBuilder};
 use durer_diag::Span;
+use glam::{DAffine3, DMat4};
 pub use matrix::{MatrixOp, MatrixRules};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -294,6 +295,18 @@ pub struct Object {
     /// Its keyword in the file.
     #[serde(skip)]
     pub span: Span,
+}
+
+impl Object {
+    /// The object moved by a map; itself where the map changes nothing.
+    pub fn placed(self, map: DAffine3) -> Object {
+        if map == DAffine3::IDENTITY {
+            return self;
+        }
+        let matrix = DMat4::from(map).transpose().to_cols_array().map(|x| x as f32);
+        let (material, span) = (self.material, self.span);
+        Object { node: Node::Transform(vec![MatrixOp::Matrix(matrix)], Box::new(self)), material, span }
+    }
 }
 
 /// What an object is.

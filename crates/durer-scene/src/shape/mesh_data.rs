@@ -101,6 +101,31 @@ impl Triangles for MeshData {
 }
 
 impl MeshData {
+    /// Winds each triangle to face the side of its normals. With `reversed` the normals are
+    /// negated first, and triangles without normals change their side. Marks the mesh flat.
+    pub fn oriented(mut self, reversed: bool) -> MeshData {
+        if reversed {
+            self.normals.iter_mut().for_each(|n| *n = -*n);
+        }
+        for i in 0..self.triangles.len() {
+            let [a, b, c] = self.triangles[i].map(|i| self.positions[i as usize].as_dvec3());
+            let face = (b - a).cross(c - a);
+            let normals = self.triangle_normals.get(i).filter(|normals| !normals.contains(&NO_INDEX));
+            let turned = match normals {
+                Some(normals) => {
+                    normals.map(|n| self.normals[n as usize].as_dvec3()).iter().map(|n| face.dot(*n)).sum::<f64>() < 0.0
+                }
+                None => reversed,
+            };
+            if turned {
+                let lists = [&mut self.triangles, &mut self.triangle_uvs, &mut self.triangle_normals];
+                lists.into_iter().filter_map(|list| list.get_mut(i)).for_each(|corners| corners.swap(1, 2));
+            }
+        }
+        self.flat = true;
+        self
+    }
+
     /// Checks lists against each other.
     ///
     /// # Errors

@@ -15,7 +15,7 @@ pub mod quadric;
 pub mod rectangle;
 pub mod sphere;
 mod tangents;
-mod tessellate;
+pub mod tessellate;
 #[cfg(any(test, feature = "testing"))]
 #[doc(hidden)]
 pub mod testing;

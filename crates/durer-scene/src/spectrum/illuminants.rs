@@ -3,8 +3,12 @@
 //! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (the parts of daylight), table
 //! 10 (fluorescent lamps).
 
+use super::black_body::{C2, planck_ratio};
 use super::curve::Curve;
-use crate::math::fp;
+
+/// The temperature of illuminant A, about 2855.5 K: 2848 K by the value of the second radiation
+/// constant that CIE 015 fixes for it, 1.435e7 nm K.
+const A_KELVIN: f32 = 2_848.0 * (C2 / 1.435e7);
 
 /// Names of illuminants, for messages. Besides, `2700K` and the like are black bodies.
 pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
@@ -13,7 +17,7 @@ pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
 /// (tubes), or of a black body of a temperature, 1000K to 20000K. Its brightness is 1.
 pub fn illuminant(name: &str) -> Option<Curve> {
     let rows = match name {
-        "A" => formula(|nm| planck(nm, 2_848.0, 1.435e7)),
+        "A" => formula(|nm| planck_ratio(nm, A_KELVIN)),
         "D50" => daylight(5_003.0),
         "D55" => daylight(5_503.0),
         "D65" => daylight(6_504.0),
@@ -27,7 +31,7 @@ pub fn illuminant(name: &str) -> Option<Curve> {
             if !(1_000.0..=20_000.0).contains(&kelvin) {
                 return None;
             }
-            formula(|nm| planck(nm, kelvin, 1.438_776_9e7))
+            formula(|nm| planck_ratio(nm, kelvin))
         }
     };
     Curve::light(rows)
@@ -39,16 +43,6 @@ fn formula(value: impl Fn(f32) -> f32) -> Vec<[f32; 2]> {
 
 fn tube(values: &[f32; 81]) -> Vec<[f32; 2]> {
     values.iter().enumerate().map(|(i, value)| [380.0 + 5.0 * i as f32, *value]).collect()
-}
-
-/// Planck's law over its value at 560 nm; `c2` is the second constant of radiation in nm K, of
-/// which the CIE fixes an old value for A.
-fn planck(nm: f32, kelvin: f32, c2: f32) -> f32 {
-    let at = |nm: f32| {
-        let x = 560.0 / nm;
-        x * x * x * x * x / (fp::exp(c2 / (kelvin * nm)) - 1.0)
-    };
-    at(nm) / at(560.0)
 }
 
 /// Daylight of a correlated colour temperature, 4000 to 25000 K: a mean and two parts by its

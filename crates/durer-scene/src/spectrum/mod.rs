@@ -7,9 +7,12 @@
 //! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
 //! EGSR 2014.
 
+pub mod black_body;
 pub mod curve;
 pub mod illuminants;
 mod interference;
+mod source;
+pub mod space;
 mod tables;
 #[cfg(test)]
 mod tests;
@@ -20,6 +23,8 @@ use crate::math::{Color, fp};
 pub use curve::Curve;
 pub use interference::interference;
 use serde::{Deserialize, Serialize};
+pub use source::{SpectrumSource, radiance, under_daylight, xyz_sum};
+use space::SRGB_FROM_XYZ;
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 
@@ -219,13 +224,6 @@ struct Observer {
 
 static OBSERVER: LazyLock<Observer> = LazyLock::new(Observer::new);
 
-/// Linear sRGB from XYZ. Source: IEC 61966-2-1.
-const FROM_XYZ: [[f64; 3]; 3] = [
-    [3.240_454_2, -1.537_138_5, -0.498_531_4],
-    [-0.969_266, 1.876_010_8, 0.041_556],
-    [0.055_643_4, -0.204_025_9, 1.057_225_2],
-];
-
 /// The integral over wavelengths of a function of nanometres and of the observer's row, by
 /// Simpson's rule between rows: exact for products of two of its numbers.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
@@ -238,7 +236,7 @@ fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
 impl Observer {
     fn new() -> Self {
         let daylight = 1.0 / integral(|_, [_, y, _, light]| y * light);
-        let to_rgb = FROM_XYZ.map(|[a, b, c]| {
+        let to_rgb = SRGB_FROM_XYZ.transpose().to_cols_array_2d().map(|[a, b, c]| {
             let white = integral(|_, [x, y, z, light]| (a * x + b * y + c * z) * light) * daylight;
             [a, b, c].map(|entry| (entry / white) as f32)
         });

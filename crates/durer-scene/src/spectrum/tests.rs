@@ -1,4 +1,6 @@
+use super::space::RgbSpace;
 use super::*;
+use crate::math::Vec3;
 
 /// Colours of every kind, among them those near the edges.
 fn colors() -> Vec<Color> {
@@ -131,4 +133,29 @@ fn measured_things_have_the_colour_of_their_product() {
     let product = 2.0 * steep.color() * bulb.color();
     assert!((seen - product).abs().max_element() > 0.05, "colours would do: {seen} {product}");
     assert_eq!(Lanes::Rgb.measured(steep.color(), &steep).truncate(), steep.color());
+}
+
+#[test]
+fn spectra_from_files_become_colours() {
+    // The rows sum to the same for all three: the equal-energy white, to what steps of 10 nm allow.
+    let white = xyz_sum(|_| 1.0);
+    assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
+    let even = SpectrumSource::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
+    assert!((even.albedo() - Vec3::splat(0.4)).length() < 1e-5);
+    // Lights have luminance 1.
+    let luminance = Vec3::new(0.2126729, 0.7151522, 0.072175);
+    for light in [SpectrumSource::Blackbody(2856.0), SpectrumSource::Blackbody(6504.0), even.clone()] {
+        assert!((light.light().dot(luminance) - 1.0).abs() < 1e-3, "{:?}", light.light());
+    }
+}
+
+#[test]
+fn white_is_white_in_every_space() {
+    for name in ["srgb", "dci-p3", "rec2020", "aces2065-1"] {
+        let space = RgbSpace::named(name).unwrap();
+        assert!((space.color(Vec3::ONE) - Vec3::ONE).abs().max_element() < 1e-5, "{name}");
+    }
+    assert_eq!(RgbSpace::named("adobe"), None);
+    // The red of a wider space is beyond sRGB.
+    assert!(RgbSpace::named("rec2020").unwrap().color(Vec3::X).x > 1.5);
 }

@@ -4,6 +4,7 @@
 //! Brightness is in cd/m^2.
 
 use crate::math::{Color, Vec2, Vec3, fp};
+use crate::spectrum::space::SRGB_FROM_XYZ;
 use std::f32::consts::PI;
 
 /// The sun's illuminance outside the atmosphere, in lux.
@@ -137,13 +138,8 @@ fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32
 
 /// Linear Rec.709 of CIE Yxy.
 fn linear(bright: f32, x: f32, y: f32) -> Color {
-    let (big_x, big_z) = (bright * x / y, bright * (1.0 - x - y) / y);
-    Vec3::new(
-        3.2404542 * big_x - 1.5371385 * bright - 0.4985314 * big_z,
-        -0.969266 * big_x + 1.8760108 * bright + 0.041556 * big_z,
-        0.0556434 * big_x - 0.2040259 * bright + 1.0572252 * big_z,
-    )
-    .max(Vec3::ZERO)
+    let xyz = Vec3::new(bright * x / y, bright, bright * (1.0 - x - y) / y);
+    (SRGB_FROM_XYZ.as_mat3() * xyz).max(Vec3::ZERO)
 }
 
 #[cfg(test)]

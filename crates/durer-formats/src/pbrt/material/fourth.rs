@@ -4,20 +4,22 @@
 //! over a matte base is a coat that darkens it; a metal is its reflectance at 0 and at 82 degrees;
 //! GGX's alpha is the square of our roughness.
 
-use super::super::made::{Made, Medium, Texture};
+use super::super::made::{Made, Texture};
+use super::super::medium::medium_of;
 use super::super::named;
 use super::super::params::{Kind, Params, Values};
-use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
 use super::{below_skin, matte};
 use crate::said::meant;
 use durer_diag::Span;
+use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, Vec3};
+use durer_scene::spectrum::SpectrumSource;
 
 const KNOWN: [&str; 12] = [
     "diffuse",
@@ -150,7 +152,7 @@ impl Reader<'_> {
                 } else {
                     // The skin refracts, and what is inside scatters.
                     m.transmission_weight = 1.0;
-                    Medium::of(params, "name").fill(&mut m);
+                    medium_of(params, "name").fill(&mut m);
                 }
             }
             "measured" => {
@@ -226,12 +228,12 @@ impl Reader<'_> {
                 };
                 // Such a k, with an index of 1, reflects that share at right angles.
                 let k = share.map(|r| 2.0 * (r.min(0.9999) / (1.0 - r.min(0.9999))).sqrt());
-                metal(&Spectrum::Rgb(Vec3::ONE), &Spectrum::Rgb(k), 1.0)
+                conductor_colors(&SpectrumSource::Rgb(Vec3::ONE), &SpectrumSource::Rgb(k), 1.0)
             }
             None => {
                 let given = |name, which| params.spectrum(name).or_else(|| copper(which));
-                let grey = Spectrum::Rgb(Vec3::ONE);
-                metal(&given(eta, "eta").unwrap_or(grey.clone()), &given(k, "k").unwrap_or(grey), outside)
+                let grey = SpectrumSource::Rgb(Vec3::ONE);
+                conductor_colors(&given(eta, "eta").unwrap_or(grey.clone()), &given(k, "k").unwrap_or(grey), outside)
             }
         };
         (m.base_metalness, m.base_color) = (1.0, f0);

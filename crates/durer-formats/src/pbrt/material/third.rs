@@ -5,18 +5,20 @@
 //! Format*, pbrt.org/fileformat-v3.
 
 use super::super::language::NEW_MATERIALS;
-use super::super::made::{Made, Medium, Texture};
+use super::super::made::{Made, Texture};
+use super::super::medium::medium_of;
 use super::super::params::{Kind, Params};
-use super::super::spectrum::{Spectrum, metal};
 use super::super::state::Reader;
 use super::parts::{Part, glass, glossy, metallic, oren_nayar};
 use super::rough::Rough;
 use super::{below_skin, matte};
 use crate::said::meant;
 use durer_diag::Span;
+use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::material::principled::Walls;
 use durer_scene::math::{Color, Vec3};
+use durer_scene::spectrum::SpectrumSource;
 
 const KNOWN: [&str; 15] = [
     "disney",
@@ -82,7 +84,7 @@ impl Reader<'_> {
                 let rough = self.rough(params, Some("roughness"), true, 0.01);
                 let [eta, k] = ["eta", "k"].map(|name| params.spectrum(name).map(|spectrum| spectrum.plain()));
                 let [eta, k] = [eta.unwrap_or(COPPER[0]), k.unwrap_or(COPPER[1])];
-                let [f0, f82] = metal(&Spectrum::Rgb(eta), &Spectrum::Rgb(k), 1.0);
+                let [f0, f82] = conductor_colors(&SpectrumSource::Rgb(eta), &SpectrumSource::Rgb(k), 1.0);
                 vec![Part { layers: metallic(f0, f82, &rough), most: 1.0 }]
             }
             "mirror" => {
@@ -217,7 +219,7 @@ impl Reader<'_> {
             below_skin(&mut m, params, color, path);
         } else {
             m.transmission_weight = 1.0;
-            Medium::of(params, "name").fill(&mut m);
+            medium_of(params, "name").fill(&mut m);
         }
         Part { layers: m, most: 1.0 }
     }

@@ -1,62 +1,48 @@
-//! Loop's surfaces of subdivision.
+//! Loop's subdivision surfaces.
 //!
 //! Sources: Loop, *Smooth Subdivision Surfaces Based on Triangles*, 1987; Hoppe et al., *Piecewise
 //! Smooth Surface Reconstruction*, SIGGRAPH 1994 (borders, limits); Warren, for the weight of corners.
 
-use super::mesh;
-use super::params::Params;
-use durer_scene::math::fp;
-use durer_scene::shape::MeshData;
+use crate::math::fp;
+use crate::shape::MeshData;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Triangles that one surface becomes at most. Tests make them all.
-const MAX_TRIANGLES: usize = if cfg!(test) { 1 << 14 } else { 1 << 20 };
-
-/// Triangles that grow.
+/// A mesh at some level of subdivision.
 struct Net {
     points: Vec<DVec3>,
     faces: Vec<[u32; 3]>,
 }
 
-/// What lies around a point: its neighbours as they follow each other, and whether they close.
+/// The neighbours of a point in order, and whether they form a closed ring.
 struct Ring {
     around: Vec<u32>,
     closed: bool,
 }
 
-/// A surface of at most `left` triangles, its points moved to where endless subdivision has them.
-pub(super) fn smooth(params: &Params, reversed: bool, left: usize) -> Option<MeshData> {
-    params.known(&["scheme"]);
-    let levels = params.whole("levels").or_else(|| params.whole("nlevels")).unwrap_or(3);
-    if !(0..=16).contains(&levels) {
-        params.said.bad(params.place("levels"), "`levels` must be from 0 to 16");
-        return None;
-    }
-    let control = mesh::triangles(params, false)?;
+/// Subdivides the triangles of a control mesh `levels` times, or until the next level would have
+/// more than `most` triangles, and moves the points to their limit positions. Returns the mesh and
+/// the number of levels.
+pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, u32) {
     let points = control.positions.iter().map(|p| p.as_dvec3()).collect();
-    // What has a corner twice has no area, and no sides to follow.
+    // A triangle with a repeated corner has no area, and no edges to follow.
     let sound = |face: &&[u32; 3]| face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
     let mut net = Net { points, faces: control.triangles.iter().filter(sound).copied().collect() };
-    for level in 0..levels {
-        let most = left.min(MAX_TRIANGLES);
-        if net.faces.len() > most / 4 {
-            let what = format!("more than {most} triangles are too many: it is subdivided {level} times");
-            params.said.once(params.place("levels"), what);
-            break;
-        }
+    let mut done = 0;
+    while done < levels && net.faces.len() <= most / 4 {
         net = net.finer();
+        done += 1;
     }
-    Some(net.limit(reversed))
+    (net.limit(), done)
 }
 
-/// The weight of each of so many neighbours of a point inside.
+/// The weight of each of `count` neighbours of an inner point.
 fn beta(count: usize) -> f64 {
     if count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * count as f64) }
 }
 
 impl Net {
-    /// What lies around each point. A point where more than two sheets meet has no ring.
+    /// The ring of each point. A point where more than two sheets meet has none.
     fn rings(&self) -> Vec<Option<Ring>> {
         let mut sides: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.points.len()];
         for &[a, b, c] in &self.faces {
@@ -67,7 +53,7 @@ impl Net {
         sides.iter().map(|sides| ring(sides)).collect()
     }
 
-    /// A quarter of each triangle, and as many between the others.
+    /// The next level: four triangles for each.
     fn finer(&self) -> Net {
         let rings = self.rings();
         let even = |i: usize| {
@@ -106,13 +92,14 @@ impl Net {
         Net { points, faces: self.faces.iter().flat_map(quarters).collect() }
     }
 
-    /// A point with so much of each of its neighbours.
+    /// A point blended with its neighbours, each of a weight.
     fn blend(&self, point: DVec3, around: &[u32], weight: f64) -> DVec3 {
         let sum: DVec3 = around.iter().map(|&k| self.points[k as usize]).sum();
         point * (1.0 - weight * around.len() as f64) + weight * sum
     }
 
-    fn limit(mut self, reversed: bool) -> MeshData {
+    /// The points at their limit positions, with normals.
+    fn limit(mut self) -> MeshData {
         let rings = self.rings();
         let moved = |i: usize| {
             let point = self.points[i];
@@ -139,17 +126,16 @@ impl Net {
             own.try_normalize().or(faced[i].try_normalize()).unwrap_or(DVec3::Z).as_vec3()
         };
         let normals = (0..self.points.len()).map(normal).collect();
-        let data = MeshData {
+        MeshData {
             positions: self.points.iter().map(|p| p.as_vec3()).collect(),
             normals,
             triangle_normals: self.faces.clone(),
             triangles: self.faces,
             ..MeshData::default()
-        };
-        mesh::oriented(data, reversed)
+        }
     }
 
-    /// Two tangents' cross product.
+    /// The cross product of two tangents.
     fn normal(&self, point: DVec3, ring: &Ring) -> DVec3 {
         let around: Vec<DVec3> = ring.around.iter().map(|&k| self.points[k as usize]).collect();
         let count = around.len();
@@ -176,8 +162,8 @@ impl Net {
     }
 }
 
-/// Sides of the triangles at a point, each from one neighbour to the next, as a ring: from the border,
-/// if there is one.
+/// Orders the edges opposite a point, each from one neighbour to the next, to a ring, which starts at
+/// the border if there is one.
 fn ring(sides: &[[u32; 2]]) -> Option<Ring> {
     let next: BTreeMap<u32, u32> = sides.iter().map(|&[from, to]| (from, to)).collect();
     if next.len() != sides.len() || sides.is_empty() {

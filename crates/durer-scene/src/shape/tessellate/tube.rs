@@ -1,39 +1,43 @@
-//! Tubes around curves, of triangles: hair and the like.
+//! Curves with a width: tubes around them, and ribbons.
 
-use durer_scene::math::{Vec2, fp};
-use durer_scene::shape::MeshData;
+use crate::math::{Vec2, fp};
+use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 use std::f64::consts::PI;
 
-/// Sides of a tube, whose mean width is that of a round one, and of one of very many.
+/// Sides of a tube, and of one of very many. Its mean width is that of a round tube.
 const SIDES: [u32; 2] = [12, 6];
 
-/// Steps of a half of a ball from its rim to its middle.
+/// Steps of a hemisphere from its rim to its pole.
 const CAP: u32 = 4;
 
-/// Steps of a piece at least and at most, and of all pieces together.
+/// The least and most steps of a segment, and the most of all segments together.
 const STEPS: [f64; 2] = [2.0, 64.0];
 const MAX_STEPS: usize = 1 << 15;
 
-/// A piece of a curve: four control points of Bézier's, with the curve's width.
-pub(super) type Piece = [DVec4; 4];
+/// A cubic Bézier segment: four control points, each with the curve's width as the fourth number.
+pub type Piece = [DVec4; 4];
 
-/// A place on a curve.
-pub(super) struct Place {
+/// A point of a curve with what is needed to sweep a cross section through it.
+pub struct Place {
+    /// The point.
     pub point: DVec3,
+    /// The unit tangent.
     pub along: DVec3,
+    /// The curve's width there.
     pub width: f64,
-    /// The sine of the angle by which normals lean along it.
+    /// The sine of the angle from the cross section to the surface normals.
     pub lean: f64,
-    /// From 0 at its beginning to 1 at its end.
+    /// From 0 at the start of the curve to 1 at its end.
     pub share: f64,
+    /// The number of the segment.
     pub piece: usize,
-    /// From 0 to 1 in its piece.
+    /// From 0 to 1 within the segment.
     pub part: f64,
 }
 
-/// A cubic piece of a uniform B-spline.
-pub(super) fn of_spline(p: &[DVec4; 4]) -> Piece {
+/// The Bézier segment of four control points of a uniform cubic B-spline.
+pub fn of_spline(p: &[DVec4; 4]) -> Piece {
     [
         (p[0] + 4.0 * p[1] + p[2]) / 6.0,
         (2.0 * p[1] + p[2]) / 3.0,
@@ -42,14 +46,14 @@ pub(super) fn of_spline(p: &[DVec4; 4]) -> Piece {
     ]
 }
 
-/// A straight piece.
-pub(super) fn straight([a, b]: [DVec4; 2]) -> Piece {
+/// A straight segment.
+pub fn straight([a, b]: [DVec4; 2]) -> Piece {
     [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]
 }
 
-/// Places of a curve so near each other that straight lines between them lie within a share of the
-/// width; of very many pieces in all fewer.
-pub(super) fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
+/// Samples a curve such that the chords stay within a fiftieth of the width; more coarsely where
+/// `all_pieces`, the segments of all curves together, are very many.
+pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
     let mut all: Vec<Place> = Vec::new();
     let width = pieces.iter().flatten().map(|p| p.w).fold(0.0, f64::max);
     let most = ((MAX_STEPS / all_pieces.max(1)) as f64).clamp(STEPS[0], STEPS[1]);
@@ -72,8 +76,8 @@ pub(super) fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
     all
 }
 
-/// The same with a half of a ball on either end.
-pub(super) fn rounded(mut places: Vec<Place>) -> Vec<Place> {
+/// Adds a hemisphere to either end.
+pub fn rounded(mut places: Vec<Place>) -> Vec<Place> {
     let cap = |end: &Place, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
         let lean = side * sin;
@@ -87,8 +91,9 @@ pub(super) fn rounded(mut places: Vec<Place>) -> Vec<Place> {
     places
 }
 
-/// Adds a tube through places, which may be one of very many: u grows along it, v around it.
-pub(super) fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
+/// Adds a tube through places, with fewer sides where there are `many` tubes: u grows along it, v
+/// around it.
+pub fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
     // A polygon around the circle and one in it: half way between both.
@@ -117,8 +122,8 @@ pub(super) fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
     add_strip(data, begin, places.len(), sides + 1);
 }
 
-/// Adds triangles between rows of so many points each.
-pub(super) fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
+/// Adds triangles between rows of `count` points each.
+fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
     let first = data.triangles.len();
     for (i, j) in (1..rows as u32).flat_map(|i| (0..count - 1).map(move |j| (i - 1, j))) {
         let p = |di: u32, dj: u32| begin + (i + di) * count + j + dj;
@@ -127,4 +132,47 @@ pub(super) fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32
     let MeshData { triangles, triangle_uvs, triangle_normals, .. } = data;
     triangle_uvs.extend(&triangles[first..]);
     triangle_normals.extend(&triangles[first..]);
+}
+
+/// A ribbon through places, which turns from normal to normal; there is one normal more than
+/// segments. u grows along it, v across it.
+pub fn ribbon(places: &[Place], normals: &[DVec3]) -> MeshData {
+    let mut data = MeshData::default();
+    for place in places {
+        let normal = turned_between([normals[place.piece], normals[place.piece + 1]], place.part);
+        let across = normal.cross(place.along).normalize_or(place.along.any_orthonormal_vector());
+        let faced = place.along.cross(across).as_vec3();
+        for (side, v) in [(-0.5, 0.0), (0.5, 1.0)] {
+            data.positions.push((place.point + side * place.width * across).as_vec3());
+            data.normals.push(faced);
+            data.uvs.push(Vec2::new(place.share as f32, v));
+        }
+    }
+    add_strip(&mut data, 0, places.len(), 2);
+    data
+}
+
+/// Spherical linear interpolation of unit vectors.
+fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
+    let cosine = from.dot(to).clamp(-1.0, 1.0);
+    let across = to - cosine * from;
+    let Some(across) = across.try_normalize().filter(|_| cosine < 0.999_999) else {
+        return from.lerp(to, share).normalize_or(from);
+    };
+    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
+    let angle = if cosine == -1.0 { PI } else { 2.0 * fp::atan_f64(sine / (1.0 + cosine)) };
+    let (sin, cos) = fp::sin_cos_f64(share * angle);
+    from * cos + across * sin
+}
+
+/// A quadratic Bézier segment as a cubic one.
+pub fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
+    [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
+}
+
+/// Segments of a curve whose width grows linearly from one end to the other.
+pub fn widened(pieces: &[[DVec3; 4]], [first, last]: [f64; 2]) -> Vec<Piece> {
+    let width = |i: usize, k: u32| first + (i as f64 + f64::from(k) / 3.0) / pieces.len() as f64 * (last - first);
+    let wide = |(i, piece): (usize, &[DVec3; 4])| [0, 1, 2, 3].map(|k| piece[k as usize].extend(width(i, k)));
+    pieces.iter().enumerate().map(wide).collect()
 }

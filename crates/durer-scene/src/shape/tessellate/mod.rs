@@ -1,4 +1,10 @@
-//! Triangles that approximate shapes, for exporting them: see [`Shape::to_mesh`](super::Shape::to_mesh).
+//! Triangle meshes of shapes. The functions of this file approximate primitives for
+//! [`Shape::to_mesh`](super::Shape::to_mesh); the modules tessellate surfaces that have no primitive.
+
+pub mod net;
+pub mod revolution;
+pub mod subdivision;
+pub mod tube;
 
 use super::MeshData;
 use crate::math::{Vec2, Vec3, fp};
@@ -204,5 +210,50 @@ mod tests {
         let data = ball(Vec3::ZERO, 2.0);
         let seen = data.uvs.iter().zip(&data.normals).find(|(_, n)| n.z < -0.99).unwrap();
         assert!((seen.0.x - 0.5).abs() < 0.05);
+    }
+
+    #[test]
+    fn surfaces_without_primitives_lie_where_they_should() {
+        // A sphere between two heights: the points are on it, and the area is 2 pi r h.
+        let area = |data: &MeshData| -> f32 {
+            let corners = data.triangles.iter().map(|t| t.map(|i| data.positions[i as usize]));
+            corners.map(|[a, b, c]| 0.5 * (b - a).cross(c - a).length()).sum()
+        };
+        let zone = revolution::sphere(2.0, [-1.0, 0.5], 90.0);
+        assert!(zone.positions.iter().all(|p| (p.length() - 2.0).abs() < 1e-5));
+        assert!((area(&zone) / (0.25 * 2.0 * PI * 2.0 * 1.5) - 1.0).abs() < 2e-3, "{}", area(&zone));
+        // The radius of a paraboloid grows with the root of its height.
+        let bowl = revolution::paraboloid(1.0, [0.0, 4.0], 360.0);
+        assert!(bowl.positions.iter().all(|p| (p.truncate().length_squared() - 0.25 * p.z).abs() < 1e-5));
+        // A tube of a straight segment has the lateral area of a cylinder, between that of the
+        // inscribed and of the circumscribed polygon.
+        let line = tube::straight([[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 3.0, 0.5]].map(Into::into));
+        let mut data = MeshData::default();
+        tube::add_tube(&mut data, &tube::places(&[line], 1), false);
+        assert!((area(&data) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.02, "{}", area(&data));
+        // A bilinear patch that is flat becomes two triangles.
+        let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];
+        let flat = net::Patches { positions: corners.to_vec(), faces: vec![[0, 1, 2, 3]], ..Default::default() };
+        assert_eq!(net::bilinear(&flat).triangles.len(), 2);
+        // A NURBS quarter of a cylinder with the weights of a circle is round.
+        let half = std::f64::consts::FRAC_1_SQRT_2;
+        let row = |z: f64| [[1.0, 0.0, z, 1.0], [half, half, half * z, half], [0.0, 1.0, z, 1.0]];
+        let points: Vec<glam::DVec4> = row(0.0).into_iter().chain(row(1.0)).map(Into::into).collect();
+        let side = |knots, order| net::NurbsSide { knots, order, from: 0.0, to: 1.0 };
+        let sides = [side(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0][..], 3), side(&[0.0, 0.0, 1.0, 1.0][..], 2)];
+        let round = net::nurbs(&points, 3, &sides);
+        assert!(round.positions.iter().all(|p| (p.truncate().length() - 1.0).abs() < 1e-6));
+    }
+
+    #[test]
+    fn a_subdivided_octahedron_tends_to_a_round_body() {
+        let positions = vec![Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z];
+        let triangles = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
+        let control = MeshData { positions, triangles, ..MeshData::default() };
+        let (data, levels) = subdivision::loop_surface(&control, 3, usize::MAX);
+        assert_eq!((levels, data.triangles.len()), (3, 8 * 64));
+        let normals = data.positions.iter().zip(&data.normals);
+        assert!(normals.clone().all(|(p, n)| p.normalize().dot(*n) > 0.9));
+        assert_eq!(subdivision::loop_surface(&control, 3, 8 * 16).1, 2);
     }
 }

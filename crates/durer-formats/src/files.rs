@@ -1,0 +1,39 @@
+//! Files that a scene names: one place through which all scene formats read them.
+
+use super::model::Input;
+use super::read_mesh;
+use super::said::Said;
+use durer_diag::{Diagnostic, Diagnostics, Span};
+use durer_scene::shape::MeshData;
+use std::sync::Arc;
+
+/// Reads the bytes of a named file and registers it, for its number. Reports an error about `what`
+/// where that fails.
+pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
+    match input.source.read_unpacked(name) {
+        Ok(bytes) => {
+            let file = input.files.borrow_mut().add(name, bytes.clone());
+            Some((bytes, file))
+        }
+        Err(error) => {
+            let help = error.help();
+            let missing = Diagnostic::error(format!("{what} cannot be had: {error}")).code("missing-file").at(at);
+            said.push(Diagnostic { help, ..missing });
+            None
+        }
+    }
+}
+
+/// Reads a mesh file of any format, packed or not, as it is.
+pub(super) fn mesh_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
+    let (bytes, file) = named_bytes(input, said, "the mesh", name, at)?;
+    let plain = name.strip_suffix(".gz").unwrap_or(name);
+    let mut own = Diagnostics::default();
+    let data = read_mesh(&bytes, file, plain, &mut own);
+    if own.has_errors() {
+        let message = format!("the mesh `{name}` cannot be used");
+        said.push(Diagnostic::error(message).code("bad-file").at(at).label("asked for here"));
+    }
+    said.extend(own);
+    data
+}

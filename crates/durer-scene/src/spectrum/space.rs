@@ -1,0 +1,79 @@
+//! Spaces of red, green and blue, and their way to linear sRGB.
+
+use crate::math::{Color, Vec3};
+use glam::{DMat3, DVec3};
+
+/// From X, Y and Z to linear sRGB, a column for each of the three. Source: IEC 61966-2-1.
+pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
+    3.240_454_2,
+    -0.969_266,
+    0.055_643_4,
+    -1.537_138_5,
+    1.876_010_8,
+    -0.204_025_9,
+    -0.498_531_4,
+    0.041_556,
+    1.057_225_2,
+]);
+
+/// The primaries and the white of a space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RgbSpace {
+    to_srgb: DMat3,
+}
+
+impl Default for RgbSpace {
+    fn default() -> Self {
+        RgbSpace { to_srgb: DMat3::IDENTITY }
+    }
+}
+
+/// Names of spaces, with the chromaticities of red, green, blue and white.
+const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
+    ("srgb", [[0.64, 0.33], [0.3, 0.6], [0.15, 0.06], [0.3127, 0.329]]),
+    ("dci-p3", [[0.68, 0.32], [0.265, 0.69], [0.15, 0.06], [0.3127, 0.329]]),
+    ("rec2020", [[0.708, 0.292], [0.17, 0.797], [0.131, 0.046], [0.3127, 0.329]]),
+    ("aces2065-1", [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], [0.32168, 0.33767]]),
+];
+
+/// X, Y and Z of a chromaticity, at luminance 1.
+fn xyz([x, y]: [f64; 2]) -> DVec3 {
+    DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
+}
+
+/// The linear sRGB colour of X, Y and Z.
+pub fn color_of_xyz(xyz: DVec3) -> Color {
+    (SRGB_FROM_XYZ * xyz).as_vec3()
+}
+
+/// The colour of a chromaticity, at luminance 1.
+pub fn color_of_chromaticity(xy: [f64; 2]) -> Color {
+    color_of_xyz(xyz(xy)).max(Vec3::ZERO)
+}
+
+impl RgbSpace {
+    /// The space of a name; `None` for unknown names.
+    pub fn named(name: &str) -> Option<RgbSpace> {
+        let (name, [r, g, b, white]) = SPACES.iter().find(|row| row.0 == name)?;
+        if *name == "srgb" {
+            return Some(RgbSpace::default());
+        }
+        let columns = DMat3::from_cols(xyz(*r), xyz(*g), xyz(*b));
+        let strengths = columns.inverse() * xyz(*white);
+        Some(RgbSpace { to_srgb: SRGB_FROM_XYZ * (columns * DMat3::from_diagonal(strengths)) })
+    }
+
+    /// The names of all spaces.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        SPACES.iter().map(|row| row.0)
+    }
+
+    /// A colour of this space in linear sRGB; white stays white.
+    pub fn color(&self, rgb: Vec3) -> Color {
+        if *self == RgbSpace::default() {
+            return rgb;
+        }
+        let white = self.to_srgb * DVec3::ONE;
+        ((self.to_srgb * rgb.as_dvec3()) / white).as_vec3()
+    }
+}
