@@ -1,21 +1,27 @@
-//! Whitted's recursive ray tracing: local light, a mirrored and a transmitted ray.
+//! Whitted's ray tracing: local light, a mirrored and a transmitted ray.
+//!
+//! Rays go through the stages of [`Whitted::trace`] in batches, also where there is only one; what
+//! they spawn waits in a [`Queue`], so nothing recurses. Each sum is made in the order of its terms,
+//! whatever batch a ray was in.
 //!
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
 //! with the terms of the course.
 
-use super::media::{Media, Passage};
+use super::media::Passage;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
-use crate::world::{Hit, Interaction, Material, WeightedMaterial, World};
+use crate::world::{Interaction, Material, TOGETHER, WeightedMaterial, World};
 use direct::direct;
 use durer_scene::describe::described;
 use durer_scene::dialect::set;
+use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
-use secondary::Blend;
+use queue::{Queue, Segment};
 pub use secondary::refract;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
+use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
 /// What a picture takes into account.
@@ -39,7 +45,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// More levels than this overflow the stack.
+    /// Most levels that a job may have.
     pub const MAX_BOUNCES: u32 = 256;
 }
 
@@ -72,25 +78,67 @@ pub struct Whitted<'w> {
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// What a ray carries from bounce to bounce.
-#[derive(Clone, Copy)]
-struct Path<'a> {
-    bounces: u32,
-    /// What the ray runs in.
-    media: &'a Media,
-    /// How much the ray counts for in the pixel.
-    weight: f32,
-    /// The ray's node in the trace.
-    node: NodeId,
-}
-
 /// One of the materials that make up a point, and what was worked out of it.
 struct Lit<'w> {
     part: WeightedMaterial<'w>,
-    /// A texture or noise is looked up once for all lights.
+    /// Its diffuse colour: a texture or noise is looked up once for all lights.
     diffuse: Color,
-    /// What it scatters of the light that is asked for.
+    /// What it scatters of the light in question, if nothing is in the way.
     scattered: Color,
+}
+
+/// A surface point that is shaded.
+struct Shaded {
+    /// Number of its segment.
+    segment: u32,
+    at: Interaction,
+    /// How light goes through the surface.
+    passage: Passage,
+    /// Normal that light is reckoned with.
+    n: Vec3,
+    /// Whether an old program leaves it without light.
+    black: bool,
+    /// Where its materials begin in the list of all.
+    first_part: usize,
+    /// How many materials it has.
+    parts: usize,
+    /// Light that it scatters against its ray.
+    color: Color,
+}
+
+/// Materials of the points of a batch, one point after the other.
+type Parts<'w> = SmallVec<[Lit<'w>; TOGETHER]>;
+
+/// Memory of a thread, used again for each batch of camera rays.
+struct Scratch {
+    queue: Queue,
+    /// Room for [`TOGETHER`] points.
+    points: Vec<Shaded>,
+    rays: [Ray64; TOGETHER],
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        let point = || Shaded {
+            segment: 0,
+            at: Interaction::NOWHERE,
+            passage: Passage::default(),
+            n: Vec3::ZERO,
+            black: false,
+            first_part: 0,
+            parts: 0,
+            color: Color::ZERO,
+        };
+        Scratch {
+            queue: Queue::default(),
+            points: std::iter::repeat_with(point).take(TOGETHER).collect(),
+            rays: [Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)); TOGETHER],
+        }
+    }
+}
+
+thread_local! {
+    static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
 /// The side of a surface that is shaded.
@@ -100,27 +148,6 @@ struct Side {
     from_behind: bool,
     /// Whether an old program leaves it black.
     black: bool,
-}
-
-/// What rules and settings say of the side that is shaded.
-#[derive(Clone, Copy)]
-struct Facing {
-    shaded_sides: bool,
-    black_backs: bool,
-    unit: bool,
-    shade_back: bool,
-}
-
-impl Facing {
-    /// The side on which a surface with normals for shading and of its own is seen.
-    #[inline(always)]
-    fn side(self, dir: Vec3, [n_shade, n_geo]: [Vec3; 2]) -> Side {
-        let from_behind = dir.dot(if self.shaded_sides { n_shade } else { n_geo }) > 0.0;
-        let black = from_behind && self.black_backs;
-        let n = if from_behind && self.shade_back { -n_shade } else { n_shade };
-        let n = if self.unit { n.normalize_or(n) } else { n };
-        Side { n, from_behind, black }
-    }
 }
 
 impl Integrate for Whitted<'_> {
@@ -135,135 +162,203 @@ impl Integrate for Whitted<'_> {
         tally: &mut T,
         colors: &mut [Color],
     ) {
-        self.light_together(rays, begin, tally, colors);
+        let begin = |ray| {
+            begin(ray);
+        };
+        self.trace(rays, begin, tally, colors);
     }
 }
 
 impl<'w> Whitted<'w> {
     /// The light that comes along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
-        let mut along = ray.into();
-        let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
-            from: RayKind::Camera,
-            ray: ray.into(),
-            weight: 1.0,
-            hit: None,
-            bounce: None,
-        });
-        let found = self.world.closest_along(&mut along, tally);
-        let path = Path { bounces: self.settings.bounces, media: &Media::default(), weight: 1.0, node };
-        let color = self.trace(&along, found, path, tally);
-        tally.end(node, Color::ONE, Color::ONE, color);
-        color
+        let mut color = [Color::ZERO];
+        self.trace(&[ray.into()], |_| {}, tally, &mut color);
+        color[0]
     }
 
-    /// The light along a ray that has hit this first.
-    fn trace<T: TraceListener>(&self, ray: &Ray64, mut found: Option<Hit>, path: Path, tally: &mut T) -> Color {
-        // What it runs in behind surfaces that are none.
-        let mut inside = None;
-        let mut at = Interaction::NOWHERE;
-        while let Some(hit) = found {
-            self.world.meet(ray, hit, &mut at);
-            let media = inside.as_ref().unwrap_or(path.media);
-            match self.passage(&at, media) {
-                Some(Passage { hidden: true, behind, .. }) => {
-                    let mut rest = *ray;
-                    (inside, rest.rounded.t_min) = (Some(behind), hit.t);
-                    found = self.world.closest_along(&mut rest, tally);
+    /// The light along camera rays, and all rays that follow from them: batch by batch, first hits,
+    /// then their light, then the rays that they spawn. `begin` hears the number of the camera ray
+    /// that is worked on.
+    fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), tally: &mut T, colors: &mut [Color]) {
+        SCRATCH.with_borrow_mut(|Scratch { queue, points, rays: batch_rays }| {
+            queue.clear();
+            for (camera, ray) in rays.iter().enumerate() {
+                let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
+                    from: RayKind::Camera,
+                    ray: ray.into(),
+                    weight: 1.0,
+                    hit: None,
+                    bounce: None,
+                });
+                queue.push(Segment::camera(ray, camera as u32, self.settings.bounces, node));
+            }
+            let mut batch = [0; TOGETHER];
+            loop {
+                let count = queue.take(&mut batch);
+                if count == 0 {
+                    return;
                 }
-                passage => return self.shade(&at, passage, Path { media, ..path }, tally),
+                let mut parts = SmallVec::new();
+                let batch = &batch[..count];
+                let count = self.hit(batch, batch_rays, (queue, points, &mut parts), &begin, colors, tally);
+                let points = &mut points[..count];
+                self.shade(points, batch_rays, &mut parts, queue, tally);
+                for point in points {
+                    begin(queue.segment(point.segment).camera as usize);
+                    let parts = &parts[point.first_part..][..point.parts];
+                    self.secondary(point, parts, queue, colors, tally);
+                }
             }
-        }
-        let sky = self.world.sky(ray.dir());
-        let node = tally.begin(path.node, || TermKind::Sky);
-        tally.end(node, Color::ONE, Color::ONE, sky);
-        sky
+        });
     }
 
-    /// The light that leaves a hit against the ray: of each material that makes it up, by its
-    /// share.
-    #[inline]
-    fn shade<T: TraceListener>(&self, at: &Interaction, passage: Option<Passage>, path: Path, tally: &mut T) -> Color {
-        let lit = |part: WeightedMaterial<'w>| {
-            let diffuse = self.world.diffuse_color(part.phong, &at.surface);
-            Lit { part, diffuse, scattered: Color::ZERO }
-        };
-        match &self.world.materials()[at.material as usize] {
-            // Nearly always; what is known of one stays in registers.
-            Material::Phong(phong) => {
-                self.shade_all(at, &mut [lit(WeightedMaterial { phong, share: 1.0 })], passage, path, tally)
-            }
-            Material::Solid(..) => {
-                let mut all: SmallVec<[Lit; 2]> = self.world.parts(at).into_iter().map(lit).collect();
-                self.shade_all(at, &mut all, passage, path, tally)
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn shade_all<T: TraceListener>(
+    /// Finds what the rays of a batch hit, and which points there are to shade; returns how many.
+    /// What hits nothing is finished; what passes a surface that is none waits again.
+    fn hit<T: TraceListener>(
         &self,
-        at: &Interaction,
-        all: &mut [Lit],
-        passage: Option<Passage>,
-        path: Path,
+        batch: &[u32],
+        rays: &mut [Ray64; TOGETHER],
+        (queue, points, parts): (&mut Queue, &mut [Shaded], &mut Parts<'w>),
+        begin: &impl Fn(usize),
+        colors: &mut [Color],
         tally: &mut T,
-    ) -> Color {
-        let Interaction { ray, surface, .. } = at;
-        let Side { n, from_behind, black } = self.side(at);
-        tally.hit(path.node, || HitRecord::new(self.world, at, n, from_behind, black));
-        let mut color = Color::ZERO;
-        if !black {
-            for Lit { part, diffuse, .. } in all.iter() {
+    ) -> usize {
+        let (rays, mut found) = (&mut rays[..batch.len()], [None; TOGETHER]);
+        for (ray, &number) in rays.iter_mut().zip(batch) {
+            let segment = queue.segment(number);
+            *ray = segment.ray;
+            ray.rounded.t_min = segment.t_min;
+        }
+        self.world.first_hits(rays, &mut found[..batch.len()], tally);
+        let mut count = 0;
+        for (&number, found) in batch.iter().zip(found) {
+            let segment = queue.segment(number);
+            begin(segment.camera as usize);
+            let Some(hit) = found else {
+                let sky = self.world.sky(segment.ray.dir());
+                let node = tally.begin(segment.node, || TermKind::Sky);
+                tally.end(node, Color::ONE, Color::ONE, sky);
+                queue.finish(number, sky, colors, tally);
+                continue;
+            };
+            let point = &mut points[count];
+            self.world.meet(&segment.ray, hit, &mut point.at);
+            match self.passage(&point.at, &segment.media) {
+                Some(Passage { hidden: true, behind, .. }) => {
+                    (segment.media, segment.t_min) = (behind, hit.t);
+                    queue.push_again(number);
+                    continue;
+                }
+                Some(passage) => point.passage = passage,
+                None => point.passage = Passage::default(),
+            }
+            let Side { n, from_behind, black } = self.side(&point.at);
+            tally.hit(segment.node, || HitRecord::new(self.world, &point.at, n, from_behind, black));
+            (point.segment, point.n, point.black) = (number, n, black);
+            point.first_part = parts.len();
+            let lit = |part: WeightedMaterial<'w>| {
+                let diffuse = self.world.diffuse_color(part.phong, &point.at.surface);
+                Lit { part, diffuse, scattered: Color::ZERO }
+            };
+            match &self.world.materials()[point.at.material as usize] {
+                // Most points are of one material.
+                Material::Phong(phong) => parts.push(lit(WeightedMaterial { phong, share: 1.0 })),
+                Material::Solid(..) => parts.extend(self.world.parts(&point.at).into_iter().map(lit)),
+            }
+            point.parts = parts.len() - point.first_part;
+            count += 1;
+        }
+        count
+    }
+
+    /// Works out the light that points scatter against their rays: ambient light, then one light
+    /// after the other.
+    fn shade<T: TraceListener>(
+        &self,
+        points: &mut [Shaded],
+        shadows: &mut [Ray64; TOGETHER],
+        parts: &mut Parts<'w>,
+        queue: &mut Queue,
+        tally: &mut T,
+    ) {
+        for point in &mut *points {
+            point.color = Color::ZERO;
+            if point.black {
+                continue;
+            }
+            let node = queue.segment(point.segment).node;
+            for Lit { part, diffuse, .. } in &parts[point.first_part..][..point.parts] {
                 let met = part.phong.ambient.unwrap_or(*diffuse);
                 let ambient = part.share * self.world.ambient();
-                let node = tally.begin(path.node, || TermKind::Ambient { share: part.share });
+                let node = tally.begin(node, || TermKind::Ambient { share: part.share });
                 tally.end(node, ambient, Color::ONE, met);
-                color += ambient * met;
+                point.color += ambient * met;
             }
-            for number in 0..self.world.lights().len() {
+        }
+        // Of each shadow ray the number of its point, and the light that asks.
+        let mut asked = [(0, Illumination { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); TOGETHER];
+        for number in 0..self.world.lights().len() {
+            let mut count = 0;
+            for (i, point) in points.iter_mut().enumerate().filter(|(_, point)| !point.black) {
+                let Interaction { ray, surface, .. } = &point.at;
                 let seen = self.world.illuminate(number, surface.point());
-                // Where nothing of a light would be scattered, nobody asks whether it arrives.
-                if !T::LISTENS {
-                    let mut dark = true;
-                    for Lit { part, diffuse, scattered } in all.iter_mut() {
-                        *scattered = direct(part.phong, *diffuse, n, ray.dir(), &seen, NodeId::NONE, tally);
-                        dark &= *scattered == Color::ZERO;
-                    }
-                    if dark {
-                        continue;
-                    }
+                let parts = &mut parts[point.first_part..][..point.parts];
+                let mut dark = true;
+                for Lit { part, diffuse, scattered } in &mut *parts {
+                    *scattered = direct(part.phong, *diffuse, point.n, ray.dir(), &seen, NodeId::NONE, &mut ());
+                    dark &= *scattered == Color::ZERO;
                 }
-                let visible = self.visible(surface, &seen, tally);
-                for Lit { part, diffuse, scattered } in all.iter() {
-                    let share = part.share;
-                    let node = tally.begin(path.node, || {
-                        let shadow = self.settings.shadows.then(|| self.shadow(surface, &seen, visible));
-                        let (to_light, distance) = (seen.to_light, seen.distance);
-                        TermKind::Light { light: number, to_light, distance, share, shadow }
-                    });
-                    // In the dark nothing is computed.
-                    let direct = match visible == Color::ZERO {
-                        true => Color::ZERO,
-                        false if T::LISTENS => direct(part.phong, *diffuse, n, ray.dir(), &seen, node, tally),
-                        false => *scattered,
-                    };
-                    tally.end(node, share * visible, seen.color, direct);
-                    color += share * visible * direct;
+                // Where nothing of a light would be scattered, only listeners ask whether it arrives.
+                if dark && !T::LISTENS {
+                    continue;
                 }
+                if !self.settings.shadows || seen.color == Color::ZERO {
+                    self.add_light(point, parts, (number, &seen, Color::ONE), queue, tally);
+                    continue;
+                }
+                shadows[count] = self.shadow_ray(surface, &seen);
+                asked[count] = (i, seen);
+                count += 1;
+            }
+            let mut shares = [Color::ZERO; TOGETHER];
+            self.visible(&mut shadows[..count], &mut shares[..count], tally);
+            for ((i, seen), share) in asked[..count].iter().zip(shares) {
+                let point = &mut points[*i];
+                let parts = &parts[point.first_part..][..point.parts];
+                self.add_light(point, parts, (number, seen, share), queue, tally);
             }
         }
-        if self.goes_on(path.bounces) {
-            let blend = Blend::of(all.iter().map(|lit| &lit.part));
-            color += match blend.reflective == Color::ZERO && blend.transparent == Color::ZERO {
-                true => Color::ZERO,
-                false => self.secondary(at, blend, passage.unwrap_or_default(), path, tally),
-            };
-        } else if all.iter().any(|Lit { part, .. }| part.phong.reflective + part.phong.transparent != Color::ZERO) {
-            let node = tally.begin(path.node, || TermKind::Spent);
-            tally.end(node, Color::ONE, Color::ONE, Color::ZERO);
+    }
+
+    /// Adds a light to a point's colour, of which a share arrives.
+    #[inline(always)]
+    fn add_light<T: TraceListener>(
+        &self,
+        point: &mut Shaded,
+        parts: &[Lit],
+        (number, seen, visible): (usize, &Illumination, Color),
+        queue: &mut Queue,
+        tally: &mut T,
+    ) {
+        for Lit { part, diffuse, scattered } in parts {
+            let share = part.share;
+            // In the dark nothing is computed.
+            let mut direct_light = if visible == Color::ZERO { Color::ZERO } else { *scattered };
+            if T::LISTENS {
+                let parent = queue.segment(point.segment).node;
+                let node = tally.begin(parent, || {
+                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, seen, visible));
+                    let (to_light, distance) = (seen.to_light, seen.distance);
+                    TermKind::Light { light: number, to_light, distance, share, shadow }
+                });
+                if visible != Color::ZERO {
+                    direct_light = direct(part.phong, *diffuse, point.n, point.at.ray.dir(), seen, node, tally);
+                }
+                tally.end(node, share * visible, seen.color, direct_light);
+            }
+            point.color += share * visible * direct_light;
         }
-        color
     }
 
     /// Whether mirrored and transmitted rays are traced yet.
@@ -272,20 +367,13 @@ impl<'w> Whitted<'w> {
     }
 
     /// The side of a surface that is shaded.
-    #[inline(always)]
+    #[inline]
     fn side(&self, at: &Interaction) -> Side {
-        self.facing().side(at.ray.dir(), [at.surface.n_shade, at.surface.n_geo])
-    }
-
-    /// What decides which side of a surface is shaded.
-    fn facing(&self) -> Facing {
-        let (rules, shade_back) = (self.world.shading_rules(), self.settings.shade_back);
-        Facing {
-            shaded_sides: rules.shaded_sides,
-            black_backs: !shade_back && rules.black_backs,
-            unit: rules.unit_light,
-            shade_back,
-        }
+        let (rules, shade_back, n_shade) = (self.world.shading_rules(), self.settings.shade_back, at.surface.n_shade);
+        let from_behind = self.sees_back(at);
+        let n = if from_behind && shade_back { -n_shade } else { n_shade };
+        let n = if rules.unit_light { n.normalize_or(n) } else { n };
+        Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back }
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.
@@ -303,10 +391,8 @@ impl<'w> Whitted<'w> {
     }
 }
 
-mod branches;
 mod direct;
-mod lamps;
+mod queue;
 pub mod secondary;
 #[cfg(test)]
 mod tests;
-mod together;

@@ -11,7 +11,6 @@ mod object;
 mod rules;
 pub mod shading;
 pub mod solid;
-mod surfaces;
 mod together;
 
 pub use contents::{Assets, Contents};
@@ -30,7 +29,6 @@ pub use object::{Geometry, MeshTree, Object};
 pub use rules::{DisplayRules, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
-pub(crate) use surfaces::{Kind, LANES, Met, Numbers, PLACES, Surfaces, Vectors};
 pub(crate) use together::{Few, TOGETHER};
 
 /// A scene ready to be traced.

@@ -1,7 +1,7 @@
 //! Rays that go nearly the same way, asked about together: with the answers that each has alone.
 
 use super::{Geometry, Hit, Object, World};
-use durer_bvh::{PackHit, PrimitivePacks, TriangleHit};
+use durer_bvh::{PackHit, PrimitivePacks, TraversalCounter, TriangleHit};
 use durer_scene::math::{Ray, Ray64, Vec3};
 use durer_scene::shape::ShapeHit;
 use std::array::from_fn;
@@ -19,10 +19,36 @@ pub(crate) struct Few {
     pub(crate) others: Vec<u32>,
 }
 
+/// Fewer rays are traced one by one.
+const FEWEST: usize = 3;
+
 /// A ray that meets nothing.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
+    /// The first hits of up to [`TOGETHER`] rays. Rays keep their values, but are written to.
+    pub(crate) fn first_hits<T: TraversalCounter>(
+        &self,
+        rays: &mut [Ray64],
+        hits: &mut [Option<Hit>],
+        counter: &mut T,
+    ) {
+        if T::COUNTS_WORK || rays.len() < FEWEST || self.few.is_none() {
+            return hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest_along(ray, counter));
+        }
+        rays.iter().for_each(|_| counter.ray());
+        self.closest_together(rays, hits);
+    }
+
+    /// Whether anything is hit by each of up to [`TOGETHER`] rays.
+    pub(crate) fn any_hits<T: TraversalCounter>(&self, rays: &[Ray64], blocked: &mut [bool], counter: &mut T) {
+        if T::COUNTS_WORK || rays.len() < FEWEST || self.few.is_none() {
+            return blocked.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.occluded_along(ray, counter));
+        }
+        rays.iter().for_each(|_| counter.ray());
+        self.occluded_together(rays, blocked);
+    }
+
     /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
     pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
         let Some(few) = &self.few else {

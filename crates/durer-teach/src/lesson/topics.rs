@@ -291,7 +291,7 @@ pub static TOPICS: [Topic; 18] = [
         places: &[
             at("crates/durer-scene/src/math/mod.rs", "fn reflect"),
             at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn secondary"),
-            at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn bounce"),
+            at("crates/durer-render/src/integrator/whitted/secondary.rs", "fn spawn"),
             at("crates/durer-render/src/integrator/whitted.rs", "fn trace"),
         ],
         shots: &[

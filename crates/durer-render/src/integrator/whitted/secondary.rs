@@ -1,6 +1,7 @@
 //! Mirrored and transmitted light.
 
-use super::{Path, Whitted};
+use super::queue::{Queue, Segment};
+use super::{Lit, Shaded, Whitted};
 use crate::integrator::media::{Body, Media, Passage};
 use crate::integrator::spawn::spawn_ray;
 use crate::integrator::trace::{RayKind, TermKind, TraceListener};
@@ -8,121 +9,98 @@ use crate::world::{Interaction, Material, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::Surface;
 
-/// What goes on from a hit: directions, and the colours by which their light is weighed.
-pub(super) struct Parted {
-    pub(super) mirrored: Vec3,
-    pub(super) reflective: Color,
-    /// Whether something goes through: not where reflection is total, or nothing is transparent.
-    pub(super) passes: bool,
-    pub(super) transmitted: Vec3,
-    pub(super) transparent: Color,
+/// How light is divided at a hit: directions, and the colours that weigh their light.
+struct Parted {
+    mirrored: Vec3,
+    reflective: Color,
+    /// `None` where reflection is total, or nothing is transparent.
+    transmitted: Option<Vec3>,
+    transparent: Color,
     /// The mirrored share, where the two divide the light by Fresnel's law.
     fresnel: Option<f32>,
 }
 
-/// What rules and settings say of how light is divided.
-#[derive(Clone, Copy)]
-pub(super) struct Division {
-    raw_normals: bool,
-    exit_r0: bool,
-    /// Whether mirrored and transmitted rays are traced both.
-    both: bool,
-}
+impl Whitted<'_> {
+    /// Spawns the mirrored and the transmitted ray of a point, or finishes its segment where there
+    /// is none.
+    pub(super) fn secondary<T: TraceListener>(
+        &self,
+        point: &mut Shaded,
+        parts: &[Lit],
+        queue: &mut Queue,
+        colors: &mut [Color],
+        tally: &mut T,
+    ) {
+        let number = point.segment;
+        let &mut Segment { node, bounces, .. } = queue.segment(number);
+        let blend = || Blend::of(parts.iter().map(|lit| &lit.part));
+        if !self.goes_on(bounces) {
+            if T::LISTENS && blend().is_some() {
+                let node = tally.begin(node, || TermKind::Spent);
+                tally.end(node, Color::ONE, Color::ONE, Color::ZERO);
+            }
+            return queue.finish(number, point.color, colors, tally);
+        }
+        let blend = blend();
+        if !blend.is_some() {
+            return queue.finish(number, point.color, colors, tally);
+        }
+        let parted = self.parted(&point.at, blend, &point.passage);
+        let total = blend.transparent != Color::ZERO && parted.transmitted.is_none();
+        let Passage { here, there, .. } = point.passage;
+        let secondary = tally.begin(node, || TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
+        let segment = queue.segment(number);
+        (segment.local, segment.branches, segment.pending) = (point.color, [Color::ZERO; 2], 0);
+        segment.secondary = secondary;
+        let surface = &point.at.surface;
+        if self.settings.reflection {
+            let inside = |queue: &mut Queue| queue.segment(number).media.clone();
+            let branch = (parted.mirrored, parted.reflective);
+            self.spawn((number, RayKind::Reflected), surface, branch, inside, queue, tally);
+        }
+        if let Some(dir) = parted.transmitted.filter(|_| self.settings.refraction) {
+            let inside = |_: &mut Queue| std::mem::take(&mut point.passage.behind);
+            self.spawn((number, RayKind::Transmitted), surface, (dir, parted.transparent), inside, queue, tally);
+        }
+        if queue.segment(number).pending == 0 {
+            tally.end(secondary, Color::ONE, Color::ONE, Color::ZERO);
+            queue.finish(number, point.color + Color::ZERO, colors, tally);
+        }
+    }
 
-impl Division {
-    /// How light is divided where a surface with normals for shading and of its own is met.
-    #[inline(always)]
-    pub(super) fn part(
-        self,
-        dir: Vec3,
-        [n_shade, n_geo]: [Vec3; 2],
-        leaving: bool,
-        Blend { mut reflective, mut transparent, fresnel, .. }: Blend,
-        (here, there): (f32, f32),
-    ) -> Parted {
+    /// How light is divided at a hit.
+    #[inline]
+    fn parted(&self, at: &Interaction, blend: Blend, &Passage { here, there, .. }: &Passage) -> Parted {
+        let Blend { mut reflective, mut transparent, fresnel, .. } = blend;
+        let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
         // The normal on the ray's side.
-        let (n, n_geo) = if leaving { (-n_shade, -n_geo) } else { (n_shade, n_geo) };
+        let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
         // An interpolated normal may point away from the ray; the surface itself does not.
         let n = if dir.dot(n) < 0.0 { n } else { n_geo };
         // A mirror without `shade_back` reflects about the normal as it is; the direction is the
         // same.
         let mirrored = reflect(dir, n);
         // About a normal that is not of length 1 it is another one.
-        let (mirrored, n) = match self.raw_normals {
+        let (mirrored, n) = match rules.raw_normals {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
         };
-        // All is worked out, of use or not: so compilers do it side by side for several hits.
-        let (transmitted, passes) = match refract(dir, n, here / there) {
-            Some(transmitted) => (transmitted, transparent != Color::ZERO),
-            None => (Vec3::ZERO, false),
+        let transmitted = match transparent == Color::ZERO {
+            true => None,
+            false => refract(dir, n, here / there),
         };
-        let share = fresnel_share(dir, n, transmitted, (here, there), leaving && self.exit_r0);
-        // Total reflection weighs 1.
-        let share = if passes { share } else { 1.0 };
         // With one of the two left out, the other has all the light.
-        let divided = fresnel && self.both;
-        if divided {
+        let divides = fresnel && self.settings.reflection && self.settings.refraction;
+        let share = divides.then(|| {
+            // Total reflection weighs 1.
+            let zero = leaving && rules.exit_r0;
+            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), zero))
+        });
+        if let Some(share) = share {
             reflective *= share;
             transparent *= 1.0 - share;
         }
-        let fresnel = if divided { Some(share) } else { None };
-        Parted { mirrored, reflective, passes, transmitted, transparent, fresnel }
-    }
-}
-
-impl Whitted<'_> {
-    /// Mirrored and transmitted light.
-    pub(super) fn secondary<T: TraceListener>(
-        &self,
-        at: &Interaction,
-        blend: Blend,
-        passage: Passage,
-        path: Path,
-        tally: &mut T,
-    ) -> Color {
-        let parted = self.parted(at, blend, &passage);
-        let total = blend.transparent != Color::ZERO && !parted.passes;
-        let Passage { here, there, .. } = passage;
-        let node = tally.begin(path.node, || TermKind::Secondary { here, there, fresnel: parted.fresnel, total });
-        let path = Path { node, ..path };
-        let mut color = Color::ZERO;
-        if let Some((dir, weight)) = self.mirrored(&parted) {
-            color += self.bounce(RayKind::Reflected, &at.surface, dir, weight, path, tally);
-        }
-        if let Some((dir, weight)) = self.transmitted(&parted) {
-            let path = Path { media: &passage.behind, ..path };
-            color += self.bounce(RayKind::Transmitted, &at.surface, dir, weight, path, tally);
-        }
-        tally.end(node, Color::ONE, Color::ONE, color);
-        color
-    }
-
-    /// The mirrored ray's direction and weight, if it is asked for.
-    fn mirrored(&self, parted: &Parted) -> Option<(Vec3, Color)> {
-        self.settings.reflection.then_some((parted.mirrored, parted.reflective))
-    }
-
-    /// The same of the transmitted one.
-    fn transmitted(&self, parted: &Parted) -> Option<(Vec3, Color)> {
-        (parted.passes && self.settings.refraction).then_some((parted.transmitted, parted.transparent))
-    }
-
-    /// How light is divided at a hit.
-    #[inline(always)]
-    fn parted(&self, at: &Interaction, blend: Blend, &Passage { here, there, .. }: &Passage) -> Parted {
-        let normals = [at.surface.n_shade, at.surface.n_geo];
-        self.division().part(at.ray.dir(), normals, self.sees_back(at), blend, (here, there))
-    }
-
-    /// What divides light.
-    pub(super) fn division(&self) -> Division {
-        let (rules, settings) = (self.world.shading_rules(), &self.settings);
-        Division {
-            raw_normals: rules.raw_normals,
-            exit_r0: rules.exit_r0,
-            both: settings.reflection && settings.refraction,
-        }
+        Parted { mirrored, reflective, transmitted, transparent, fresnel: share }
     }
 
     /// How light that may go through at a hit does; `None` where none may.
@@ -138,23 +116,11 @@ impl Whitted<'_> {
         if blend.transparent == Color::ZERO {
             return None;
         }
-        Some(self.passage_through(at.hit.object, at.ray.rounded.origin, blend, self.sees_back(at), media))
-    }
-
-    /// How light goes through the surface of an object, which it sets out for from a point.
-    #[inline]
-    pub(super) fn passage_through(
-        &self,
-        object: u32,
-        start: Vec3,
-        blend: Blend,
-        leaving: bool,
-        media: &Media,
-    ) -> Passage {
-        match self.world.shading_rules().one_medium {
-            true => self.official_passage(object, blend, leaving, media),
-            false => media.passage_into(self.world, (object, start), blend.ior, leaving),
-        }
+        let leaving = self.sees_back(at);
+        Some(match self.world.shading_rules().one_medium {
+            true => self.official_passage(at.hit.object, blend, leaving, media),
+            false => media.passage_into(self.world, (at.hit.object, at.ray.rounded.origin), blend.ior, leaving),
+        })
     }
 
     /// The course's: one index is carried along, and behind glass there is air.
@@ -176,37 +142,39 @@ impl Whitted<'_> {
         before * if by_length { weight.length() } else { weight.max_element() }
     }
 
-    /// One secondary ray, weighed by a colour.
-    fn bounce<T: TraceListener>(
+    /// Spawns a secondary ray, whose light a colour weighs, unless that counts for too little.
+    fn spawn<T: TraceListener>(
         &self,
-        from: RayKind,
+        (parent, from): (u32, RayKind),
         surface: &Surface,
-        dir: Vec3,
-        weight: Color,
-        path: Path,
+        (dir, factor): (Vec3, Color),
+        media: impl FnOnce(&mut Queue) -> Media,
+        queue: &mut Queue,
         tally: &mut T,
-    ) -> Color {
-        if weight.max_element() <= 0.0 {
-            return Color::ZERO;
+    ) {
+        if factor.max_element() <= 0.0 {
+            return;
         }
-        let total = self.weight_after(path.weight, weight);
-        if total < self.settings.least_weight {
-            let node = tally.begin(path.node, || TermKind::Cut { weight: total });
-            tally.end(node, weight, Color::ONE, Color::ZERO);
-            return Color::ZERO;
+        let &mut Segment { weight, bounces, camera, secondary, .. } = queue.segment(parent);
+        let weight = self.weight_after(weight, factor);
+        if weight < self.settings.least_weight {
+            let node = tally.begin(secondary, || TermKind::Cut { weight });
+            tally.end(node, factor, Color::ONE, Color::ZERO);
+            return;
         }
-        let mut ray = spawn_ray(surface, dir, f32::INFINITY, self.world.shading_rules().epsilon);
-        let node = tally.begin(path.node, || TermKind::Ray {
-            from,
-            ray: (&ray).into(),
-            weight: total,
-            hit: None,
-            bounce: None,
+        let ray = spawn_ray(surface, dir, f32::INFINITY, self.world.shading_rules().epsilon);
+        let node =
+            tally.begin(secondary, || TermKind::Ray { from, ray: (&ray).into(), weight, hit: None, bounce: None });
+        let media = media(queue);
+        queue.segment(parent).pending += 1;
+        queue.push(Segment {
+            media,
+            weight,
+            parent,
+            branch: usize::from(from == RayKind::Transmitted),
+            factor,
+            ..Segment::camera(&ray, camera, bounces - 1, node)
         });
-        let found = self.world.closest_along(&mut ray, tally);
-        let color = self.trace(&ray, found, Path { bounces: path.bounces - 1, weight: total, node, ..path }, tally);
-        tally.end(node, weight, Color::ONE, color);
-        weight * color
     }
 }
 
@@ -225,6 +193,11 @@ pub struct Blend {
 }
 
 impl Blend {
+    /// Whether any light is reflected or transmitted.
+    fn is_some(&self) -> bool {
+        self.reflective != Color::ZERO || self.transparent != Color::ZERO
+    }
+
     /// Blends the materials of a point.
     #[inline]
     pub fn of<'a, 'w: 'a>(parts: impl IntoIterator<Item = &'a WeightedMaterial<'w>>) -> Self {

@@ -107,10 +107,27 @@ fn two_facing_mirrors_make_a_geometric_series() {
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
     // The course takes the length of the colour: sqrt(3) / 2 after one, 3/4 after two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
-    world.edit().rules.epsilon = Some(1e-4);
+    let rules = Dialect::Durer.rules();
+    world.edit().set_rules(durer_scene::dialect::Rules { epsilon: Some(1e-4), ..rules.clone() });
     let cut = Settings { least_weight: 0.7, ..ALL };
     let old = Whitted { world: &world, settings: cut, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
     assert!((old.x - 1.75).abs() < 1e-5, "{old}");
+}
+
+#[test]
+fn rays_of_many_levels_need_no_deep_stack() {
+    // A hall of two perfect mirrors, each of which shines with 1.
+    let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
+        Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
+        Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
+        Group { MaterialIndex 0 Plane { normal 1 0 0 offset -1 } Plane { normal -1 0 0 offset -1 } }";
+    let settings = Settings { bounces: Settings::MAX_BOUNCES, ..ALL };
+    let world = &testing::read(&format!("{CAMERA}{hall}"));
+    let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
+    // A frame of a kilobyte for each level would overflow this.
+    let thread = std::thread::Builder::new().stack_size(192 << 10);
+    let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
+    assert_eq!(light, Vec3::splat(Settings::MAX_BOUNCES as f32 + 1.0));
 }
 
 #[test]
@@ -230,7 +247,9 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
             // The wall, where there is one, is no part of the ball.
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
                 all += 1;
-                dark += i32::from(whitted.visible(&surface, &seen, &mut ()) == Color::ZERO);
+                let mut share = [Color::ZERO];
+                whitted.visible(&mut [whitted.shadow_ray(&surface, &seen)], &mut share, &mut ());
+                dark += i32::from(share == [Color::ZERO]);
             }
         }
         (dark, all)
