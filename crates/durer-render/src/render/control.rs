@@ -30,3 +30,14 @@ pub struct Control {
     /// Whether `all` is that of several renders, which count on with `done`.
     pub goes_on: bool,
 }
+
+/// Until when work goes on.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Until {
+    /// All is done.
+    End,
+    /// All passes are done that end with so many samples a pixel, or fewer.
+    Samples(u32),
+    /// A single pass is done that ends with so many samples a pixel.
+    Pass(u32),
+}

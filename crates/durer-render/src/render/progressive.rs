@@ -1,7 +1,7 @@
 //! A picture pass by pass, for callers that show it while it is made.
 
+use super::control::Until;
 use super::part::passes_of;
-use super::run::Until;
 use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
 use crate::world::World;
 use std::sync::atomic::Ordering::Relaxed;

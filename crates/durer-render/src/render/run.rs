@@ -1,6 +1,7 @@
 //! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
 
 use super::allocation::{half, pilot, variances};
+use super::control::Until;
 use super::course::sampling::kept_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
@@ -73,17 +74,6 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Parti
         RenderOutcome::Cancelled => Err(RenderError::Cancelled),
         RenderOutcome::Panicked(panicked) => Err(panicked.into()),
     }
-}
-
-/// Until when work goes on.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Until {
-    /// All is done.
-    End,
-    /// All passes are done that end with so many samples a pixel, or fewer.
-    Samples(u32),
-    /// A single pass is done that ends with so many samples a pixel.
-    Pass(u32),
 }
 
 impl PartialRender {
