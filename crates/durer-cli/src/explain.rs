@@ -72,7 +72,7 @@ pub struct ExplainArgs {
 }
 
 /// The version of the JSON.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What is explained.
 pub enum Subject {

@@ -5,11 +5,11 @@
 //! rays may be under way at once and end in any order. Counters ignore all of it at no cost; a
 //! [`TraceRecorder`] keeps it. In every node,
 //!
-//! value = scale · (sum of the children's factor · value, in order),
+//! value = scale · (sum of the children's factor · value, in order).
 //!
-//! in the arithmetic of the picture: see [`TraceNode::sum`]. So the tree adds up to the colour, and
-//! not just nearly. Where light is made of wavelengths, terms are the light at those of the sample,
-//! and [`Tree::sum`] is the colour that the eye makes of it.
+//! A tree adds up to the colour of the picture bit for bit, in the order in which the integrator
+//! sums: see [`Tree::sum`]. In spectral mode, terms are the light at the wavelengths of the sample,
+//! and [`Tree::sum`] is the colour of their sum.
 
 use crate::world::emitters::LightId;
 use crate::world::{HighlightModel, Interaction, World};
@@ -40,6 +40,10 @@ pub trait TraceListener: TraversalCounter {
         _value: impl Into<TermValue>,
     ) {
     }
+    /// Records, for a node of a path, the fraction `scale` of its light that the way through media
+    /// leaves, and the throughput: the product of all factors from the camera to here, by which the
+    /// values of its terms, or its own, count in the pixel.
+    fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
 }
 
 /// Number of a node of a trace, in the order in which terms began.
@@ -143,9 +147,14 @@ impl Tree {
         self.lanes.color(light.spectrum())
     }
 
-    /// The ray's colour, computed anew from the terms.
+    /// Colour of the ray, computed again from the terms. It has the bits of the picture.
+    ///
+    /// A path adds throughput · value of each source in the order in which it finds them, and so
+    /// does this: [`TraceNode::added`]. In such a tree the values of rays are only as exact as the
+    /// rounding of sums. Other integrators have no throughputs, and sum the terms of each node:
+    /// [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
-        self.color(self.root.sum())
+        self.color(self.root.added().unwrap_or_else(|| self.root.sum()))
     }
 }
 
@@ -160,12 +169,32 @@ pub struct TraceNode {
     pub scale: TermValue,
     /// What comes of it.
     pub value: TermValue,
+    /// Of a path: what the values of its terms are multiplied by in the pixel, or its own if it is
+    /// a source of light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub throughput: Option<TermValue>,
     /// The terms that it is the sum of, in the order of addition; none where `what` itself says how
     /// it is computed.
     pub terms: Vec<TraceNode>,
 }
 
 impl TraceNode {
+    /// What a node of a path adds to the pixel: the sum of throughput · value over the sources of
+    /// light below, in order. `None` for integrators without throughputs.
+    pub fn added(&self) -> Option<TermValue> {
+        self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
+    }
+
+    fn add_sources(&self, sum: TermValue) -> TermValue {
+        match (&self.what, self.throughput) {
+            (TermKind::Ray { .. } | TermKind::OneWavelength { .. }, _) => {
+                self.terms.iter().fold(sum, |sum, term| term.add_sources(sum))
+            }
+            (_, Some(throughput)) => sum + throughput * self.value,
+            _ => sum,
+        }
+    }
+
     /// What the node adds to the one above.
     pub fn contribution(&self) -> TermValue {
         self.factor * self.value
@@ -441,6 +470,10 @@ impl TraceRecorder {
         // comes, with its children in reverse.
         while let Some((parent, mut node)) = self.nodes.pop() {
             node.terms.reverse();
+            // A path ends before anyone knows the light along its rays.
+            if node.throughput.is_some() && !node.terms.is_empty() {
+                node.value = node.sum();
+            }
             match self.nodes.get_mut(parent.0 as usize) {
                 Some((_, parent)) => parent.terms.push(node),
                 None => root = Some(node),
@@ -463,7 +496,8 @@ impl TraceListener for TraceRecorder {
 
     fn begin(&mut self, parent: NodeId, what: impl FnOnce() -> TermKind) -> NodeId {
         let [one, zero] = [Color::ONE, Color::ZERO].map(TermValue::Color);
-        let node = TraceNode { what: what(), factor: one, scale: one, value: zero, terms: Vec::new() };
+        let node =
+            TraceNode { what: what(), factor: one, scale: one, value: zero, throughput: None, terms: Vec::new() };
         self.nodes.push((parent, node));
         NodeId(self.nodes.len() as u32 - 1)
     }
@@ -484,6 +518,12 @@ impl TraceListener for TraceRecorder {
     ) {
         if let Some((_, node)) = self.nodes.get_mut(node.0 as usize) {
             (node.factor, node.scale, node.value) = (factor.into(), scale.into(), value.into());
+        }
+    }
+
+    fn weigh(&mut self, node: NodeId, scale: impl Into<TermValue>, throughput: impl Into<TermValue>) {
+        if let Some((_, node)) = self.nodes.get_mut(node.0 as usize) {
+            (node.scale, node.throughput) = (scale.into(), Some(throughput.into()));
         }
     }
 }

@@ -222,7 +222,7 @@ impl ProbeHit {
 
 impl Probe {
     fn of(pixel: (u32, u32), ray: Ray, tree: &Tree) -> Self {
-        let mut probe = Probe { pixel, ray, color: tree.color(tree.root.value), seen: None };
+        let mut probe = Probe { pixel, ray, color: tree.sum(), seen: None };
         let TermKind::Ray { hit: Some(hit), .. } = &tree.root.what else { return probe };
         let mut seen = ProbeHit {
             object: hit.object,

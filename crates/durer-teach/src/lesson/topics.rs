@@ -370,8 +370,8 @@ pub static TOPICS: [Topic; 18] = [
                 Carpenter, 1984). Before that all rays go to its middle, and shadows have hard edges.",
         equations: &["L = ∫ f V(p, q) L_e cos θ cos θ_q / |p - q|² dq", "one sample:   f V L_e cos θ / p_l(ω)"],
         places: &[
-            at("crates/durer-render/src/integrator/path/direct.rs", "fn direct"),
-            at("crates/durer-render/src/integrator/path/direct.rs", "fn visible"),
+            at("crates/durer-render/src/integrator/path/direct.rs", "fn add_direct"),
+            at("crates/durer-render/src/integrator/path/direct.rs", "fn visibility"),
             at("crates/durer-render/src/world/emitters/shape.rs", "fn sample"),
         ],
         shots: &[
@@ -388,9 +388,9 @@ pub static TOPICS: [Topic; 18] = [
                 scatters, and followed. Colours go from wall to wall, and no shadow is quite black.",
         equations: &["L_o = L_e + ∫ f L_i cos θ dω", "one sample:   L_e + f L_i cos θ / p_b(ω)"],
         places: &[
-            at("crates/durer-render/src/integrator/path.rs", "fn trace"),
-            at("crates/durer-render/src/integrator/path.rs", "fn scattered"),
-            at("crates/durer-render/src/integrator/path.rs", "fn indirect"),
+            at("crates/durer-render/src/integrator/path/mod.rs", "fn bounce"),
+            at("crates/durer-render/src/integrator/path/mod.rs", "fn shade"),
+            at("crates/durer-render/src/integrator/path/scatter.rs", "fn spawn"),
         ],
         shots: &[
             color("light straight from lamps", paths(0, BOTH)),
@@ -413,7 +413,7 @@ pub static TOPICS: [Topic; 18] = [
             "both:   w_l times the first + w_b times the second,   w_l = p_l² / (p_l² + p_b²),   w_b = 1 - w_l",
         ],
         places: &[
-            at("crates/durer-render/src/integrator/path/direct.rs", "fn power"),
+            at("crates/durer-render/src/integrator/path/direct.rs", "fn power_heuristic"),
             at("crates/durer-render/src/integrator/path/direct.rs", "fn of_light"),
             at("crates/durer-render/src/integrator/path/direct.rs", "fn of_direction"),
         ],
@@ -435,9 +435,9 @@ pub static TOPICS: [Topic; 18] = [
             "each sample looks less far:   r_(i+1)² = r_i² (i + 2/3) / (i + 1)",
         ],
         places: &[
-            at("crates/durer-render/src/integrator/path/photons.rs", "fn trace"),
-            at("crates/durer-render/src/integrator/path/photons.rs", "fn on_surface"),
-            at("crates/durer-render/src/integrator/path/photons.rs", "fn radius"),
+            at("crates/durer-render/src/integrator/path/photons/mod.rs", "fn trace"),
+            at("crates/durer-render/src/integrator/path/photons/map.rs", "fn on_surface"),
+            at("crates/durer-render/src/integrator/path/photons/mod.rs", "fn radius"),
         ],
         shots: &[color("paths alone", paths(u32::MAX, BOTH)), color("paths and photons", paths(u32::MAX, PHOTONS))],
         lacking: "nothing in it mirrors or refracts light of a lamp onto other things",
@@ -450,7 +450,7 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["n(λ) = A + B / λ²", "Abbe's number:   V = (n_d - 1) / (n_F - n_C)"],
         places: &[
             at("crates/durer-scene/src/material/principled.rs", "fn ior_at"),
-            at("crates/durer-render/src/integrator/path.rs", "fn kept"),
+            at("crates/durer-render/src/integrator/path/scatter.rs", "fn select_hero"),
         ],
         shots: &[
             color("one index for all wavelengths", paths(u32::MAX, Carriage { disperses: false, ..SPECTRAL })),

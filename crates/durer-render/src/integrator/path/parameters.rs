@@ -1,4 +1,4 @@
-//! What those who trace paths are told.
+//! Options of the path tracer, with and without photons.
 
 use super::{Path, Photons};
 use crate::integrator::{Parameters, Setup};
@@ -11,8 +11,9 @@ use std::sync::Arc;
 described! {
     /// all light
     Transport ["path" in set::DURER] {
-        /// Light that was scattered more than once is not brighter than this in a sample; takes
-        /// away bright specks, and light with them [default: no limit]
+        /// Largest brightness, in a sample, of light that was scattered more than once; each
+        /// contribution (one light seen from one vertex of a path) is clamped alone; removes bright
+        /// specks, and some light with them [default: no limit]
         clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
         /// What light is made of: rgb, or spectral (four wavelengths at a time: coloured light on
         /// coloured things, prisms) [default: rgb]

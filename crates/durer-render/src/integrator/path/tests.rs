@@ -3,7 +3,7 @@
 use super::*;
 use crate::compile::AccelKind;
 use crate::compile::testing::{self, read};
-use crate::integrator::{Direct, TraceNode, TraceRecorder, Tree};
+use crate::integrator::{Direct, TraceNode};
 use crate::render::Job;
 use durer_scene::dialect::Dialect;
 use durer_scene::math::fp;
@@ -13,6 +13,7 @@ mod caustics;
 mod media;
 mod sheets;
 mod sides;
+mod terms;
 
 /// The mean of many samples along a ray, and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
@@ -308,7 +309,7 @@ fn several_directions_under_surroundings_have_the_mean_of_one() {
         }
         let path = Path::new(&world, settings, Transport::default());
         let directions = if (x, y) == (1.0, -0.9) { 1 } else { 2 };
-        let rays: usize = (0..64).map(|sample| follow(&tree(&path, &ray, sample).root, directions)).sum();
+        let rays: usize = (0..64).map(|sample| follow(&terms::tree(&path, &ray, sample).root, directions)).sum();
         assert!(rays > 48, "{x} {y}: {rays}");
     }
 }
@@ -432,35 +433,5 @@ fn cameras_and_lights_without_extent_look_through_hidden_backs() {
             ),
         );
         assert_light(&format!("{corner} {sides}"), &world, to_origin(), 0, expected);
-    }
-}
-
-/// What a path tells of a sample, all of whose sums are looked at.
-fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
-    fn check(node: &TraceNode) {
-        assert_eq!(node.sum(), node.value, "{:?}", node.what);
-        node.terms.iter().for_each(check);
-    }
-    let id = SampleId::new(1, (0, 0), sample);
-    let mut account = TraceRecorder::default();
-    let seen = path.radiance(ray, id, &mut account);
-    let tree = account.into_tree().unwrap();
-    assert_eq!((tree.sum(), path.radiance(ray, id, &mut ())), (seen, seen));
-    check(&tree.root);
-    tree
-}
-
-#[test]
-fn what_a_path_tells_sums_to_its_light() {
-    let world = over_floor(
-        "PointLight { position 1 3 1 color 1 1 1 attenuation 0 0 1 }",
-        "Sphere { center 0 3 0 radius 0.5 } MaterialIndex 0 Sphere { center 1 0.5 0 radius 0.5 }",
-    );
-    let settings = Settings { bounces: 6, ..Job::default().settings };
-    for (sample, color) in (0..200).zip([ColorMode::Rgb, ColorMode::Spectral].into_iter().cycle()) {
-        let path = Path::new(&world, settings, Transport { clamp: Some(0.2), color, ..Transport::default() });
-        let tree = tree(&path, &to_origin(), sample);
-        let lanes = if color == ColorMode::Rgb { 3 } else { 4 };
-        assert_eq!(tree.root.value.numbers().len(), lanes);
     }
 }

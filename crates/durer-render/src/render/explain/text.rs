@@ -28,7 +28,8 @@ pub struct Names<'a> {
 pub struct TextLine {
     /// How deep it is indented.
     pub depth: usize,
-    /// What the term adds to the one above; `None` on lines that only tell more of the line before.
+    /// What the term adds: to the pixel in a path, else to the term above. `None` on lines that only
+    /// say more about the line before.
     pub adds: Option<TermValue>,
     /// The colour of what it adds.
     pub color: Color,
@@ -281,7 +282,7 @@ fn tree_lines(tree: &Tree, names: &Names, depth: usize, telling: &Telling, lines
 impl<'a> Context<'a> {
     fn of(tree: &'a Tree) -> Self {
         let (dir, n, to_light) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
-        let whole = brightness(tree.color(tree.root.contribution())).max(f32::MIN_POSITIVE);
+        let whole = brightness(tree.sum()).max(f32::MIN_POSITIVE);
         let gain = TermValue::Color(Color::ONE);
         Context { tree, gain, whole, dir, n, to_light, material: None, fresnel: None }
     }
@@ -334,6 +335,7 @@ fn node_lines(
         TermKind::OneWavelength { nm } => {
             format!("colours are spread: {} nm alone goes on, and counts for all four: {factor} · {value}", number(*nm))
         }
+        TermKind::Sky if node.throughput.is_some() => format!("background: {value}"),
         TermKind::Sky => "background".into(),
         TermKind::Emission { mis } => format!("light of its own: {value}{}", weight_text(*mis)),
         TermKind::Direct { light, to_light, distance, choice, pdf, bsdf, mis, shadow } => {
@@ -393,10 +395,13 @@ fn node_lines(
         }
         TermKind::Spent => "mirrored and transmitted light is left out: no more levels are wanted (--bounces)".into(),
     };
-    let contribution = node.contribution();
-    let of_whole = |node: &TraceNode, gain| brightness(at.tree.color(gain * node.contribution())) / at.whole;
-    let color = at.tree.color(contribution);
-    lines.push(TextLine { depth, adds: Some(contribution), color, share: of_whole(node, at.gain), text });
+    let of_whole = |node: &TraceNode, gain| {
+        let added = node.added().unwrap_or_else(|| gain * node.contribution());
+        brightness(at.tree.color(added)) / at.whole
+    };
+    let adds = node.added().unwrap_or_else(|| node.contribution());
+    let color = at.tree.color(adds);
+    lines.push(TextLine { depth, adds: Some(adds), color, share: of_whole(node, at.gain), text });
     let mut tell = |text: String| lines.push(TextLine::plain(depth + 1, text));
     more.into_iter().for_each(&mut tell);
     if depth >= telling.deepest && !node.terms.is_empty() {

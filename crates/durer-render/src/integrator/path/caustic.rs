@@ -1,0 +1,33 @@
+//! Light that photons bring to a vertex.
+
+use super::Path;
+use super::photons::Gathered;
+use super::radiance::{Contribution, Output};
+use super::state::{PathState, SampleContext};
+use super::vertex::{Vertex, VertexKind};
+use crate::integrator::trace::{TermKind, TraceListener};
+use durer_scene::spectrum::Spectrum;
+
+impl Path<'_> {
+    /// Adds the light of photons near a vertex.
+    pub(super) fn add_caustic<T: TraceListener>(
+        &self,
+        vertex: &Vertex,
+        state: &PathState,
+        context: &SampleContext,
+        output: &mut Output<T>,
+    ) {
+        let Some(map) = &context.photons else { return };
+        let max_bounces = self.max_depth() - state.depth;
+        let Gathered { light, photons, radius } = match &vertex.kind {
+            VertexKind::Surface(surface, shading, _) => map.on_surface(surface, shading, max_bounces),
+            VertexKind::Medium(point, dir, phase) => {
+                map.in_medium((point.as_vec3(), *dir), state.media.object(), phase, max_bounces)
+            }
+        };
+        if photons > 0 {
+            let contribution = Contribution { factor: Spectrum::ONE, light, scatterings: state.depth + 1 };
+            self.add(contribution, || TermKind::Photons { radius, photons }, state, context, output);
+        }
+    }
+}

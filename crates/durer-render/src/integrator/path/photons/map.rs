@@ -1,0 +1,187 @@
+//! Photon map of one sample: photons sorted into cells, and density estimates from those nearby.
+
+use crate::world::Shading;
+use durer_scene::math::Vec3;
+use durer_scene::medium::HenyeyGreenstein;
+use durer_scene::shape::Surface;
+use durer_scene::spectrum::{Lanes, Spectrum};
+use glam::DVec3;
+use std::f32::consts::PI;
+
+/// A photon where it was absorbed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Photon {
+    /// World space.
+    position: Vec3,
+    /// Unit direction to where it came from.
+    wi: Vec3,
+    /// Power by lane; in a medium, divided by the scattering coefficient.
+    power: Spectrum,
+    /// Number of delta bounces since the light.
+    bounces: u32,
+    pub(super) rest: Rest,
+}
+
+/// What absorbed a photon.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Rest {
+    Surface,
+    /// Medium of an object, by number; `None`: of the air.
+    Medium(Option<u32>),
+}
+
+/// Photons of one sample.
+#[derive(Debug)]
+pub struct PhotonMap {
+    pub(super) lanes: Lanes,
+    pub(super) on_surfaces: Cells,
+    pub(super) in_media: Cells,
+}
+
+/// Density estimate at a point.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathered {
+    /// Radiance that is scattered towards the path.
+    pub light: Spectrum,
+    /// Number of photons within the radius that count.
+    pub photons: usize,
+    /// Radius of the estimate in units of the world.
+    pub radius: f32,
+}
+
+/// Photons sorted by cells of a grid.
+#[derive(Debug)]
+pub(super) struct Cells {
+    /// Radius of estimates in units of the world; cells are two radii wide.
+    radius: f32,
+    corrected: bool,
+    /// Number of each photon's cell, ascending.
+    cells: Vec<u64>,
+    photons: Vec<Photon>,
+}
+
+/// Number of a cell: 21 bits along each axis.
+fn cell_of(place: glam::I64Vec3) -> u64 {
+    let part = |x: i64| (x as u64) & 0x1f_ffff;
+    part(place.x) | part(place.y) << 21 | part(place.z) << 42
+}
+
+impl Photon {
+    /// `None` if the power is infinite or NaN.
+    pub(super) fn new(position: Vec3, wi: Vec3, power: Spectrum, bounces: u32, rest: Rest) -> Option<Self> {
+        power.is_finite().then_some(Photon { position, wi, power, bounces, rest })
+    }
+}
+
+impl Cells {
+    pub(super) fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
+        // Photons of a cell stay in the order in which they were sent: sums are reproducible.
+        let cell = |photon: &Photon| cell_of(place(photon.position, radius, 0.0));
+        let mut order: Vec<(u64, u32)> = (0..).zip(photons).map(|(i, photon)| (cell(photon), i)).collect();
+        order.sort_unstable();
+        let photons = order.iter().map(|&(_, i)| photons[i as usize]).collect();
+        Cells { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
+    }
+
+    /// Sums `value` over the photons within the radius of a point that had at most `max_bounces`;
+    /// it gets the vector to the photon and its squared length.
+    fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> Gathered {
+        let mut gathered = Gathered { light: Spectrum::ZERO, photons: 0, radius: self.radius };
+        // Cells are two radii wide: those half a cell around the point hold all that is within a
+        // radius.
+        let low = place(point, self.radius, -0.5);
+        for corner in 0..8 {
+            let cell = cell_of(low + glam::I64Vec3::new(corner & 1, corner >> 1 & 1, corner >> 2));
+            let start = self.cells.partition_point(|&other| other < cell);
+            for (photon, _) in self.photons[start..].iter().zip(&self.cells[start..]).take_while(|pair| *pair.1 == cell)
+            {
+                let way = photon.position - point;
+                let distance = way.length_squared();
+                if distance >= self.radius * self.radius || photon.bounces > max_bounces {
+                    continue;
+                }
+                let value = value(photon, way, distance);
+                if value != Spectrum::ZERO {
+                    gathered.photons += 1;
+                    gathered.light += value;
+                }
+            }
+        }
+        gathered
+    }
+
+    /// Weight of a photon by its squared distance and its squared height over the surface; 0 if it
+    /// lies on another surface.
+    ///
+    /// A kernel of radius r has a bias of c r^2 to second order, and c r^2 / 2 with half the square.
+    /// Twice the latter less the former removes it (Richardson's extrapolation).
+    fn kernel(&self, distance: f32, beside: f32, kernel: fn(f32, f32) -> f32) -> f32 {
+        let square = self.radius * self.radius;
+        if beside > FLATNESS * square {
+            return 0.0;
+        }
+        let (whole, half) = (kernel(square, distance), 0.5 * square);
+        match self.corrected {
+            false => whole,
+            true if distance < half && beside <= FLATNESS * half => 2.0 * kernel(half, distance) - whole,
+            true => -whole,
+        }
+    }
+}
+
+impl PhotonMap {
+    /// What the lanes of its photons are.
+    pub fn lanes(&self) -> &Lanes {
+        &self.lanes
+    }
+
+    /// Light of photons near a surface point that the surface scatters. Photons with more than
+    /// `max_bounces` do not count.
+    pub fn on_surface(&self, surface: &Surface, shading: &Shading, max_bounces: u32) -> Gathered {
+        let cells = &self.on_surfaces;
+        cells.gather(surface.position, max_bounces, |photon, way, distance| {
+            let beside = way.dot(surface.n_geo);
+            let kernel = cells.kernel(distance, beside * beside, disc);
+            let cosine = shading.frame.normal.dot(photon.wi).abs();
+            if kernel == 0.0 || cosine <= 1e-4 {
+                return Spectrum::ZERO;
+            }
+            let (value, _) = shading.eval(photon.wi);
+            value * photon.power * (kernel / cosine)
+        })
+    }
+
+    /// Light of photons near a point in the medium of an object (`None`: of the air) that the medium
+    /// scatters along a unit direction. See [`PhotonMap::on_surface`].
+    pub fn in_medium(
+        &self,
+        (point, dir): (Vec3, Vec3),
+        object: Option<u32>,
+        phase: &HenyeyGreenstein,
+        max_bounces: u32,
+    ) -> Gathered {
+        let cells = &self.in_media;
+        cells.gather(point, max_bounces, |photon, _, distance| match photon.rest == Rest::Medium(object) {
+            true => photon.power * (phase.value(dir, photon.wi) * cells.kernel(distance, 0.0, ball)),
+            false => Spectrum::ZERO,
+        })
+    }
+}
+
+/// Largest squared height of a photon over a surface, as a fraction of the squared radius; higher
+/// photons lie on another surface.
+const FLATNESS: f32 = 0.1;
+
+/// Epanechnikov's kernel in the plane, by the squares of radius and distance.
+fn disc(square: f32, distance: f32) -> f32 {
+    2.0 / (PI * square) * (1.0 - distance / square)
+}
+
+/// Epanechnikov's kernel in space, by the squares of radius and distance.
+fn ball(square: f32, distance: f32) -> f32 {
+    15.0 / (8.0 * PI * square * square.sqrt()) * (1.0 - distance / square)
+}
+
+fn place(point: Vec3, radius: f32, shift: f64) -> glam::I64Vec3 {
+    (point.as_dvec3() / (2.0 * f64::from(radius)) + DVec3::splat(shift)).floor().as_i64vec3()
+}

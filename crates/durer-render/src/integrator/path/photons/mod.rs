@@ -1,0 +1,215 @@
+//! Caustics: light that delta lobes throw on other things, by photons.
+//!
+//! Paths from the camera find such light by chance or never. So photons are sent from the lights to
+//! all objects that mirror or refract, followed over delta lobes, and stored on the first surface
+//! with another lobe, or where a medium scatters them. The light there is a density estimate. Each
+//! sample of a pixel has photons of its own and a smaller radius than the sample before, so that
+//! the mean over samples converges to the truth.
+//!
+//! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
+//! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,
+//! 2011; in media: Jensen and Christensen, *Efficient Simulation of Light Transport in Scenes with
+//! Participating Media using Photon Maps*, 1998.
+
+use super::Path;
+use super::propagate::Event;
+use super::state::{DIMENSIONS, PathState, SampleContext};
+use super::vertex::VertexKind;
+use crate::integrator::media::Passage;
+use crate::world::emitters::LightId;
+use crate::world::emitters::emission::Beams;
+use crate::world::{Interaction, World};
+use durer_scene::math::Color;
+use durer_scene::sampler::SampleId;
+use durer_scene::spectrum::{Lanes, Spectrum};
+use map::{Cells, Photon, Rest};
+pub use map::{Gathered, PhotonMap};
+use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::f32::consts::PI;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Fraction of new photons that is kept as radii shrink. Source: Kaplanyan and Dachsbacher,
+/// *Adaptive Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
+const ALPHA: f64 = 2.0 / 3.0;
+
+/// Most maps that are kept for use again.
+const MAX_KEPT: usize = 32;
+
+/// Photons of a picture: a map for each sample of its pixels, made on demand.
+#[derive(Debug)]
+pub struct Photons {
+    beams: Beams,
+    seed: u64,
+    count: u32,
+    /// Radius of the first sample in units of the world.
+    radius: f32,
+    /// Whether the bias of the estimate is removed to second order.
+    corrected: bool,
+    kept: Mutex<Kept>,
+}
+
+/// Maps with their samples, the oldest first.
+type Kept = VecDeque<(u32, Arc<PhotonMap>)>;
+
+/// Pairs of random numbers that emission takes.
+const FIRST_DIMENSION: u32 = 3;
+
+/// Radius in media, where photons are sparser, over that on surfaces.
+const MEDIUM_RADIUS: f32 = 3.0;
+
+impl Photons {
+    /// Sends `count` photons for each sample. `radius` of the first sample is in units of the world;
+    /// without one, it follows from the smallest object that photons are sent to.
+    pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
+        let beams = Beams::new(world);
+        let usual = 0.05 * beams.finest();
+        let radius = radius.unwrap_or(if usual.is_finite() { usual } else { 1.0 });
+        Photons { beams, seed, count, radius, corrected: false, kept: Mutex::default() }
+    }
+
+    /// Removes the bias of the estimates to second order in the radius, for more noise. The
+    /// difference to the uncorrected light estimates the bias.
+    pub fn corrected(self) -> Self {
+        Photons { corrected: true, ..self }
+    }
+
+    /// Whether photons are sent to an object.
+    pub(super) fn reaches(&self, object: u32) -> bool {
+        self.beams.reaches(object)
+    }
+
+    /// Radius of a sample: r_(i+1)^2 = r_i^2 (i + alpha) / (i + 1).
+    fn radius(&self, sample: u32) -> f32 {
+        let square = (1..=sample).map(f64::from).fold(1.0, |square, i| square * (i + ALPHA) / (i + 1.0));
+        self.radius * square.sqrt() as f32
+    }
+
+    /// Photon map of a sample.
+    pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        // Made by one thread: a parallel job might steal work that waits for the lock.
+        Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
+    }
+
+    /// Makes the map of a sample in advance, on all threads.
+    pub fn prepare(&self, path: &Path, sample: u32) {
+        let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if Self::found(&lock(), sample).is_none() {
+            let map = self.make(path, sample, true);
+            Self::keep(&mut lock(), sample, map);
+        }
+    }
+
+    fn found(kept: &Kept, sample: u32) -> Option<Arc<PhotonMap>> {
+        kept.iter().find(|(number, _)| *number == sample).map(|(_, map)| map.clone())
+    }
+
+    fn keep(kept: &mut Kept, sample: u32, map: PhotonMap) -> Arc<PhotonMap> {
+        let map = Arc::new(map);
+        kept.push_back((sample, map.clone()));
+        if kept.len() > MAX_KEPT {
+            kept.pop_front();
+        }
+        map
+    }
+
+    fn make(&self, path: &Path, sample: u32, parallel: bool) -> PhotonMap {
+        // Photons have the wavelengths of the sample's paths.
+        let lanes = Lanes::new(path.transport.color, SampleId::new(self.seed, (0, 0), sample).wavelength());
+        let one = |number: u32| self.trace(path, sample, number, lanes);
+        let found: Vec<Photon> = match parallel {
+            true => (0..self.count).into_par_iter().flat_map_iter(one).collect(),
+            false => (0..self.count).flat_map(one).collect(),
+        };
+        let (surfaces, media): (Vec<_>, Vec<_>) = found.into_iter().partition(|photon| photon.rest == Rest::Surface);
+        let radius = self.radius(sample);
+        PhotonMap {
+            lanes,
+            on_surfaces: Cells::new(&surfaces, radius, self.corrected),
+            in_media: Cells::new(&media, MEDIUM_RADIUS * radius, self.corrected),
+        }
+    }
+
+    /// Sends one photon and returns where it was absorbed.
+    fn trace(&self, path: &Path, pass: u32, number: u32, lanes: Lanes) -> Option<Photon> {
+        // The photons of a pass are stratified over lights and directions.
+        let id = SampleId::new(self.seed ^ OTHER_SEED, (pass, 0), number);
+        let [light, point, direction] = [0, 1, 2].map(|dimension| id.pair(dimension));
+        let emitted = self.beams.emit(path.world, light, point, direction)?;
+        let power = emitted.power / self.count as f32;
+        let context = SampleContext { lanes, photons: None };
+        let mut state = path.start(emitted.ray, id);
+        let mut at = Interaction::NOWHERE;
+        let mut is_first = true;
+        loop {
+            let hit = path.world.closest_along(&mut state.ray, &mut ());
+            let event = path.propagate(hit, &mut at, &mut state, &context, &mut ());
+            // Light that a medium scatters before any delta lobe is left to paths.
+            if let Event::Medium(point, dir, _) = event
+                && !is_first
+            {
+                let object = state.media.object();
+                let scattering = path.world.medium(object)?.scattering(point, &lanes);
+                let power =
+                    Spectrum::select(scattering.cmpgt(Spectrum::ZERO), state.throughput / scattering, Spectrum::ZERO);
+                return Photon::new(point.as_vec3(), -dir, power, state.depth, Rest::Medium(object));
+            }
+            let Event::Surface(passage) = event else { return None };
+            if is_first {
+                // Other objects on the way are lit by light sampling.
+                if !self.beams.reaches(at.hit.object) {
+                    return None;
+                }
+                // A light with a position is as strong as it is where the photon arrives.
+                let color = match emitted.light {
+                    Some(light) => {
+                        let seen = path.world.illuminate(light as usize, at.surface.point());
+                        PI * seen.color * seen.distance * seen.distance
+                    }
+                    None => Color::ONE,
+                };
+                let of_light = || emitted.light.and_then(|light| path.world.illuminant(LightId::Light(light)));
+                let of_material = || emitted.material.and_then(|material| path.world.own_illuminant(material));
+                state.throughput *= lanes.light_of(power * color, || of_light().or_else(of_material));
+            }
+            let eta = passage.as_ref().map_or(1.0, Passage::eta);
+            let shading = path.world.shading(&at, eta, &lanes);
+            path.select_hero(&at, &mut state, &context, &mut ());
+            // Black surfaces are not seen, but their irradiance may be measured.
+            if !is_first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
+                let wi = -state.ray.dir().normalize();
+                return Photon::new(at.surface.position, wi, state.throughput, state.depth, Rest::Surface);
+            }
+            let vertex = VertexKind::Surface(&at.surface, &shading, passage.as_ref());
+            let numbers = id.at(FIRST_DIMENSION + state.depth * DIMENSIONS as u32);
+            let sample = vertex.sample(numbers.pair(0).x, numbers.pair(1))?;
+            if sample.pdf != 0.0 || state.depth > path.max_depth() {
+                return None;
+            }
+            // Radiance is denser where the index of refraction is higher, power is not.
+            let weight = sample.weight * if vertex.refracts(sample.lobe) { eta * eta } else { 1.0 };
+            let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
+            let survival = survival.clamp(0.0, 1.0);
+            if numbers.pair(2).x >= survival || survival.is_nan() {
+                return None;
+            }
+            state = PathState {
+                throughput: state.throughput * weight / survival,
+                depth: state.depth + 1,
+                monochromatic: state.monochromatic,
+                ..PathState::new(
+                    vertex.spawn(sample.wi),
+                    state.sample,
+                    vertex.media_behind(sample.wi).cloned().unwrap_or(state.media),
+                )
+            };
+            is_first = false;
+        }
+    }
+}
+
+/// Separates the random numbers of photons from those of paths.
+const OTHER_SEED: u64 = 0x7068_6f74_6f6e_7321;
+
+mod map;

@@ -1,0 +1,150 @@
+//! Flight of a ray to the next vertex: through media, and past surfaces that change nothing.
+
+use super::Path;
+use super::state::{PathState, SampleContext};
+use crate::integrator::media::{Media, Passage};
+use crate::integrator::trace::TraceListener;
+use crate::world::{Hit, Interaction};
+use durer_scene::math::{Ray64, Vec3, gamma};
+use durer_scene::medium::{Flight, HenyeyGreenstein, Way};
+use durer_scene::spectrum::{Lanes, Spectrum};
+use glam::DVec3;
+use std::sync::atomic::Ordering::Relaxed;
+
+/// End of a ray's flight.
+pub(super) enum Event {
+    /// Roulette or absorption ended the path.
+    Absorbed,
+    /// The ray left the scene.
+    Escaped,
+    /// A medium through which lights are visible scattered it at a point, along a unit direction.
+    Medium(DVec3, Vec3, HenyeyGreenstein),
+    /// It hit a surface; with a passage where light may enter or leave the object.
+    Surface(Option<Passage>),
+}
+
+/// Most scatterings inside one object before the path is given up.
+const MAX_WALK: u32 = 10_000;
+
+impl Path<'_> {
+    /// Follows a state's ray from its first hit to the next vertex. Updates the ray, throughput,
+    /// media and camera distance; writes the hit surface into `at`, which is reused since a copy of
+    /// it is slow.
+    pub(super) fn propagate<T: TraceListener>(
+        &self,
+        hit: Option<Hit>,
+        at: &mut Interaction,
+        state: &mut PathState,
+        context: &SampleContext,
+        tally: &mut T,
+    ) -> Event {
+        let (event, transmittance) = self.fly(hit, at, state, context, tally);
+        tally.weigh(state.node, context.term(transmittance), context.term(state.throughput * state.share));
+        event
+    }
+
+    /// [`Path::propagate`], with what the flight leaves of the light.
+    #[inline(always)]
+    fn fly<T: TraceListener>(
+        &self,
+        mut hit: Option<Hit>,
+        at: &mut Interaction,
+        state: &mut PathState,
+        context: &SampleContext,
+        tally: &mut T,
+    ) -> (Event, Spectrum) {
+        let lanes = &context.lanes;
+        // The ray from beyond the last surface that was passed.
+        let mut rest = state.ray;
+        let mut transmittance = Spectrum::ONE;
+        let (mut walked, mut layers, mut scatterings) = (0.0, 0, 0);
+        let mut numbers = state.sample.stream(state.depth, 0);
+        let before = state.throughput;
+        loop {
+            'passed: {
+                let ray = &state.ray;
+                let stretch = ray.dir().length();
+                let length = hit.map_or(f32::INFINITY, |hit| hit.t * stretch);
+                if let Some(medium) = self.world.medium(state.media.object()) {
+                    let way = Way { origin: ray.origin(), dir: ray.dir() / stretch, from: walked, to: length };
+                    match medium.flight(&way, state.throughput, lanes, &mut || numbers.number()) {
+                        Flight::Passed(left) => transmittance *= left,
+                        Flight::Scattered(distance, left) => {
+                            transmittance *= left;
+                            state.throughput = before * transmittance;
+                            // Never beyond the surface that bounds the medium.
+                            let distance = distance.min(length * (1.0 - gamma(16)));
+                            let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
+                            if self.world.is_open(state.media.object()) {
+                                return (Event::Medium(point, way.dir, medium.phase), transmittance);
+                            }
+                            // No light is visible from inside: walk on until the object is left.
+                            scatterings += 1;
+                            let survival = match scatterings {
+                                0..16 => 1.0,
+                                _ => state.throughput.max_element().min(1.0),
+                            };
+                            let is_cancelled = scatterings % 256 == 0 && self.is_cancelled();
+                            if scatterings > MAX_WALK || is_cancelled || numbers.number() >= survival {
+                                return (Event::Absorbed, transmittance);
+                            }
+                            transmittance /= survival;
+                            let dir = medium.phase.sample(way.dir, numbers.pair());
+                            state.ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
+                            (rest, walked) = (state.ray, 0.0);
+                            (state.prev_vertex, state.camera_distance) = (None, None);
+                            state.throughput = before * transmittance;
+                            break 'passed;
+                        }
+                    }
+                    state.throughput = before * transmittance;
+                }
+                let Some(hit) = hit else { return (Event::Escaped, transmittance) };
+                walked = length;
+                self.world.meet(ray, hit, at);
+                if let (Some(cone), Some(before)) = (&self.cone, state.camera_distance) {
+                    at.width = cone.width_at(before + length);
+                }
+                if self.world.hides_backs() && state.depth == 0 && self.world.is_hidden(ray.dir(), at) {
+                    rest.rounded.t_min = hit.t;
+                    break 'passed;
+                }
+                if self.world.has_cutouts() {
+                    let opacity = self.world.opacity(at);
+                    layers += 1;
+                    // A cutout is not a bounce.
+                    if opacity < 1.0 && state.sample.layer(state.depth, layers) >= opacity {
+                        rest.rounded.t_min = hit.t;
+                        break 'passed;
+                    }
+                }
+                match self.passage(at, &state.media, lanes) {
+                    Some(passage) if self.is_nothing(at, &passage) => {
+                        (state.media, rest.rounded.t_min) = (passage.behind, hit.t);
+                    }
+                    passage => {
+                        state.camera_distance = state.camera_distance.map(|before| before + length);
+                        return (Event::Surface(passage), transmittance);
+                    }
+                }
+            }
+            hit = self.world.closest_along(&mut rest, tally);
+        }
+    }
+
+    /// Whether the render was cancelled.
+    pub(super) fn is_cancelled(&self) -> bool {
+        self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
+    }
+
+    /// How light goes through the surface of an object that lets it in.
+    pub(super) fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
+        let ior = self.world.refracts(at, lanes)?;
+        Some(media.nested_passage(self.world, at, ior, at.inside()))
+    }
+
+    /// Whether a surface only bounds a medium and does not deflect light.
+    pub(super) fn is_nothing(&self, at: &Interaction, passage: &Passage) -> bool {
+        passage.hidden || passage.here == passage.there && self.world.is_interface(at)
+    }
+}

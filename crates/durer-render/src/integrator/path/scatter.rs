@@ -1,0 +1,118 @@
+//! Scattering at a vertex: the next direction, Russian roulette, and the ray that goes on.
+
+use super::state::{Dimension, PathState, PrevVertex, SampleContext};
+use super::vertex::{BsdfSample, Vertex};
+use super::{Path, PathStack};
+use crate::integrator::trace::{Bounce, RayKind, TermKind, TraceListener};
+use crate::world::Interaction;
+use durer_scene::spectrum::Spectrum;
+
+/// Highest probability with which roulette lets a path go on.
+const MAX_SURVIVAL: f32 = 0.95;
+
+impl Path<'_> {
+    /// Follows the sampled direction from a vertex, or several if the vertex splits: the active
+    /// state becomes the first branch, the others are pending. Returns whether a state is active.
+    pub(super) fn scatter<T: TraceListener>(
+        &self,
+        vertex: &Vertex,
+        sample: Option<BsdfSample>,
+        stack: &mut PathStack,
+        context: &SampleContext,
+        tally: &mut T,
+    ) -> bool {
+        if vertex.directions == 1 {
+            return sample.is_some_and(|sample| self.spawn(vertex, &sample, &mut stack.active, context, tally));
+        }
+        for number in 0..vertex.directions {
+            let mut branch = stack.active.branch(number, vertex.directions);
+            let vertex = Vertex { random: branch.vertex_sample().pairs(), ..*vertex };
+            if let Some(sample) = vertex.sample_bsdf()
+                && self.spawn(&vertex, &sample, &mut branch, context, tally)
+            {
+                stack.pending.push(branch);
+            }
+        }
+        // Depth first, in the order of their numbers.
+        stack.pending.reverse();
+        false
+    }
+
+    /// Turns a state into that of the ray along a sampled direction. Returns false if roulette ends
+    /// the path; the state is undefined then.
+    fn spawn<T: TraceListener>(
+        &self,
+        vertex: &Vertex,
+        sample: &BsdfSample,
+        state: &mut PathState,
+        context: &SampleContext,
+        tally: &mut T,
+    ) -> bool {
+        let throughput = state.throughput * sample.weight;
+        let survival = match state.depth {
+            0..3 => 1.0,
+            _ => throughput.max_element().min(MAX_SURVIVAL),
+        };
+        if survival < 1.0 && vertex.random(Dimension::Survival).x >= survival {
+            return false;
+        }
+        let is_delta = sample.pdf == 0.0;
+        if is_delta {
+            // No light sample competes with a delta lobe, unless light samples see through it.
+            state.prev_vertex = state.prev_vertex.filter(|_| self.is_seen_through(vertex, sample.lobe, state));
+            state.is_caustic |= state.had_rough_bounce;
+        } else {
+            let pdf = vertex.directions as f32 * sample.pdf;
+            state.prev_vertex = Some(PrevVertex { receiver: vertex.receiver, pdf, tries: vertex.tries });
+            state.is_caustic = false;
+            state.had_rough_bounce = true;
+            state.camera_distance = None;
+        }
+        if let Some(media) = vertex.kind.media_behind(sample.wi) {
+            state.media = media.clone();
+        }
+        state.throughput = throughput / survival;
+        state.depth += 1;
+        state.ray = vertex.kind.spawn(sample.wi);
+        let node = tally.begin(state.node, || TermKind::Ray {
+            from: match (is_delta, sample.transmits) {
+                (true, false) => RayKind::Reflected,
+                (true, true) => RayKind::Transmitted,
+                (false, _) => RayKind::Scattered,
+            },
+            ray: (&state.ray).into(),
+            weight: (state.throughput * state.share).max_element(),
+            hit: None,
+            bounce: Some({
+                let (lobe, probability) = vertex.kind.lobe(sample.lobe);
+                Bounce { lobe, probability, pdf: sample.pdf, survival, directions: vertex.directions }
+            }),
+        });
+        let factor = sample.weight / (survival * vertex.directions as f32);
+        tally.end(node, context.term(factor), context.term(Spectrum::ONE), context.term(Spectrum::ZERO));
+        state.node = node;
+        true
+    }
+
+    /// Ends all wavelengths but the hero at a surface that disperses light: the others would be
+    /// refracted elsewhere, and the hero stands for all four.
+    pub(super) fn select_hero<T: TraceListener>(
+        &self,
+        at: &Interaction,
+        state: &mut PathState,
+        context: &SampleContext,
+        tally: &mut T,
+    ) {
+        let Some(nm) = context.lanes.hero().filter(|_| !state.monochromatic && self.world.disperses(at)) else {
+            return;
+        };
+        let kept = Spectrum::X * 4.0;
+        state.throughput *= kept;
+        state.monochromatic = true;
+        let node = tally.begin(state.node, || TermKind::OneWavelength { nm });
+        let [one, zero] = [Spectrum::ONE, Spectrum::ZERO].map(|value| context.term(value));
+        tally.end(node, context.term(kept), one, zero);
+        tally.weigh(node, one, context.term(state.throughput * state.share));
+        state.node = node;
+    }
+}
