@@ -11,7 +11,7 @@ use super::{
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_image::{self as image, Encoded, ImageError};
 use durer_scene::describe::FileName;
-use durer_scene::light::Light;
+use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::staging::Sides;
 use durer_scene::scene::{Axis, Background, Group, Object, Picture, PictureBytes, Scene, Spanned};
@@ -117,7 +117,7 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
 /// lights. The picture's upper border is `up`.
 fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
-    let near = |light: &Spanned<Light>| !matches!(light.value, Light::Directional(_));
+    let near = |light: &Spanned<Light>| light.value.position().is_some();
     scene.lights.get_or_insert_default().retain(near);
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
     let sides = Sides::new(up);

@@ -286,7 +286,7 @@ macro_rules! described {
                 $crate::describe::Field {
                     name: stringify!($field),
                     kind: <$type as $crate::describe::FieldType>::KIND,
-                    required: $crate::described!(@$presence),
+                    required: $crate::describe::presence::$presence,
                     rule: $rule,
                     spellings: &[$(($word, $fset)),+],
                     doc: concat!($($fdoc, "\n"),+),
@@ -310,17 +310,60 @@ macro_rules! described {
             }
         }
     };
-    (@required) => { true };
-    (@optional) => { false };
+    // A field without a doc comment: says so, and goes on with the rest.
+    (
+        $(#[doc = $doc:literal])+
+        $name:ident [$($keyword:literal in $kset:expr),+] {
+            $( $(#[doc = $fdoc:literal])*
+               $field:ident : $type:ty = $default:expr, $presence:ident, $rule:expr, [$($word:literal in $fset:expr),+]; )*
+        }
+    ) => {
+        $( $crate::described!(@documented $name $field [$($fdoc)*]); )*
+        $crate::described! {
+            $(#[doc = $doc])+
+            $name [$($keyword in $kset),+] {
+                $( $(#[doc = $fdoc])* #[doc = ""]
+                   $field : $type = $default, $presence, $rule, [$($word in $fset),+]; )*
+            }
+        }
+    };
+    (@documented $name:ident $field:ident [$($doc:literal)+]) => {};
+    (@documented $name:ident $field:ident []) => {
+        compile_error!(concat!(
+            "described!: `", stringify!($name), "::", stringify!($field),
+            "` needs a doc comment before it: its meaning, unit and range",
+        ));
+    };
+    // The struct without a doc comment.
+    ($name:ident [$($keyword:tt)+] $fields:tt) => {
+        compile_error!(concat!("described!: `", stringify!($name), "` needs a doc comment before it: what it is"));
+    };
+}
+
+/// The words that say whether a scene must give a field.
+#[allow(non_upper_case_globals)]
+#[doc(hidden)]
+pub mod presence {
+    /// Every scene gives it.
+    pub const required: bool = true;
+    /// It has a default.
+    pub const optional: bool = false;
 }
 
 /// A closed list of described things: an `enum` with one variant each, which delegates to it.
 ///
-/// After `=>` stands a macro that takes the variants' names, and makes what else the enum
-/// delegates.
+/// After the colon stands the trait that all its types implement; after `=>` a macro that takes the
+/// variants' names and implements the trait for the enum.
 #[macro_export]
 macro_rules! described_list {
-    ($(#[doc = $doc:literal])+ $name:ident => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
+    ($(#[doc = $doc:literal])+ $name:ident : $trait:path => $delegate:ident { $($variant:ident($type:ty),)+ }) => {
+        // Before all else, so that the first error names the trait and points at the type.
+        const _: fn() = || {
+            fn is_described<T: $crate::describe::Describe>() {}
+            fn is_one<T: $trait>() {}
+            $( is_described::<$type>(); is_one::<$type>(); )+
+        };
+
         $delegate!($($variant),+);
 
         $(#[doc = $doc])+

@@ -2,7 +2,7 @@
 
 use durer::light::{Emitter, Light};
 use durer::math::{Aabb, Vec3};
-use durer::shape::Primitive;
+use durer::shape::Shape;
 use durer::world::{Geometry, Object, World};
 use serde_json::{Value, json};
 
@@ -10,8 +10,6 @@ use serde_json::{Value, json};
 const MOST: usize = 400;
 /// And so many triangles of a mesh.
 const MAX_TRIANGLES: usize = 600;
-/// Points of a circle.
-const ROUND: usize = 32;
 
 /// The outlines of all objects, each a row of points.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
@@ -35,36 +33,18 @@ pub fn lights(world: &World) -> Vec<Value> {
 fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
     let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
     let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];
+    let boxed = || object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds));
     match &object.geometry {
-        Geometry::Primitive(Primitive::Sphere(sphere)) => {
-            let circle = |u: Vec3, v: Vec3| -> Vec<Vec3> {
-                let point = |i: usize| {
-                    let angle = std::f64::consts::TAU * i as f64 / ROUND as f64;
-                    let (s, c) = durer::math::fp::sin_cos_degrees(angle.to_degrees());
-                    sphere.center + sphere.radius * (c as f32 * u + s as f32 * v)
-                };
-                (0..=ROUND).map(point).collect()
-            };
-            [circle(Vec3::X, Vec3::Y), circle(Vec3::Y, Vec3::Z), circle(Vec3::Z, Vec3::X)].map(place).to_vec()
-        }
-        Geometry::Primitive(Primitive::Triangle(triangle)) => vec![place(closed(triangle.corners()))],
-        Geometry::Primitive(Primitive::Plane(plane)) => {
-            // A grid around the place below the middle of all things.
-            let n = plane.normal.normalize_or(Vec3::Y);
-            let (u, v) = n.any_orthonormal_pair();
-            let middle = ends.center();
-            let foot = middle - (middle.dot(n) - plane.offset / plane.normal.length()) * n;
-            let half = 0.4 * ends.size().length().max(1e-3);
-            let across = |a: Vec3, b: Vec3| (-3..=3).map(move |i| foot + half * i as f32 / 3.0 * a + half * b);
-            let lines = |a: Vec3, b: Vec3| across(a, -b).zip(across(a, b)).map(|(p, q)| vec![p, q]).collect::<Vec<_>>();
-            [lines(u, v), lines(v, u)].concat().into_iter().map(place).collect()
-        }
+        Geometry::Primitive(shape) => match shape.outline(ends) {
+            Some(lines) => lines.into_iter().map(place).collect(),
+            None => boxed(),
+        },
         Geometry::Mesh(tree) => {
             let count = tree.mesh.len();
             let some = (0..count).step_by(count.div_ceil(MAX_TRIANGLES).max(1));
             some.map(|i| place(closed(tree.mesh.corners(i as u32)))).collect()
         }
-        _ => object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds)),
+        Geometry::Solid(_) => boxed(),
     }
 }
 

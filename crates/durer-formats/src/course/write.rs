@@ -236,7 +236,7 @@ impl Writer {
                 // The node has placed it.
                 w.component("Light", &Light::Point(PointLight { position: Vec3::ZERO, ..point.clone() }));
             }
-            _ => w.component("Light", light),
+            Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => w.component("Light", light),
         });
     }
 

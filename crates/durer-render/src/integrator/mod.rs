@@ -142,7 +142,7 @@ macro_rules! integrators {
     ($($variant:ident($type:ty),)+) => {
         described_list! {
             /// Which integrator makes a picture, with what it alone is told.
-            Method => delegate { $($variant($type),)+ }
+            Method: Parameters => delegate { $($variant($type),)+ }
         }
 
         /// One of the integrators, over a world.

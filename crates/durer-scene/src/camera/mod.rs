@@ -40,6 +40,7 @@ pub use thin_lens::ThinLensCamera;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
+        #[deny(clippy::missing_trait_methods)]
         impl Projection for Camera {
             fn pose(&self) -> Pose {
                 match self { $(Camera::$variant(c) => c.pose(),)+ }
@@ -80,7 +81,7 @@ macro_rules! delegate {
 
 described_list! {
     /// A camera.
-    Camera => delegate {
+    Camera: Projection => delegate {
         Perspective(perspective::PerspectiveCamera),
         Orthographic(orthographic::OrthographicCamera),
         Pinhole(pinhole::PinholeCamera),

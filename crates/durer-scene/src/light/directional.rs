@@ -41,7 +41,43 @@ impl Emitter for DirectionalLight {
         self.color
     }
 
+    fn color_mut(&mut self) -> &mut Color {
+        &mut self.color
+    }
+
+    fn spectrum(&self) -> Option<&FileName> {
+        self.spectrum.as_ref()
+    }
+
     fn spread(&self) -> f32 {
         self.spread.unwrap_or(0.0)
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        None
+    }
+
+    fn direction(&self) -> Option<Vec3> {
+        Some(self.direction)
+    }
+
+    fn cone(&self) -> Option<f32> {
+        None
+    }
+
+    fn place(&self) -> Option<(Vec3, Color)> {
+        None
+    }
+
+    fn profile(&self) -> Option<&FileName> {
+        None
+    }
+
+    fn in_profile(&self, dir: Vec3) -> Vec3 {
+        dir
     }
 }

@@ -58,6 +58,14 @@ impl Emitter for PhotometricLight {
         self.color
     }
 
+    fn color_mut(&mut self) -> &mut Color {
+        &mut self.color
+    }
+
+    fn spectrum(&self) -> Option<&FileName> {
+        self.spectrum.as_ref()
+    }
+
     /// Its flux is known with the file.
     fn in_units(&self) -> Self {
         self.clone()
@@ -76,6 +84,27 @@ impl Emitter for PhotometricLight {
         let front = self.front - down * self.front.dot(down);
         let front = front.try_normalize().unwrap_or_else(|| down.any_orthonormal_vector());
         Vec3::new(dir.dot(front), dir.dot(front.cross(down)), dir.dot(down))
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        Some(self.position)
+    }
+
+    fn direction(&self) -> Option<Vec3> {
+        Some(self.direction)
+    }
+
+    /// Most lamps light the half that their lower side faces.
+    fn cone(&self) -> Option<f32> {
+        Some(90.0)
+    }
+
+    fn spread(&self) -> f32 {
+        0.0
     }
 }
 

@@ -50,6 +50,14 @@ impl Emitter for PointLight {
         self.color
     }
 
+    fn color_mut(&mut self) -> &mut Color {
+        &mut self.color
+    }
+
+    fn spectrum(&self) -> Option<&FileName> {
+        self.spectrum.as_ref()
+    }
+
     fn in_units(&self) -> Self {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / (4.0 * PI))) else { return self.clone() };
         // What arrives is what a white matte surface shows: illuminance over pi.
@@ -73,5 +81,29 @@ impl Emitter for PointLight {
     fn place(&self) -> Option<(Vec3, Color)> {
         let squared = |a: &Vec3| a.y == 0.0 && a.z > 0.0;
         self.attenuation.filter(squared).map(|a| (self.position, self.color / a.z))
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        Some(self.position)
+    }
+
+    fn direction(&self) -> Option<Vec3> {
+        None
+    }
+
+    fn cone(&self) -> Option<f32> {
+        None
+    }
+
+    fn spread(&self) -> f32 {
+        0.0
+    }
+
+    fn profile(&self) -> Option<&FileName> {
+        None
+    }
+
+    fn in_profile(&self, dir: Vec3) -> Vec3 {
+        dir
     }
 }

@@ -88,6 +88,14 @@ impl Emitter for SpotLight {
         self.color
     }
 
+    fn color_mut(&mut self) -> &mut Color {
+        &mut self.color
+    }
+
+    fn spectrum(&self) -> Option<&FileName> {
+        self.spectrum.as_ref()
+    }
+
     fn in_units(&self) -> Self {
         let Some(candela) = self.candela.or(self.lumens.map(|lumens| lumens / self.fills())) else {
             return self.clone();
@@ -105,5 +113,29 @@ impl Emitter for SpotLight {
 
     fn place(&self) -> Option<(Vec3, Color)> {
         Some((self.position, self.color))
+    }
+
+    fn position(&self) -> Option<Vec3> {
+        Some(self.position)
+    }
+
+    fn direction(&self) -> Option<Vec3> {
+        Some(self.direction)
+    }
+
+    fn cone(&self) -> Option<f32> {
+        Some(self.angle)
+    }
+
+    fn spread(&self) -> f32 {
+        0.0
+    }
+
+    fn profile(&self) -> Option<&FileName> {
+        None
+    }
+
+    fn in_profile(&self, dir: Vec3) -> Vec3 {
+        dir
     }
 }

@@ -34,7 +34,7 @@ macro_rules! delegate {
 
 described_list! {
     /// A material made of two earlier ones, mixed by a pattern in space.
-    Solid => delegate {
+    Solid: Pattern => delegate {
         Checkerboard(checkerboard::Checkerboard),
         Noise(solid_noise::SolidNoise),
         Marble(marble::Marble),

@@ -2,7 +2,7 @@
 
 use super::chord::Chord;
 use super::cylinder::{Axis, BASE, SIDE, TOP};
-use super::{MeshData, Shape, ShapeHit, Surface, exactly, inset, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -24,7 +24,7 @@ described! {
 }
 
 impl Cone {
-    pub(super) fn axis(&self) -> Axis {
+    fn own_axis(&self) -> Axis {
         Axis::new(self.base, self.top)
     }
 
@@ -48,7 +48,7 @@ impl Cone {
     /// the height.
     ///
     /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
-    pub(super) fn crossings_about(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let (r, dr) = (self.radius_at(axis, y), self.growth(axis) * slope);
@@ -70,11 +70,23 @@ impl Cone {
 
 impl Shape for Cone {
     fn bounds(&self) -> Option<Aabb> {
-        Some(self.axis().bounds(self.radii()))
+        Some(self.own_axis().bounds(self.radii()))
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        self.crossings_about(&self.axis(), line, offer);
+        self.cut(&self.own_axis(), line, offer);
+    }
+
+    fn axis(&self) -> Option<Axis> {
+        Some(self.own_axis())
+    }
+
+    #[inline(always)]
+    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        match axis {
+            Some(axis) => self.cut(axis, line, offer),
+            None => self.crossings(line, offer),
+        }
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
@@ -83,7 +95,7 @@ impl Shape for Cone {
     }
 
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
-        let (axis, [base, top]) = (self.axis(), self.radii());
+        let (axis, [base, top]) = (self.own_axis(), self.radii());
         if crossing.uv.x != SIDE as f32 {
             let face = crossing.uv.x as u32;
             return axis.cap(point, face, if face == TOP { top } else { base });
@@ -102,19 +114,35 @@ impl Shape for Cone {
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
-        let axis = self.axis();
+        let axis = self.own_axis();
         let (y, around) = axis.split(point - axis.base);
         Some(y > 0.0 && y < axis.height && around.length() < self.radius_at(&axis, y))
     }
 
     fn validate(&self) -> Result<(), String> {
-        if self.axis().height == 0.0 {
+        if self.own_axis().height == 0.0 {
             Err("`base` and `top` of a `Cone` must not be the same point".into())
         } else if self.base_radius == 0.0 && self.top_radius == 0.0 {
             Err("one of the radii of a `Cone` must be more than 0".into())
         } else {
             Ok(())
         }
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
     }
 
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
@@ -127,5 +155,9 @@ impl Shape for Cone {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::round([(self.base, self.base_radius), (self.top, self.top_radius)]))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

@@ -1,7 +1,7 @@
 //! The box whose faces are parallel to the coordinate planes.
 
 use super::chord::Chord;
-use super::{MeshData, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -65,6 +65,27 @@ impl Shape for Cuboid {
         }
     }
 
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        let corner = |i: usize| {
+            let pick = |axis: usize| if i >> axis & 1 == 1 { self.max[axis] } else { self.min[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        };
+        let sides = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
+        sides.map(|side| side.map(corner).to_vec()).to_vec()
+    }
+
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
         None
     }
@@ -75,5 +96,9 @@ impl Shape for Cuboid {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::block(self.min, self.max))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

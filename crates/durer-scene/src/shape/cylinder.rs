@@ -1,7 +1,9 @@
 //! The cylinder between two points, with its caps.
 
 use super::chord::Chord;
-use super::{INSET, MeshData, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded, tessellate};
+use super::{
+    Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded, tessellate,
+};
 use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
@@ -88,13 +90,13 @@ impl Axis {
 }
 
 impl Cylinder {
-    pub(super) fn axis(&self) -> Axis {
+    fn own_axis(&self) -> Axis {
         Axis::new(self.base, self.top)
     }
 
     /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across
     /// it.
-    pub(super) fn crossings_about(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+    fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
@@ -112,11 +114,23 @@ impl Cylinder {
 
 impl Shape for Cylinder {
     fn bounds(&self) -> Option<Aabb> {
-        Some(self.axis().bounds([f64::from(self.radius); 2]))
+        Some(self.own_axis().bounds([f64::from(self.radius); 2]))
     }
 
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        self.crossings_about(&self.axis(), line, offer);
+        self.cut(&self.own_axis(), line, offer);
+    }
+
+    fn axis(&self) -> Option<Axis> {
+        Some(self.own_axis())
+    }
+
+    #[inline(always)]
+    fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        match axis {
+            Some(axis) => self.cut(axis, line, offer),
+            None => self.crossings(line, offer),
+        }
     }
 
     fn centered(&self) -> Option<(Self, Vec3)> {
@@ -125,7 +139,7 @@ impl Shape for Cylinder {
     }
 
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
-        let (axis, r) = (self.axis(), f64::from(self.radius));
+        let (axis, r) = (self.own_axis(), f64::from(self.radius));
         if crossing.uv.x != SIDE as f32 {
             return axis.cap(point, crossing.uv.x as u32, r);
         }
@@ -138,16 +152,32 @@ impl Shape for Cylinder {
     }
 
     fn inside(&self, point: DVec3) -> Option<bool> {
-        let axis = self.axis();
+        let axis = self.own_axis();
         let (y, around) = axis.split(point - axis.base);
         Some(y > 0.0 && y < axis.height && around.length() < f64::from(self.radius))
     }
 
     fn validate(&self) -> Result<(), String> {
-        match self.axis().height > 0.0 {
+        match self.own_axis().height > 0.0 {
             true => Ok(()),
             false => Err("`base` and `top` of a `Cylinder` must not be the same point".into()),
         }
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
     }
 
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
@@ -170,5 +200,9 @@ impl Shape for Cylinder {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::round([(self.base, self.radius), (self.top, self.radius)]))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

@@ -1,6 +1,6 @@
 //! The disc, whole or with a hole.
 
-use super::{MeshData, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
 use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
@@ -67,6 +67,26 @@ impl Shape for Disc {
         }
     }
 
+    fn inside(&self, _: DVec3) -> Option<bool> {
+        None
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        Some(Flip::Negate(&["normal"]))
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let n = self.normal.normalize_or(Vec3::Y);
         let frame = Frame::around(n);
@@ -81,5 +101,9 @@ impl Shape for Disc {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::ring(self.center, self.normal, [self.inner_radius, self.radius]))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

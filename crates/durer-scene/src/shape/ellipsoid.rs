@@ -1,6 +1,6 @@
 //! The ellipsoid whose axes are parallel to the coordinate axes.
 
-use super::{MeshData, Shape, ShapeHit, Surface, padded, tessellate, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -63,6 +63,22 @@ impl Shape for Ellipsoid {
         }
     }
 
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
         None
     }
@@ -73,5 +89,9 @@ impl Shape for Ellipsoid {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::ellipsoid(self.center, self.radii))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

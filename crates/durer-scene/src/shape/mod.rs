@@ -50,6 +50,8 @@ pub use voxels::VoxelGrid;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
+        // A method left out here would have its default for every shape.
+        #[deny(clippy::missing_trait_methods)]
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
                 match self { $(Primitive::$variant(s) => s.bounds(),)+ }
@@ -63,17 +65,15 @@ macro_rules! delegate {
             fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
                 match self { $(Primitive::$variant(s) => s.crossings(line, offer),)+ }
             }
+            fn axis(&self) -> Option<Axis> {
+                match self { $(Primitive::$variant(s) => Shape::axis(s),)+ }
+            }
+            #[inline(always)]
+            fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+                match self { $(Primitive::$variant(s) => s.crossings_about(axis, line, offer),)+ }
+            }
             fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface {
                 match self { $(Primitive::$variant(s) => s.surface(point, crossing),)+ }
-            }
-            fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-                match self { $(Primitive::$variant(s) => s.emitter(place),)+ }
-            }
-            fn tangent(&self, point: Vec3) -> Option<Vec3> {
-                match self { $(Primitive::$variant(s) => s.tangent(point),)+ }
-            }
-            fn to_mesh(&self) -> Option<MeshData> {
-                match self { $(Primitive::$variant(s) => s.to_mesh(),)+ }
             }
             fn inside(&self, point: DVec3) -> Option<bool> {
                 match self { $(Primitive::$variant(s) => s.inside(point),)+ }
@@ -87,13 +87,34 @@ macro_rules! delegate {
             fn validate(&self) -> Result<(), String> {
                 match self { $(Primitive::$variant(s) => s.validate(),)+ }
             }
+            fn flip(&self) -> Option<Flip> {
+                match self { $(Primitive::$variant(s) => s.flip(),)+ }
+            }
+            fn plane(&self) -> Option<&Plane> {
+                match self { $(Primitive::$variant(s) => s.plane(),)+ }
+            }
+            fn polygons(&self) -> Vec<Vec<Vec3>> {
+                match self { $(Primitive::$variant(s) => s.polygons(),)+ }
+            }
+            fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+                match self { $(Primitive::$variant(s) => s.emitter(place),)+ }
+            }
+            fn tangent(&self, point: Vec3) -> Option<Vec3> {
+                match self { $(Primitive::$variant(s) => s.tangent(point),)+ }
+            }
+            fn to_mesh(&self) -> Option<MeshData> {
+                match self { $(Primitive::$variant(s) => s.to_mesh(),)+ }
+            }
+            fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+                match self { $(Primitive::$variant(s) => s.outline(around),)+ }
+            }
         }
     };
 }
 
 described_list! {
     /// A shape that is given in the scene file itself.
-    Primitive => delegate {
+    Primitive: Shape => delegate {
         Sphere(sphere::Sphere),
         Plane(plane::Plane),
         Triangle(triangle::Triangle),
@@ -108,25 +129,15 @@ described_list! {
     }
 }
 
-impl Primitive {
-    /// The axis of what is round about one.
-    pub fn axis(&self) -> Option<Axis> {
-        match self {
-            Primitive::Cylinder(s) => Some(s.axis()),
-            Primitive::Cone(s) => Some(s.axis()),
-            _ => None,
-        }
-    }
-
-    /// [`Shape::crossings`] by an axis that is known.
-    #[inline(always)]
-    pub fn crossings_about(&self, axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
-        match (self, axis) {
-            (Primitive::Cylinder(s), Some(axis)) => s.crossings_about(axis, line, offer),
-            (Primitive::Cone(s), Some(axis)) => s.crossings_about(axis, line, offer),
-            _ => self.crossings(line, offer),
-        }
-    }
+/// Edit of a scene file that makes the back of a surface its front.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Flip {
+    /// Exchange any two of its corners: these two, say.
+    Corners([&'static str; 2]),
+    /// Exchange its two edges.
+    Edges([&'static str; 2]),
+    /// Change the sign of these fields, of which the first is the normal.
+    Negate(&'static [&'static str]),
 }
 
 /// Where a ray meets a shape.
@@ -249,7 +260,8 @@ fn exactly<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]>
     points.iter().all(exact).then(|| points.map(|p| p - center))
 }
 
-/// What every shape can do.
+/// What every shape can do. A method has a default only if the default is right for every shape,
+/// and another body merely faster.
 pub trait Shape {
     /// Bounds in object space; `None` for a shape without end.
     fn bounds(&self) -> Option<Aabb>;
@@ -281,8 +293,49 @@ pub trait Shape {
         first
     }
 
+    /// Axis of a solid of revolution, to be computed once for many rays: see
+    /// [`Shape::crossings_about`].
+    fn axis(&self) -> Option<Axis> {
+        None
+    }
+
+    /// [`Shape::crossings`], given what [`Shape::axis`] returned.
+    #[inline(always)]
+    fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
+        self.crossings(line, offer);
+    }
+
     /// The surface at a crossing, next to a point that is on it but for rounding.
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
+
+    /// Whether a point is inside; `None` for shapes that are surfaces only.
+    fn inside(&self, point: DVec3) -> Option<bool>;
+
+    /// Whether a line comes from inside the shape; `false` for every shape with bounds.
+    fn starts_inside(&self, line: &Line) -> bool;
+
+    /// The shape near the origin of coordinates, and how far it was moved; `None` if it has no
+    /// position, or single precision does not hold the result exactly.
+    fn centered(&self) -> Option<(Self, Vec3)>
+    where
+        Self: Sized;
+
+    /// Checks its fields together. Each by itself has its rule in the statement.
+    ///
+    /// # Errors
+    ///
+    /// A sentence that names the fields.
+    fn validate(&self) -> Result<(), String>;
+
+    /// Edit that turns a flat shape round; `None` for shapes that are not flat.
+    fn flip(&self) -> Option<Flip>;
+
+    /// The shape itself, if it is a plane without end, with all else on one side or the other.
+    fn plane(&self) -> Option<&Plane>;
+
+    /// Its flat convex faces, each by its corners in order, in object space. Empty for shapes that
+    /// have a curved face or edge, or no end.
+    fn polygons(&self) -> Vec<Vec<Vec3>>;
 
     /// Surface to sample as a light, in world space, and its outward unit normal there; the normal is
     /// zero where it varies. `None`: its light is found by rays that hit it alone, which is noisy.
@@ -295,33 +348,9 @@ pub trait Shape {
     /// Triangles that approximate it, in object space. `None` for a shape without end.
     fn to_mesh(&self) -> Option<MeshData>;
 
-    /// Whether a point is inside; `None` for shapes that are surfaces only.
-    fn inside(&self, _point: DVec3) -> Option<bool> {
-        None
-    }
-
-    /// Whether a line comes from inside the shape, as it may with shapes without end.
-    fn starts_inside(&self, _line: &Line) -> bool {
-        false
-    }
-
-    /// The same shape near the origin of coordinates, and how far it was moved; `None` where it has
-    /// no place, or single precision does not hold the result exactly.
-    fn centered(&self) -> Option<(Self, Vec3)>
-    where
-        Self: Sized,
-    {
-        None
-    }
-
-    /// Checks its fields together. Each by itself has its rule in the statement.
-    ///
-    /// # Errors
-    ///
-    /// A sentence that names the fields.
-    fn validate(&self) -> Result<(), String> {
-        Ok(())
-    }
+    /// Lines that show it in a drawing, each a row of points, in object space. A shape without end
+    /// draws its part near `around`. `None`: the box of its bounds is drawn.
+    fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>>;
 }
 
 /// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from

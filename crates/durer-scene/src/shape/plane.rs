@@ -1,6 +1,6 @@
 //! The plane normal · p = offset, without end.
 
-use super::{MeshData, Shape, ShapeHit, Surface, Uv};
+use super::{Flip, MeshData, Shape, ShapeHit, Surface, Uv};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -71,6 +71,26 @@ impl Shape for Plane {
         }
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        None
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        Some(Flip::Negate(&["normal", "offset"]))
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        Some(self)
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
         None
     }
@@ -81,5 +101,17 @@ impl Shape for Plane {
 
     fn to_mesh(&self) -> Option<MeshData> {
         None
+    }
+
+    /// A grid around the foot of the perpendicular from the middle of `around`.
+    fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        let n = self.normal.normalize_or(Vec3::Y);
+        let (u, v) = n.any_orthonormal_pair();
+        let middle = around.center();
+        let foot = middle - (middle.dot(n) - self.offset / self.normal.length()) * n;
+        let half = 0.4 * around.size().length().max(1e-3);
+        let across = |a: Vec3, b: Vec3| (-3..=3).map(move |i| foot + half * i as f32 / 3.0 * a + half * b);
+        let lines = |a: Vec3, b: Vec3| across(a, -b).zip(across(a, b)).map(|(p, q)| vec![p, q]).collect::<Vec<_>>();
+        Some([lines(u, v), lines(v, u)].concat())
     }
 }

@@ -1,6 +1,6 @@
 //! The general quadric: where a polynomial of degree two in x, y and z is zero.
 
-use super::{MeshData, Shape, ShapeHit, Surface, padded, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -114,6 +114,22 @@ impl Shape for Quadric {
         }
     }
 
+    fn centered(&self) -> Option<(Self, Vec3)> {
+        None
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
         None
     }
@@ -123,6 +139,10 @@ impl Shape for Quadric {
     }
 
     fn to_mesh(&self) -> Option<MeshData> {
+        None
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
         None
     }
 }

@@ -1,6 +1,6 @@
 //! The rectangle, or any parallelogram.
 
-use super::{MeshData, Shape, ShapeHit, Surface, inset, padded, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, inset, padded, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -92,6 +92,27 @@ impl Shape for Rectangle {
         }
     }
 
+    fn inside(&self, _: DVec3) -> Option<bool> {
+        None
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        Some(Flip::Edges(["edge0", "edge1"]))
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        let (a, b) = (self.corner + self.edge0, self.corner + self.edge1);
+        vec![vec![self.corner, a, a + self.edge1, b]]
+    }
+
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let n = self.edge0.as_dvec3().cross(self.edge1.as_dvec3()).normalize_or_zero().as_vec3();
         let edges = [place.vector(self.edge0), place.vector(self.edge1)];
@@ -104,5 +125,9 @@ impl Shape for Rectangle {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::parallelogram(self.corner, [self.edge0, self.edge1]))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

@@ -1,10 +1,10 @@
 //! The sphere |p - center|^2 = radius^2.
 
-use super::{MeshData, Shape, ShapeHit, Surface, Uv, tessellate};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
-use crate::math::{Aabb, Line, Ray, Vec2, Vec3, gamma};
+use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 
 described! {
@@ -99,6 +99,26 @@ impl Shape for Sphere {
         }
     }
 
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| place.vector(self.radius * axis));
         let radius = axes[0].length();
@@ -115,5 +135,18 @@ impl Shape for Sphere {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::ball(self.center, self.radius))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        /// Points of a circle.
+        const STEPS: u32 = 32;
+        let circle = |u: Vec3, v: Vec3| {
+            let point = |i: u32| {
+                let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(STEPS));
+                self.center + self.radius * (cos as f32 * u + sin as f32 * v)
+            };
+            (0..=STEPS).map(point).collect()
+        };
+        Some(vec![circle(Vec3::X, Vec3::Y), circle(Vec3::Y, Vec3::Z), circle(Vec3::Z, Vec3::X)])
     }
 }

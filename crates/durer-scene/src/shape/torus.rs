@@ -1,6 +1,6 @@
 //! The torus: all points at one distance from a circle.
 
-use super::{MeshData, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
+use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -110,6 +110,22 @@ impl Shape for Torus {
         }
     }
 
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        None
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        Vec::new()
+    }
+
     fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
         None
     }
@@ -120,5 +136,9 @@ impl Shape for Torus {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::torus(self.center, self.axis, [self.major_radius, self.minor_radius]))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        None
     }
 }

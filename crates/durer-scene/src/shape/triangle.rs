@@ -1,7 +1,7 @@
 //! A single triangle.
 
 use super::watertight::{self, WatertightRay};
-use super::{INSET, MeshData, Shape, ShapeHit, Surface, Uv, exactly, tessellate};
+use super::{Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, exactly, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
 use crate::light::{EmitterShape, Placement};
@@ -63,6 +63,30 @@ impl Shape for Triangle {
         Surface { uv: Uv::At(crossing.uv), ..triangle_surface(self.corners(), None, crossing.uv) }
     }
 
+    fn inside(&self, _: DVec3) -> Option<bool> {
+        None
+    }
+
+    fn starts_inside(&self, _: &Line) -> bool {
+        false
+    }
+
+    fn validate(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    fn flip(&self) -> Option<Flip> {
+        Some(Flip::Corners(["vertex1", "vertex2"]))
+    }
+
+    fn plane(&self) -> Option<&Plane> {
+        None
+    }
+
+    fn polygons(&self) -> Vec<Vec<Vec3>> {
+        vec![self.corners().to_vec()]
+    }
+
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         Some(EmitterShape::triangle(self.corners(), place))
     }
@@ -73,6 +97,10 @@ impl Shape for Triangle {
 
     fn to_mesh(&self) -> Option<MeshData> {
         Some(tessellate::triangle(self.corners()))
+    }
+
+    fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
+        Some(vec![vec![self.vertex0, self.vertex1, self.vertex2, self.vertex0]])
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::Emitter as _;
 use durer_scene::math::{Ray, Vec3};
 
 /// A beam that holds a smaller share of what is seen holds nothing of it.
@@ -45,11 +45,7 @@ pub(super) fn within(grid: &ProbeGrid, light: usize, places: &[Vec3]) -> f32 {
 
 /// Where the beam of a light goes, if it has one and misses what is seen.
 pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
-    let angle = match &grid.world().lights()[light] {
-        Light::Spot(spot) => spot.angle,
-        Light::Photometric(_) => 90.0,
-        _ => return None,
-    };
+    let angle = grid.world().lights()[light].cone()?;
     let places = places(grid);
     let held = within(grid, light, &places);
     if places.is_empty() || held > if angle <= PENCIL { LITTLE } else { NOTHING } {
@@ -60,7 +56,8 @@ pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
 
 /// Whether the middle of a beam meets the scene.
 fn at_something(grid: &ProbeGrid, light: usize) -> bool {
-    let Light::Spot(spot) = &grid.world().lights()[light] else { return false };
-    let ray = Ray::new(spot.position, spot.direction.normalize_or(Vec3::NEG_Y));
+    let light = &grid.world().lights()[light];
+    let (Some(position), Some(direction)) = (light.position(), light.direction()) else { return false };
+    let ray = Ray::new(position, direction.normalize_or(Vec3::NEG_Y));
     grid.world().closest(&ray, &mut ()).is_some()
 }

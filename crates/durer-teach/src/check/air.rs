@@ -3,7 +3,7 @@
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
 use durer_diag::Diagnostic;
-use durer_scene::light::Light;
+use durer_scene::light::Emitter as _;
 use durer_scene::math::{Color, fp};
 
 /// Where less than this is left of what is behind it, fog is a wall.
@@ -50,8 +50,8 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
     } else if fog.place.is_none() {
         let sky = world.environment().is_some() || world.cube_map().is_some() || world.background() != Color::ZERO;
-        let suns = world.lights().iter().any(|light| matches!(light, Light::Directional(_)));
-        let near = world.lights().iter().any(|light| !matches!(light, Light::Directional(_)))
+        let suns = world.lights().iter().any(|light| light.position().is_none());
+        let near = world.lights().iter().any(|light| light.position().is_some())
             || world.objects().iter().any(|object| world.may_shine(object.material));
         if sky && !near || suns {
             let bounds = world.bounds();

@@ -4,6 +4,7 @@ use super::aim::{Aim, places, within};
 use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
 use super::lights::{all_fail, useless, written};
 use super::scene_probe::SceneProbe;
+use super::shapes::{point, spot};
 use durer_diag::Diagnostic;
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Vec3, fp};
@@ -18,11 +19,8 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
         let all = if things.is_empty() { places(scout) } else { things };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
-        let (word, direction) = match &light.value {
-            Light::Spot(spot) => ("this spotlight", spot.direction),
-            Light::Photometric(lamp) => ("this measured lamp", lamp.direction),
-            _ => return diagnostic,
-        };
+        let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
+        let word = if light.value.profile().is_some() { "this measured lamp" } else { "this spotlight" };
         // Turned round it is most often what was meant.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
@@ -42,7 +40,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
 /// Cones that hold next to nothing of what is seen.
 pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Narrow, |diagnostic, light| {
-        let Light::Spot(spot) = &light.value else { return diagnostic };
+        let Some(spot) = spot(&light.value) else { return diagnostic };
         let degrees = number(spot.angle.to_degrees().round().clamp(1.0, 180.0));
         let message = format!("the cone of this spotlight is {} degrees wide only", number(spot.angle));
         let diagnostic = Diagnostic { message, ..diagnostic };
@@ -78,7 +76,7 @@ fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Li
 pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.iter().flatten();
     let say = |light: &Spanned<Light>| {
-        let Light::Spot(spot) = &light.value else { return None };
+        let spot = spot(&light.value)?;
         if spot.inner_angle <= spot.angle {
             return None;
         }
@@ -97,7 +95,7 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
 fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
-    let Light::Point(point) = &scout.world().lights()[light] else { return None };
+    let point = point(&scout.world().lights()[light])?;
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
     let world = scout.world();
     let steps = (0..26).map(|i| {
@@ -118,7 +116,9 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for light in 0..scout.world().lights().len().min(super::finding::MAX_ALIKE) {
         let Some((near, object)) = touching(scout, light) else { continue };
-        let Some((lamp, Light::Point(point))) = written(scout, light).map(|lamp| (lamp, &lamp.value)) else { continue };
+        let Some((lamp, point)) = written(scout, light).and_then(|lamp| Some((lamp, point(&lamp.value)?))) else {
+            continue;
+        };
         let mut away: Vec<f32> = places.iter().map(|place| (*place - point.position).length()).collect();
         away.sort_by(f32::total_cmp);
         let lit: Vec<f32> =

@@ -232,10 +232,12 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()
     {
         // A light that fades may be as strong as it must, so that not too much of it arrives.
-        let fades = !matches!(light, Light::Directional(_))
-            && !matches!(light, Light::Point(point) if point.attenuation.is_none());
         // Of lamps in candela nobody expects 1.
-        let candela = matches!(light, Light::Spot(_) | Light::Photometric(_));
+        let (fades, candela) = match light {
+            Light::Directional(_) => (false, false),
+            Light::Point(point) => (point.attenuation.is_some(), false),
+            Light::Spot(_) | Light::Photometric(_) => (true, true),
+        };
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
         // Under paths light is in units of its own, and the exposure makes a picture of it.

@@ -2,14 +2,13 @@
 
 use super::finding::{Finding, MAX_SOUGHT, number};
 use super::scene_probe::SceneProbe;
+use super::shapes::is_ball;
 use super::verdict::Verdict;
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Span};
-use durer_render::world::Geometry;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Aabb, fp};
 use durer_scene::scene::{MatrixOp, Node, Object};
-use durer_scene::shape::Primitive;
 
 /// What spans fewer pixels cannot be recognised.
 const FEWEST_PIXELS: f32 = 6.0;
@@ -152,7 +151,7 @@ fn is_harm(scout: &SceneProbe, object: u32) -> bool {
     let visibilities = scout.visibilities();
     let hides = visibilities.contains(&Visibility::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
-    let ball = matches!(&scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Sphere(_)));
+    let ball = is_ball(&scout.world().objects()[object as usize]);
     // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
     if swallows(scout, object) {
         return true;

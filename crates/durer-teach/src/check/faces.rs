@@ -1,10 +1,11 @@
 //! Flat faces that lie in one another: of two, one is seen at random.
 
 use super::scene_probe::SceneProbe;
-use durer_render::world::{Geometry, Object};
+use super::shapes::shape;
+use durer_render::world::Object;
 use durer_scene::camera::Projection;
 use durer_scene::math::Vec3;
-use durer_scene::shape::Primitive;
+use durer_scene::shape::Shape as _;
 
 /// Of more things, none are looked at.
 const MAX_THINGS: usize = 300;
@@ -24,29 +25,24 @@ impl Face {
 
 fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     let world = |corners: &[Vec3]| corners.iter().map(|p| object.world_point(*p)).collect::<Vec<Vec3>>();
-    match &object.geometry {
-        Geometry::Primitive(Primitive::Rectangle(r)) => {
-            let (a, b) = (r.corner + r.edge0, r.corner + r.edge1);
-            vec![Face { object: number, corners: world(&[r.corner, a, a + r.edge1, b]), outwards: None }]
+    let Some(shape) = shape(object) else { return Vec::new() };
+    let polygons = shape.polygons();
+    // Triangles are often written by the hundred, and share edges: planes alone are compared with
+    // them, see `objects::in_plane`.
+    let mut faces: Vec<Face> = polygons
+        .iter()
+        .filter(|polygon| polygon.len() > 3)
+        .map(|polygon| Face { object: number, corners: world(polygon), outwards: None })
+        .collect();
+    if shape.flip().is_none() {
+        let corners = || polygons.iter().flatten();
+        let middle = object.world_point(corners().sum::<Vec3>() / corners().count().max(1) as f32);
+        for face in &mut faces {
+            let n = face.normal();
+            face.outwards = Some(if n.dot(face.corners[0] - middle) < 0.0 { -n } else { n });
         }
-        Geometry::Primitive(Primitive::Cuboid(cuboid)) => {
-            let corner = |i: usize| {
-                let pick = |axis: usize| if i >> axis & 1 == 1 { cuboid.max[axis] } else { cuboid.min[axis] };
-                Vec3::new(pick(0), pick(1), pick(2))
-            };
-            let sides = [[0, 2, 6, 4], [1, 3, 7, 5], [0, 1, 5, 4], [2, 3, 7, 6], [0, 1, 3, 2], [4, 5, 7, 6]];
-            let middle = object.world_point(0.5 * (cuboid.min + cuboid.max));
-            let side = |places: [usize; 4]| {
-                let corners = world(&places.map(corner));
-                let mut face = Face { object: number, corners, outwards: None };
-                let n = face.normal();
-                face.outwards = Some(if n.dot(face.corners[0] - middle) < 0.0 { -n } else { n });
-                face
-            };
-            sides.map(side).into()
-        }
-        _ => Vec::new(),
     }
+    faces
 }
 
 /// Whether two faces lie in one plane and cover a part of each other.

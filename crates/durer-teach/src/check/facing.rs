@@ -3,30 +3,63 @@
 use super::finding::{Finding, MAX_SOUGHT, counted};
 use super::mesh_files::topology::Topology;
 use super::scene_probe::SceneProbe;
+use super::shapes::{plane, shape, triangle};
 use durer_diag::{Diagnostic, Severity};
-use durer_render::world::Geometry;
+use durer_render::world::Object;
+use durer_scene::describe::{DescribedList as _, Value};
 use durer_scene::math::{Affine, Vec3};
-use durer_scene::shape::Primitive;
+use durer_scene::shape::{Flip, Shape as _};
 
-/// The text change that turns a flat shape round.
-fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
-    let span = scout.object_span(object);
-    let Geometry::Primitive(shape) = &scout.world().objects()[object as usize].geometry else { return diagnostic };
-    match shape {
-        Primitive::Triangle(_) => match (scout.value(span, &["vertex1"]), scout.value(span, &["vertex2"])) {
-            (Some(b), Some(c)) => {
-                diagnostic.fix(b, scout.text(c)).fix(c, scout.text(b)).help("exchange `vertex1` and `vertex2`")
+/// What to write so that a flat shape faces the other way.
+pub(super) fn flip_text(flip: Flip) -> String {
+    match flip {
+        Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("exchange `{a}` and `{b}`"),
+        Flip::Negate([normal]) => format!("turn its `{normal}`"),
+        Flip::Negate(fields) => {
+            let [normal, rest] = [&fields[..1], &fields[1..]].map(|fields| fields.join("` and `"));
+            format!("turn its `{normal}`, and the sign of its `{rest}` with it")
+        }
+    }
+}
+
+/// The diagnostic with the edit that turns a flat shape round; `None` if it is not flat, or a field
+/// is not written.
+pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
+    let shape = shape(&scout.world().objects()[object as usize])?;
+    let value = |field: &str| scout.value(scout.object_span(object), &[field]);
+    let mut diagnostic = diagnostic.clone();
+    match shape.flip()? {
+        Flip::Corners([a, b]) | Flip::Edges([a, b]) => {
+            let (a, b) = (value(a)?, value(b)?);
+            diagnostic = diagnostic.fix(a, scout.text(b)).fix(b, scout.text(a));
+        }
+        Flip::Negate(fields) => {
+            for &name in fields {
+                let text = match shape.get(shape.fields().iter().position(|field| field.name == name)?)? {
+                    Value::Vec3(v) => super::finding::vector(-v),
+                    Value::Float(x) => super::finding::number(-x),
+                    Value::Int(_) | Value::Path(_) | Value::Word(_) | Value::Rows(_) => return None,
+                };
+                diagnostic = diagnostic.fix(value(name)?, text);
             }
-            _ => diagnostic,
+        }
+    }
+    Some(diagnostic)
+}
+
+/// How a flat shape that the course's programs have is turned round.
+fn course_flip(object: &Object) -> Option<Flip> {
+    shape(object).filter(|shape| !shape.is_ours())?.flip()
+}
+
+/// The text change that turns a flat shape of the course's programs round.
+fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
+    match course_flip(&scout.world().objects()[object as usize]) {
+        Some(flip) => match flipped(scout, &diagnostic, object) {
+            Some(flipped) => flipped.help(flip_text(flip)),
+            None => diagnostic,
         },
-        Primitive::Plane(plane) => match (scout.value(span, &["normal"]), scout.value(span, &["offset"])) {
-            (Some(n), Some(d)) => diagnostic
-                .fix(n, super::finding::vector(-plane.normal))
-                .fix(d, super::finding::number(-plane.offset))
-                .help("turn its `normal`, and the sign of its `offset` with it"),
-            _ => diagnostic,
-        },
-        _ => diagnostic,
+        None => diagnostic,
     }
 }
 
@@ -34,10 +67,7 @@ fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic
 /// note on flat shapes, which have a front that was meant to be seen.
 pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     let shaded = scout.subject.job.settings.shade_back;
-    let is_flat = |i: usize| {
-        let shape = &scout.world().objects()[i].geometry;
-        matches!(shape, Geometry::Primitive(Primitive::Triangle(_) | Primitive::Plane(_)))
-    };
+    let is_flat = |i: usize| course_flip(&scout.world().objects()[i]).is_some();
     let count = scout.world().objects().len();
     let (mut seen, mut backs, mut black) = (vec![0; count], vec![0; count], false);
     for (_, surface) in scout.seen() {
@@ -61,8 +91,11 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
                 .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
             // A plane with normal and offset turned is the same plane, and looks the same where
             // backs are shaded.
-            let plane = matches!(scout.world().objects()[i].geometry, Geometry::Primitive(Primitive::Plane(_)));
-            return Finding::from(if plane { note } else { turned(scout, note, i as u32) });
+            return Finding::from(if plane(&scout.world().objects()[i]).is_some() {
+                note
+            } else {
+                turned(scout, note, i as u32)
+            });
         }
         let diagnostic = Diagnostic::warning(message)
             .at(scout.object_span(i as u32))
@@ -81,7 +114,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
 pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
     for (i, object) in scout.world().objects().iter().enumerate() {
-        if matches!(&object.geometry, Geometry::Primitive(Primitive::Triangle(_))) {
+        if triangle(object).is_some() {
             match soups.iter_mut().rev().take(8).find(|soup| soup.0 == object.to_world) {
                 Some(soup) => soup.1.push(i as u32),
                 None => soups.push((object.to_world, vec![i as u32])),
@@ -92,10 +125,7 @@ pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 fn turned_of(scout: &SceneProbe, soup: &[u32]) -> Vec<Finding> {
-    let corners = |&i: &u32| match &scout.world().objects()[i as usize].geometry {
-        Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
-        _ => [Vec3::ZERO; 3],
-    };
+    let corners = |&i: &u32| triangle(&scout.world().objects()[i as usize]).unwrap_or([Vec3::ZERO; 3]);
     let positions: Vec<Vec3> = soup.iter().flat_map(corners).collect();
     let triangles: Vec<[u32; 3]> = (0..soup.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let topology = Topology::of(&positions, &triangles);

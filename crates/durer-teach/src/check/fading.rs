@@ -3,23 +3,24 @@
 use super::finding::{Finding, number, vector};
 use super::lights::{each, place, useless, written};
 use super::scene_probe::SceneProbe;
+use super::shapes::point;
 use super::verdict::{Verdict, divisor};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::dialect::Dialect;
-use durer_scene::light::{Emitter as _, Light};
+use durer_scene::light::Emitter as _;
 use durer_scene::math::Vec3;
 
 pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     each(scout, |light, verdict| {
         let Verdict::Faint(most) = verdict else { return None };
-        let message = match written(scout, light)?.value {
-            Light::Directional(_) => format!("this light adds {} at most", number(most)),
-            _ => format!("this light fades to {} before it arrives", number(most)),
+        let message = match written(scout, light)?.value.position() {
+            None => format!("this light adds {} at most", number(most)),
+            Some(_) => format!("this light fades to {} before it arrives", number(most)),
         };
         let (diagnostic, span) = useless(scout, light, message)?;
         let factor = 0.8 / most.max(1e-30);
         let written = &written(scout, light)?.value;
-        let Light::Point(point) = written else {
+        let Some(point) = point(written) else {
             let color = written.color() * factor;
             let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
             return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
@@ -60,7 +61,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Whether a light that is divided by other factors would arrive as bright as lights do.
 fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
-    let Light::Point(point) = &scout.world().lights()[light] else { return false };
+    let Some(point) = point(&scout.world().lights()[light]) else { return false };
     let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
     let left = faces.map(|(probe, seen)| {
         let d = (probe.ray.at(seen.t) - point.position).length();
@@ -112,9 +113,9 @@ pub(super) fn divides(scout: &SceneProbe) -> Vec<Finding> {
                     None if scout.subject.dialect == Dialect::F16 => "write a `falloff`, as `falloff 0.05`",
                     None => "`attenuation 1 0 0` is light that does not fade",
                 });
-            let triple = written(scout, light).is_some_and(
-                |l| matches!(&l.value, Light::Point(point) if point.attenuation.is_some() && point.falloff.is_none()),
-            );
+            let triple = written(scout, light).is_some_and(|l| {
+                point(&l.value).is_some_and(|point| point.attenuation.is_some() && point.falloff.is_none())
+            });
             let diagnostic = match value {
                 Some(value) if triple => diagnostic.fix(value, "1 0 0").at(value),
                 _ => diagnostic.at(value.unwrap_or(span)),

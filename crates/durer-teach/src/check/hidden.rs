@@ -3,12 +3,12 @@
 use super::finding::{Finding, counted, number, percent, vector};
 use super::objects::empty_solids;
 use super::scene_probe::SceneProbe;
+use super::shapes::plane;
 use super::visibility::{Visibility, has_eye, points, rays_to};
 use durer_diag::{Diagnostic, Span};
-use durer_render::world::{Geometry, Object};
+use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Ray, Vec3};
-use durer_scene::shape::Primitive;
 
 /// Of more things, one alone is not blamed.
 const FEW_OBJECTS: usize = 8;
@@ -196,7 +196,7 @@ fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
 /// The normal and offset of a plane in the world.
 pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
     let object = &scout.world().objects()[object as usize];
-    let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+    let plane = plane(object)?;
     let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
     let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
     Some((n, on.dot(n)))
@@ -206,10 +206,8 @@ pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
 fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let world = scout.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
-    let mut planes = planes.filter_map(|(i, object)| match &object.geometry {
-        Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i as u32, plane)),
-        _ => None,
-    });
+    let planes = planes.filter(|(_, object)| object.to_world.is_none());
+    let mut planes = planes.filter_map(|(i, object)| Some((i as u32, plane(object)?)));
     let (number, plane) = planes.next().filter(|_| planes.next().is_none())?;
     let pose = world.camera().pose();
     let below = |p: Vec3| p.dot(plane.normal) < plane.offset;
@@ -224,7 +222,7 @@ fn ceiling(scout: &SceneProbe) -> Option<u32> {
 /// one side of it then.
 fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
     let plane_object = &scout.world().objects()[object as usize];
-    let Geometry::Primitive(Primitive::Plane(plane)) = &plane_object.geometry else { return None };
+    let plane = plane(plane_object)?;
     if plane_object.to_world.is_some() || plane.offset == 0.0 {
         return None;
     }

@@ -1,14 +1,16 @@
 //! Under a path tracer: surfaces that shine, and why their light is not seen.
 
+use super::facing::{flip_text, flipped};
 use super::finding::{Finding, MAX_SOUGHT};
 use super::scene_probe::SceneProbe;
+use super::shapes::{plane, shape};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::integrator::Method;
 use durer_render::world::emitters::emitter_of;
-use durer_render::world::{Geometry, Material, Object};
+use durer_render::world::{Material, Object};
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::scene::Material as Written;
-use durer_scene::shape::Primitive;
+use durer_scene::shape::{Flip, Shape};
 
 /// So many places are asked how much of a lamp's light they get.
 const MAX_PLACES: usize = 200;
@@ -89,21 +91,17 @@ fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
     let mut flat = true;
     for place in places {
         for u in ON_LAMP {
-            let (point, normal) = match &object.geometry {
-                Geometry::Primitive(Primitive::Plane(plane)) => {
-                    let n =
-                        object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
-                    let on =
-                        object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
-                    (*place - (*place - on).dot(n) * n, n)
-                }
-                _ if object.parts() == 1 => {
-                    let (form, normal) = emitter_of(object, 0)?;
-                    flat &= normal != Vec3::ZERO;
-                    let (point, n, _) = form.point(normal, u)?;
-                    (point.as_vec3(), n)
-                }
-                _ => return None,
+            let (point, normal) = if let Some(plane) = plane(object) {
+                let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);
+                let on = object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(1e-12)));
+                (*place - (*place - on).dot(n) * n, n)
+            } else if object.parts() == 1 {
+                let (form, normal) = emitter_of(object, 0)?;
+                flat &= normal != Vec3::ZERO;
+                let (point, n, _) = form.point(normal, u)?;
+                (point.as_vec3(), n)
+            } else {
+                return None;
             };
             let way = *place - point;
             let cosine = way.normalize_or_zero().dot(normal);
@@ -143,11 +141,10 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
         if !flat || given.back <= 0.0 || given.front > NOTHING * given.back || indirect {
             return None;
         }
-        let turn = match &object.geometry {
-            Geometry::Primitive(Primitive::Triangle(_)) => "exchange two of its corners",
-            Geometry::Primitive(Primitive::Rectangle(_)) => "exchange `edge0` and `edge1`",
-            Geometry::Primitive(Primitive::Plane(_)) => "turn its `normal`, and the sign of its `offset` with it",
-            _ => "turn its `normal`",
+        let turn = match shape(object).and_then(Shape::flip) {
+            Some(Flip::Corners(_)) => "exchange two of its corners".into(),
+            Some(flip) => flip_text(flip),
+            None => "turn its `normal`".into(),
         };
         let message = format!("the {} shines away from all that is seen", scout.object(number));
         let diagnostic = Diagnostic::warning(message)
@@ -163,25 +160,12 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// The edit that turns a flat thing round.
+/// The edit that turns a flat lamp round. It is for the author to say which corners of a triangle
+/// change places.
 fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
-    let span = scout.object_span(number);
-    let value = |field: &str| scout.value(span, &[field]);
-    match &scout.world().objects()[number as usize].geometry {
-        Geometry::Primitive(Primitive::Rectangle(_)) => match (value("edge0"), value("edge1")) {
-            (Some(a), Some(b)) => diagnostic.fix(a, scout.text(b)).fix(b, scout.text(a)),
-            _ => diagnostic,
-        },
-        Geometry::Primitive(Primitive::Disc(disc)) => {
-            diagnostic.fix_at(value("normal"), super::finding::vector(-disc.normal))
-        }
-        Geometry::Primitive(Primitive::Plane(plane)) => match (value("normal"), value("offset")) {
-            (Some(n), Some(d)) => {
-                diagnostic.fix(n, super::finding::vector(-plane.normal)).fix(d, super::finding::number(-plane.offset))
-            }
-            _ => diagnostic,
-        },
-        _ => diagnostic,
+    match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {
+        Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scout, &diagnostic, number).unwrap_or(diagnostic),
+        Some(Flip::Corners(_)) | None => diagnostic,
     }
 }
 

@@ -3,12 +3,11 @@
 use super::finding::{Finding, number};
 use super::probes::{Probe, ProbeHit};
 use super::scene_probe::SceneProbe;
+use super::shapes::plane;
 use super::visibility::Visibility;
 use durer_diag::Diagnostic;
-use durer_render::world::Geometry;
 use durer_scene::camera::{Camera, Projection, ThinLensCamera};
 use durer_scene::math::{Aabb, Vec3, fp};
-use durer_scene::shape::Primitive;
 
 /// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
 const MAX_BLUR: f32 = 0.08;
@@ -163,7 +162,7 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     let size = if things.is_empty() { 1.0 } else { things.size().max_element() };
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate().take(super::finding::MAX_SOUGHT) {
-        let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { continue };
+        let Some(plane) = plane(object) else { continue };
         let on =
             object.world_point(plane.normal * (plane.offset / plane.normal.length_squared().max(f32::MIN_POSITIVE)));
         let n = object.to_world.as_ref().map_or(plane.normal, |m| m.normal(plane.normal)).normalize_or(Vec3::Y);

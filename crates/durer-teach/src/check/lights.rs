@@ -3,6 +3,7 @@
 use super::finding::{Finding, percent, vector};
 use super::probes::Lit;
 use super::scene_probe::SceneProbe;
+use super::shapes::point;
 use super::verdict::{GRAZING, MAX_JUDGED, VISIBLE, Verdict, most_common};
 use super::within::around;
 use durer_diag::{Diagnostic, Severity, Span};
@@ -51,7 +52,7 @@ fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
     let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
     let say = |(light, lamp): (usize, &Light)| {
-        let Light::Point(point) = lamp else { return None };
+        let point = point(lamp)?;
         if scout.verdicts()[light] != Verdict::Works {
             return None;
         }
@@ -87,13 +88,12 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         let name = scout.object(object);
         let message = format!("the {name} keeps this light off all that is seen");
         let (diagnostic, _) = useless(scout, light, message)?;
-        let help = match (scout.world().objects()[object as usize].bounds(), &scout.world().lights()[light]) {
-            (None, Light::Directional(_)) => {
-                "the light comes from behind the plane: turn its `direction`, which is where light goes"
-            }
-            (None, _) => "the light is behind the plane: move it to the other side",
-            (Some(_), Light::Directional(_)) => "turn the light, or move what is in its way",
-            (Some(_), _) => "move the light, or what is in its way",
+        let has_position = scout.world().lights()[light].position().is_some();
+        let help = match (scout.world().objects()[object as usize].bounds(), has_position) {
+            (None, false) => "the light comes from behind the plane: turn its `direction`, which is where light goes",
+            (None, true) => "the light is behind the plane: move it to the other side",
+            (Some(_), false) => "turn the light, or move what is in its way",
+            (Some(_), true) => "move the light, or what is in its way",
         };
         Some(diagnostic.related(scout.object_span(object), "in the way").help(help))
     })
@@ -157,8 +157,9 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
     // All lights turned round together are meant to be where they came from.
     for &light in &working {
-        if let Some(Spanned { value: Light::Directional(light), span }) = written(scout, light) {
-            diagnostic = diagnostic.fix_at(scout.value(*span, &["direction"]), vector(-light.direction));
+        let Some(light) = written(scout, light) else { continue };
+        if let (None, Some(direction)) = (light.value.position(), light.value.direction()) {
+            diagnostic = diagnostic.fix_at(scout.value(light.span, &["direction"]), vector(-direction));
         }
     }
     // A crescent of a round thing may well be meant; of a floor no light at all is not.
@@ -196,19 +197,16 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     let (probe, _) = scout.seen().find(|(_, seen)| seen.object == surface && seen.by(light).is_some_and(is_grazing))?;
     let at = scout.world().intersect(&probe.ray, &mut ())?;
     let n = if at.inside() { -at.surface.n_geo } else { at.surface.n_geo };
-    match &written(scout, light)?.value {
-        Light::Directional(lamp) => {
-            let tilted = vector(lamp.direction - 0.7 * lamp.direction.length() * n);
+    let lamp = &written(scout, light)?.value;
+    match lamp.position() {
+        None => {
+            let direction = lamp.direction()?;
+            let tilted = vector(direction - 0.7 * direction.length() * n);
             let value = scout.value(span, &["direction"]);
             let help = format!("`direction` is where light goes: `direction {tilted}` falls on the surface");
             Some(scout.at_value(diagnostic.fix_at(value, tilted), span, &["direction"]).help(help))
         }
-        lamp => {
-            let place = lamp.place().map(|(place, _)| place);
-            let from = match lamp {
-                Light::Point(point) => point.position,
-                _ => place?,
-            };
+        Some(from) => {
             let eye = scout.world().camera().pose().center;
             let raised = vector(from + 0.5 * (eye - from).length().max(1e-3) * n);
             let value = scout.value(span, &["position"]);
@@ -251,16 +249,17 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
         }
         let message = format!("this light is behind what is seen: {} of it faces away", percent(away, lit.len()));
         let (diagnostic, span) = useless(scout, light, message)?;
-        let diagnostic = match &written(scout, light)?.value {
-            Light::Directional(written) => {
-                let turned = vector(-written.direction);
+        let lamp = &written(scout, light)?.value;
+        let diagnostic = match lamp.position() {
+            None => {
+                let turned = vector(-lamp.direction()?);
                 let help = format!(
                     "`direction` is where the light goes, not where it is: `direction {turned}` lights this side"
                 );
                 let fixed = diagnostic.fix_at(scout.value(span, &["direction"]), turned);
                 scout.at_value(fixed, span, &["direction"]).help(help)
             }
-            _ => {
+            Some(_) => {
                 let eye = scout.world().camera().pose().center;
                 let help = format!("move it to the camera's side: the camera is at {}", vector(eye));
                 scout.at_value(diagnostic, span, &["position"]).help(help)

@@ -75,35 +75,30 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Flat things of glass: what has no inside.
 pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
-    use durer_render::world::Geometry;
-    use durer_scene::shape::Primitive;
+    use super::shapes::{shape, triangle};
+    use durer_scene::describe::DescribedList as _;
+    use durer_scene::shape::Shape as _;
     let world = scout.world();
     let glass = |object: &&Placed| {
         let refracts = |material: &Material| matches!(material, Material::Phong(phong) if phong.transparent.max_element() > 0.0 && phong.ior != 1.0);
         world.materials().get(object.material as usize).is_some_and(refracts)
     };
-    let what = |object: &Placed| match &object.geometry {
-        Geometry::Primitive(Primitive::Plane(_)) => Some("plane"),
-        Geometry::Primitive(Primitive::Triangle(_)) => Some("triangle"),
-        Geometry::Primitive(Primitive::Disc(_)) => Some("disc"),
-        Geometry::Primitive(Primitive::Rectangle(_)) => Some("rectangle"),
-        _ => None,
+    let what = |object: &Placed| {
+        let shape = shape(object)?;
+        shape.flip().map(|_| shape.own_keyword().to_lowercase())
     };
-    let flat: Vec<(&Placed, &str)> =
+    let flat: Vec<(&Placed, String)> =
         world.objects().iter().filter(glass).filter_map(|object| Some((object, what(object)?))).collect();
     // Triangles that close a body are a body.
     let corners: Vec<_> = flat
         .iter()
-        .filter_map(|(object, _)| match &object.geometry {
-            Geometry::Primitive(Primitive::Triangle(t)) => Some(t.corners().map(|corner| object.world_point(corner))),
-            _ => None,
-        })
+        .filter_map(|(object, _)| Some(triangle(object)?.map(|corner| object.world_point(corner))))
         .collect();
     let positions: Vec<_> = corners.iter().flatten().copied().collect();
     let triangles: Vec<[u32; 3]> = (0..corners.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     let body = triangles.len() > 3 && Topology::of(&positions, &triangles).open == 0;
-    let open = |(_, what): &&(&Placed, &str)| !(body && *what == "triangle");
-    let say = |(object, what): &(&Placed, &str)| {
+    let open = |(_, what): &&(&Placed, String)| !(body && *what == "triangle");
+    let say = |(object, what): &(&Placed, String)| {
         let mut diagnostic = Diagnostic::warning(format!("this {what} is of glass, and has no inside"))
             .at(object.span)
             .effect(

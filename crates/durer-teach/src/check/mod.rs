@@ -33,6 +33,7 @@ mod places;
 mod probes;
 mod repair;
 mod scene_probe;
+mod shapes;
 mod solid;
 mod table;
 #[cfg(test)]

@@ -3,12 +3,13 @@
 use super::faces::overlapping;
 use super::finding::{Finding, MAX_SOUGHT, number};
 use super::scene_probe::SceneProbe;
+use super::shapes::{plane, shape, triangle};
 use super::visibility::Visibility;
 use durer_diag::{Diagnostic, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::math::{Ray, Vec3};
 use durer_scene::scene::{MatrixOp, Node, Object as Written};
-use durer_scene::shape::{Plane, Primitive};
+use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -17,12 +18,11 @@ const SQUASHED: f32 = 1e-4;
 
 /// Triangles of the scene file without area.
 pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
-    let flat = |object: &&Object| match &object.geometry {
-        Geometry::Primitive(Primitive::Triangle(triangle)) => {
-            let [a, b, c] = triangle.corners().map(|corner| corner.as_dvec3());
+    let flat = |object: &&Object| {
+        triangle(object).is_some_and(|corners| {
+            let [a, b, c] = corners.map(|corner| corner.as_dvec3());
             (b - a).cross(c - a).length() <= 1e-9 * (b - a).length_squared().max((c - a).length_squared())
-        }
-        _ => false,
+        })
     };
     let say = |object: &Object| {
         let diagnostic = Diagnostic::warning("this triangle has no area: its corners lie on one line")
@@ -123,22 +123,23 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
 
 /// Whether two objects have the same surface.
 pub(super) fn same(a: &Object, b: &Object) -> bool {
-    let placed = a.to_world == b.to_world;
-    placed
-        && match (&a.geometry, &b.geometry) {
-            (Geometry::Primitive(Primitive::Plane(p)), Geometry::Primitive(Primitive::Plane(q))) => {
-                let unit = |plane: &Plane| {
-                    let length = plane.normal.length();
-                    (plane.normal / length, plane.offset / length)
-                };
-                let ((n, d), (m, e)) = (unit(p), unit(q));
-                let near = |m: Vec3, e: f32| (n - m).length() < 1e-6 && (d - e).abs() <= 1e-6 * (1.0 + d.abs());
-                near(m, e) || near(-m, -e)
-            }
-            (Geometry::Primitive(p), Geometry::Primitive(q)) => p == q,
-            (Geometry::Mesh(p), Geometry::Mesh(q)) => Arc::ptr_eq(p, q),
-            _ => false,
-        }
+    if a.to_world != b.to_world {
+        return false;
+    }
+    if let (Some(p), Some(q)) = (plane(a), plane(b)) {
+        let unit = |plane: &Plane| {
+            let length = plane.normal.length();
+            (plane.normal / length, plane.offset / length)
+        };
+        let ((n, d), (m, e)) = (unit(p), unit(q));
+        let near = |m: Vec3, e: f32| (n - m).length() < 1e-6 && (d - e).abs() <= 1e-6 * (1.0 + d.abs());
+        return near(m, e) || near(-m, -e);
+    }
+    match (&a.geometry, &b.geometry) {
+        (Geometry::Primitive(p), Geometry::Primitive(q)) => p == q,
+        (Geometry::Mesh(p), Geometry::Mesh(q)) => Arc::ptr_eq(p, q),
+        (Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_), _) => false,
+    }
 }
 
 /// Objects that are at the same place twice.
@@ -179,21 +180,14 @@ fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let planes: Vec<(usize, &Plane)> = objects
         .iter()
         .enumerate()
-        .filter_map(|(i, object)| match &object.geometry {
-            Geometry::Primitive(Primitive::Plane(plane)) if object.to_world.is_none() => Some((i, plane)),
-            _ => None,
-        })
+        .filter(|(_, object)| object.to_world.is_none())
+        .filter_map(|(i, object)| Some((i, plane(object)?)))
         .collect();
     let mut found = Vec::new();
     for (i, object) in objects.iter().enumerate() {
-        let corners = match &object.geometry {
-            Geometry::Primitive(Primitive::Triangle(triangle)) => triangle.corners(),
-            Geometry::Primitive(Primitive::Rectangle(sheet)) => {
-                [sheet.corner, sheet.corner + sheet.edge0, sheet.corner + sheet.edge1]
-            }
-            _ => continue,
-        };
-        let corners = corners.map(|p| object.world_point(p));
+        let polygons = shape(object).map_or(Vec::new(), Shape::polygons);
+        let [corners] = &polygons[..] else { continue };
+        let corners: Vec<Vec3> = corners.iter().map(|p| object.world_point(*p)).collect();
         let lies_in = |plane: &Plane| {
             let off = |p: Vec3| (p.dot(plane.normal) - plane.offset).abs() / plane.normal.length();
             corners.iter().all(|&p| off(p) <= 1e-5 * (1e-3 + p.abs().max_element()))

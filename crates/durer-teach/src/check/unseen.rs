@@ -2,12 +2,12 @@
 
 use super::finding::{Finding, MAX_SOUGHT, counted, number, vector};
 use super::scene_probe::SceneProbe;
+use super::shapes::{plane, triangle};
 use super::visibility::{Visibility, pixels};
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_render::world::{Geometry, Object};
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::Node;
-use durer_scene::shape::Primitive;
 
 /// Of more objects, some may be out of sight.
 const FEW_OBJECTS: usize = 8;
@@ -73,15 +73,15 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             true => format!("the {a} is inside the {b}{more}"),
             false => format!("the {a} is hidden by the {b}{more}"),
         };
-        let help = match &scout.world().objects()[by as usize].geometry {
-            Geometry::Primitive(Primitive::Plane(_)) => {
+        let plane = plane(&scout.world().objects()[by as usize]).is_some();
+        let help = match (plane, inside) {
+            (true, _) => {
                 "it is behind the plane, which stands where p · normal = offset: is the sign of `offset` right?"
             }
-            _ if inside => "move it out, or make the other smaller, or move that",
-            _ => "is it on the wrong side of the other, or the other in the way?",
+            (false, true) => "move it out, or make the other smaller, or move that",
+            (false, false) => "is it on the wrong side of the other, or the other in the way?",
         };
         // What a thing merely stands behind may be meant.
-        let plane = matches!(&scout.world().objects()[by as usize].geometry, Geometry::Primitive(Primitive::Plane(_)));
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
@@ -132,9 +132,9 @@ fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     let without = scout.world().objects().iter().enumerate().filter(|(i, object)| {
         scout.visibilities()[*i] != Visibility::Seen
             && match &object.geometry {
-                Geometry::Primitive(Primitive::Triangle(triangle)) => flat(triangle.corners()),
+                Geometry::Primitive(_) => triangle(object).is_some_and(flat),
                 Geometry::Mesh(tree) => (0..tree.mesh.len().min(1000)).all(|i| flat(tree.mesh.corners(i as u32))),
-                _ => false,
+                Geometry::Solid(_) => false,
             }
     });
     nothing.extend(without.map(|(i, _)| i as u32));
@@ -213,7 +213,7 @@ pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
 }
 
 fn is_triangle(scout: &SceneProbe, object: u32) -> bool {
-    matches!(scout.world().objects()[object as usize].geometry, Geometry::Primitive(Primitive::Triangle(_)))
+    triangle(&scout.world().objects()[object as usize]).is_some()
 }
 
 /// Objects far from all that is seen: thrown away by a transform, say.

@@ -2,10 +2,11 @@
 
 use super::aim::Aim;
 use super::probes::{Lit, ProbeGrid, ProbeHit};
+use super::shapes::point;
 use super::within::around;
 use durer_render::world::Material;
 use durer_scene::camera::Projection;
-use durer_scene::light::{Emitter as _, Light, PointLight};
+use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Color, Ray, Vec3};
 
 /// What adds less than this to a colour is not seen in eight bits.
@@ -125,7 +126,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     if all.is_empty() || visible as f32 > SHARE * all.len() as f32 && !is_blocked {
         return Verdict::Works;
     }
-    if let Light::Point(point) = light
+    if let Some(point) = point(light)
         && let Some(&object) =
             around(grid.world(), point.position).iter().find(|&&object| keeps_light(grid, object, &all))
     {
@@ -204,7 +205,7 @@ fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> 
 
 /// The seen plane that is between the camera and a light, if one is first of all.
 fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
-    let Light::Point(point) = light else { return None };
+    let point = point(light)?;
     let world = grid.world();
     let way = world.camera().pose().center - point.position;
     let hit = world.closest(&Ray { t_max: 1.0, ..Ray::new(point.position, way) }, &mut ())?;
@@ -228,8 +229,5 @@ pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
 
 /// What the light of a point is divided by: its three factors.
 pub(super) fn divisor(light: &Light) -> Option<Vec3> {
-    match light {
-        Light::Point(PointLight { attenuation, .. }) => *attenuation,
-        _ => None,
-    }
+    point(light)?.attenuation
 }

@@ -4,16 +4,16 @@ use super::finding::{Finding, number, vector};
 use super::hidden::{ground, plane_before};
 use super::lights::all_fail;
 use super::scene_probe::SceneProbe;
+use super::shapes::plane;
 use super::verdict::Verdict;
 use super::visibility::{Visibility, aims, has_eye, pixels};
 use super::within::around;
 use durer_diag::{Diagnostic, Severity};
 use durer_formats::course::place::section;
-use durer_render::world::{Geometry, Material, Object};
+use durer_render::world::{Material, Object};
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Aabb, Color, Vec3, fp};
 use durer_scene::scene::{Group, Node};
-use durer_scene::shape::Primitive;
 
 /// A scene in which nothing is.
 pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
@@ -92,14 +92,12 @@ pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     if !bounds.is_empty() {
         return Some(bounds);
     }
-    let foot = |object: &Object| match &object.geometry {
-        Geometry::Primitive(Primitive::Plane(plane)) => {
-            let n = plane.normal.normalize_or(Vec3::Y);
-            let on = n * (plane.offset / plane.normal.length().max(f32::MIN_POSITIVE));
-            let (on, n) = (object.world_point(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
-            Some(eye + (on - eye).dot(n) * n)
-        }
-        _ => None,
+    let foot = |object: &Object| {
+        let plane = plane(object)?;
+        let n = plane.normal.normalize_or(Vec3::Y);
+        let on = n * (plane.offset / plane.normal.length().max(f32::MIN_POSITIVE));
+        let (on, n) = (object.world_point(on), object.to_world.as_ref().map_or(n, |to_world| to_world.normal(n)));
+        Some(eye + (on - eye).dot(n) * n)
     };
     world.objects().iter().find_map(foot).map(|place| Aabb::around([place]))
 }

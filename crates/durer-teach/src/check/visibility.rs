@@ -1,10 +1,10 @@
 //! How each object is seen: in the picture, behind another, or not at all.
 
 use super::probes::ProbeGrid;
+use super::shapes::triangle;
 use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
-use durer_scene::shape::Primitive;
 
 /// How an object is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,14 +72,16 @@ pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
 /// its box.
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
+    if let Some(corners) = triangle(object) {
+        return within(corners).map(to_world).to_vec();
+    }
     match &object.geometry {
-        Geometry::Primitive(Primitive::Triangle(triangle)) => within(triangle.corners()).map(to_world).to_vec(),
         Geometry::Mesh(tree) => {
             let count = tree.mesh.len();
             let each = (0..count).step_by((count / MAX_CORNERS).max(1));
             each.map(|i| to_world(within(tree.mesh.corners(i as u32))[0])).collect()
         }
-        _ => {
+        Geometry::Primitive(_) | Geometry::Solid(_) => {
             let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
             let (center, half) = (bounds.center(), 0.5 * bounds.size());
             // Not the corners themselves: round things have nothing there.

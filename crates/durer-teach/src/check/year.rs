@@ -269,10 +269,9 @@ pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Planes whose normal has not the length 1, where that moves them.
 pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
-    use durer_render::world::{Geometry, Object};
-    use durer_scene::shape::Primitive;
+    use durer_render::world::Object;
     let say = |object: &Object| {
-        let Geometry::Primitive(Primitive::Plane(plane)) = &object.geometry else { return None };
+        let plane = super::shapes::plane(object)?;
         let length = plane.normal.length();
         let rules = scout.world().rules();
         let counts = rules.has(Compat::RawNormals) && !rules.has(Compat::UnitLight);

@@ -6,6 +6,7 @@
 use super::habits::{
     Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
 };
+use super::variant::{Taught, taught};
 use durer_render::integrator::media::Media;
 use durer_render::integrator::media::Passage;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
@@ -14,7 +15,7 @@ use durer_render::integrator::{Settings, Whitted, refract};
 use durer_render::world::{Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
 use durer_scene::light::{Emitter, Illumination, Light};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
-use durer_scene::shape::{Primitive, Surface};
+use durer_scene::shape::Surface;
 use glam::DVec3;
 use smallvec::SmallVec;
 
@@ -94,7 +95,7 @@ impl<'w> Pupil<'w> {
             Pick::FarSpheres => {
                 let far = |hit: Hit| {
                     let object = &self.world.objects()[hit.object as usize].geometry;
-                    let sphere = matches!(object, Geometry::Primitive(Primitive::Sphere(_)));
+                    let sphere = taught(object) == Some(Taught::Sphere);
                     let mut rest = *ray;
                     rest.rounded.t_min = hit.t;
                     let beyond = |hit: &Hit| self.world.hits_of_each(&rest).find(|other| other.object == hit.object);
@@ -120,7 +121,7 @@ impl<'w> Pupil<'w> {
     /// Whether a ray comes from inside of a sphere that it hits.
     fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
         let object = &self.world.objects()[hit.object as usize].geometry;
-        matches!(object, Geometry::Primitive(Primitive::Sphere(_))) && self.world.interaction(ray, *hit).inside()
+        taught(object) == Some(Taught::Sphere) && self.world.interaction(ray, *hit).inside()
     }
 
     /// The length of the way to a hit in the object's own space.
@@ -174,10 +175,13 @@ impl<'w> Pupil<'w> {
                 Normals::ByInverse => to_world.inverse_ray(&Ray::new(Vec3::ZERO, local)).dir.normalize_or(local),
             };
         }
-        let triangle = matches!(object.geometry, Geometry::Mesh(_) | Geometry::Primitive(Primitive::Triangle(_)));
-        let sphere = matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)));
-        let plane = matches!(object.geometry, Geometry::Primitive(Primitive::Plane(_)));
-        if habits.triangles_turned && triangle || habits.spheres_turned && sphere || habits.planes_turned && plane {
+        let is_turned = match taught(&object.geometry) {
+            Some(Taught::Mesh | Taught::Triangle) => habits.triangles_turned,
+            Some(Taught::Sphere) => habits.spheres_turned,
+            Some(Taught::Plane) => habits.planes_turned,
+            None => false,
+        };
+        if is_turned {
             (surface.n_shade, surface.n_geo) = (-surface.n_shade, -surface.n_geo);
         }
         at
@@ -271,7 +275,11 @@ impl<'w> Pupil<'w> {
             seen.to_light = -seen.to_light;
         }
         match light {
-            Light::Directional(_) if self.habits.lamps.negated => seen.to_light = -seen.to_light,
+            Light::Directional(_) => {
+                if self.habits.lamps.negated {
+                    seen.to_light = -seen.to_light;
+                }
+            }
             Light::Point(point) => {
                 let d = seen.distance;
                 match self.habits.lamps.fading {
@@ -303,7 +311,8 @@ impl<'w> Pupil<'w> {
                     PointLamp::MinusPosition => seen.to_light = -point.position.normalize_or(seen.to_light),
                 }
             }
-            _ => {}
+            // The course has neither.
+            Light::Spot(_) | Light::Photometric(_) => {}
         }
         seen
     }
@@ -313,7 +322,7 @@ impl<'w> Pupil<'w> {
         match light {
             Light::Directional(lamp) if self.habits.lamps.long => seen.to_light * lamp.direction.length(),
             Light::Point(_) if self.habits.lamps.long_points => seen.to_light * seen.distance,
-            _ => seen.to_light,
+            Light::Directional(_) | Light::Point(_) | Light::Spot(_) | Light::Photometric(_) => seen.to_light,
         }
     }
 

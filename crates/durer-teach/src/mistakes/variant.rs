@@ -38,8 +38,45 @@ pub struct Variant<'s> {
 
 /// Whether some light of a scene is written with the three factors of an attenuation.
 pub fn three_factors(scene: &Scene) -> bool {
-    let factors = |light: &Light| matches!(light, Light::Point(p) if p.attenuation.is_some() && p.falloff.is_none());
+    let factors = |light: &Light| match light {
+        Light::Point(p) => p.attenuation.is_some() && p.falloff.is_none(),
+        Light::Directional(_) | Light::Spot(_) | Light::Photometric(_) => false,
+    };
     scene.lights.iter().flatten().any(|light| factors(&light.value))
+}
+
+/// Kind of geometry that the course's programs have code of their own for, and so mistakes in it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Taught {
+    /// `Sphere`.
+    Sphere,
+    /// `Plane`.
+    Plane,
+    /// `Triangle`.
+    Triangle,
+    /// A mesh of triangles.
+    Mesh,
+}
+
+/// The course's kind of a geometry; `None` if the course has none.
+pub fn taught(geometry: &Geometry) -> Option<Taught> {
+    match geometry {
+        Geometry::Mesh(_) => Some(Taught::Mesh),
+        Geometry::Solid(_) => None,
+        Geometry::Primitive(shape) => match shape {
+            Primitive::Sphere(_) => Some(Taught::Sphere),
+            Primitive::Plane(_) => Some(Taught::Plane),
+            Primitive::Triangle(_) => Some(Taught::Triangle),
+            Primitive::Cuboid(_)
+            | Primitive::Cylinder(_)
+            | Primitive::Cone(_)
+            | Primitive::Torus(_)
+            | Primitive::Ellipsoid(_)
+            | Primitive::Quadric(_)
+            | Primitive::Disc(_)
+            | Primitive::Rectangle(_) => None,
+        },
+    }
 }
 
 /// How the matrices of a transform become one.
@@ -182,15 +219,18 @@ impl<'s> Variant<'s> {
         let mut halves = Vec::new();
         for object in &mut self.world.edit().objects {
             match &mut object.geometry {
-                Geometry::Primitive(Primitive::Triangle(triangle)) => {
-                    let [a, b, c] = triangle.corners();
-                    let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
-                    halves.push(Object { geometry: Geometry::Primitive(Primitive::Triangle(half)), ..object.clone() });
+                Geometry::Primitive(shape) => {
+                    if let Primitive::Triangle(triangle) = shape {
+                        let [a, b, c] = triangle.corners();
+                        let half = Triangle { vertex0: b, vertex1: b + c - a, vertex2: c };
+                        let geometry = Geometry::Primitive(Primitive::Triangle(half));
+                        halves.push(Object { geometry, ..object.clone() });
+                    }
                 }
                 Geometry::Mesh(tree) => {
                     *tree = Arc::new(MeshTree::new(tree.mesh.parallelograms(), BuildQuality::Balanced))
                 }
-                _ => {}
+                Geometry::Solid(_) => {}
             }
         }
         self.world.edit().objects.extend(halves);

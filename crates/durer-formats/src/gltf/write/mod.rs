@@ -221,7 +221,7 @@ impl Writer<'_> {
                 let cone = json!({ "innerConeAngle": inner, "outerConeAngle": outer });
                 (json!({ "type": "spot", "spot": cone }), spot.position, spot.direction)
             }
-            _ => {
+            Light::Photometric(_) => {
                 self.left_out("lights of this kind have no counterpart in glTF");
                 return None;
             }

@@ -229,7 +229,8 @@ fn targets(world: &World) -> Vec<Target> {
         let (center, half) = (bounds.center(), 0.5 * bounds.size());
         let radius = match &object.geometry {
             Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
-            _ => half.length(),
+            // The corners of the box are within this, whatever is in it.
+            Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
             found.push(Target { center, radius: 1.001 * radius, object: number as u32 });

@@ -2,6 +2,7 @@
 
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Behind, Normals, Pick};
+use crate::mistakes::variant::{Taught, taught};
 use durer_render::world::Geometry;
 use durer_scene::dialect::{Compat, MeshNormals};
 use durer_scene::scene::{MatrixOp, MatrixRules};
@@ -360,12 +361,12 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "every kind has an intersect(...)",
         "one that always returns false",
         |v, kind| {
-            v.world.edit().objects.retain(|object| match &object.geometry {
-                Geometry::Primitive(Primitive::Sphere(_)) => kind != 0.0,
-                Geometry::Primitive(Primitive::Plane(_)) => kind != 1.0,
-                Geometry::Primitive(Primitive::Triangle(_)) => kind != 2.0,
-                Geometry::Mesh(_) => kind != 3.0,
-                _ => true,
+            v.world.edit().objects.retain(|object| match taught(&object.geometry) {
+                Some(Taught::Sphere) => kind != 0.0,
+                Some(Taught::Plane) => kind != 1.0,
+                Some(Taught::Triangle) => kind != 2.0,
+                Some(Taught::Mesh) => kind != 3.0,
+                None => true,
             });
             v.objects(|_| {});
         },
