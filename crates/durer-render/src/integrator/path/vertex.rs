@@ -6,7 +6,7 @@ use crate::integrator::media::{Media, Passage};
 use crate::integrator::spawn::{offset_bound, spawn_ray, to_point};
 use crate::world::Shading;
 use crate::world::emitters::{LightSample, Receiver};
-use durer_scene::bsdf::Lobe;
+use durer_scene::bsdf::{Lobe, Scatter};
 use durer_scene::math::{Ray64, Vec2, Vec3};
 use durer_scene::medium::HenyeyGreenstein;
 use durer_scene::shape::Surface;
@@ -174,13 +174,13 @@ impl VertexKind<'_, '_> {
 
     /// Whether a lobe refracts, so that radiance changes with the index of refraction squared.
     pub(super) fn refracts(&self, lobe: usize) -> bool {
-        self.nth_lobe(lobe).is_some_and(|lobe| matches!(lobe, Lobe::Refraction(_)))
+        self.nth_lobe(lobe).is_some_and(|lobe| lobe.is_delta() && lobe.kind().eta.is_some())
     }
 
     /// Whether a lobe passes light straight through an open surface, as a pane does.
     pub(super) fn goes_straight(&self, lobe: usize) -> bool {
         let is_sheet = matches!(self, VertexKind::Surface(_, _, None));
-        is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| matches!(lobe, Lobe::Through(_)))
+        is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| lobe.kind().is_straight)
     }
 
     fn nth_lobe(&self, number: usize) -> Option<Lobe<'_>> {
