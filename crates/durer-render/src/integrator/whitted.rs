@@ -1,7 +1,7 @@
 //! Whitted's ray tracing: local light, a mirrored and a transmitted ray.
 //!
-//! Rays go through the stages of [`Whitted::trace`] in batches, also where there is only one; what
-//! they spawn waits in a [`Queue`], so nothing recurses. Each sum is made in the order of its terms,
+//! Rays go through the stages of `Whitted::trace` in batches, also where there is only one; what
+//! they spawn waits in a `Queue`, so nothing recurses. Each sum is made in the order of its terms,
 //! whatever batch a ray was in.
 //!
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,

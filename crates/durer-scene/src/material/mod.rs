@@ -44,7 +44,7 @@ described_list! {
 }
 
 impl Solid {
-    /// Share of the first material at a point of pattern space, in [0,1]. `conic_rings`: wood has
+    /// Share of the first material at a point of pattern space, from 0 to 1. `conic_rings`: wood has
     /// the rings of the program of 2004, cones whose grain is stretched along the axis.
     pub fn share(&self, q: Vec3, conic_rings: bool) -> f32 {
         match self {

@@ -198,7 +198,12 @@ impl Validator {
     }
 
     fn matrices(&mut self, ops: &[MatrixOp], span: Span) {
-        if ops.iter().any(|op| !op.matrix().is_finite()) {
+        // The matrix of a rotation about an axis that is NaN is one about y.
+        let is_finite = |op: &MatrixOp| match op {
+            MatrixOp::Rotate(axis, _) => axis.is_finite() && op.matrix().is_finite(),
+            _ => op.matrix().is_finite(),
+        };
+        if !ops.iter().all(is_finite) {
             self.error("the numbers of a transform must be finite", span);
         }
     }

@@ -1,17 +1,17 @@
 //! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! A path is a loop over a [`PathState`], as pbrt's and Mitsuba's are. Each bounce runs these
+//! A path is a loop over a `PathState`, as pbrt's and Mitsuba's are. Each bounce runs these
 //! stages, none of which calls another bounce, so that a wavefront can run each over an array of
 //! states:
 //!
-//! 1. [`Path::propagate`]: the ray flies to the next vertex, through media and past surfaces that
+//! 1. `Path::propagate`: the ray flies to the next vertex, through media and past surfaces that
 //!    change nothing.
-//! 2. [`Path::add_background`], [`Path::add_emission`]: light at the end of the ray, weighed against
+//! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighed against
 //!    light sampling at the vertex before.
-//! 3. [`Path::choose_light`], [`Path::add_direct`]: a point on a light, with its shadow ray.
-//! 4. [`Path::add_caustic`]: light that photons bring.
-//! 5. [`Path::scatter`]: a sampled direction, roulette, and the next ray. The first glossy vertex
-//!    under an environment follows several; they wait on the [`PathStack`].
+//! 3. `Path::choose_light`, `Path::add_direct`: a point on a light, with its shadow ray.
+//! 4. `Path::add_caustic`: light that photons bring.
+//! 5. `Path::scatter`: a sampled direction, roulette, and the next ray. The first glossy vertex
+//!    under an environment follows several; they wait on the `PathStack`.
 //!
 //! The radiance of a camera ray is the sum of throughput · light over all terms, in the order in
 //! which they are found.
