@@ -8,8 +8,8 @@ use std::sync::{Once, mpsc};
 /// More threads than this are never started, whatever is asked for.
 pub const MOST: usize = 1024;
 
-/// Room for the recursion of Whitted's tracer, 256 levels at most. Paths are loops: their tests pass
-/// with 64 KiB at any depth.
+/// Room for the recursion of Whitted's tracer, 256 levels at most. Paths are loops and need some
+/// 64 KiB, whatever their depth.
 const STACK: usize = 16 << 20;
 
 /// How many threads there should be: as asked for; else as `RAYON_NUM_THREADS` says; else as many
