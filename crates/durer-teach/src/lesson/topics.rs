@@ -372,7 +372,7 @@ pub static TOPICS: [Topic; 18] = [
         places: &[
             at("crates/durer-render/src/integrator/path/direct.rs", "fn add_direct"),
             at("crates/durer-render/src/integrator/path/direct.rs", "fn visibility"),
-            at("crates/durer-render/src/world/emitters/shape.rs", "fn sample"),
+            at("crates/durer-scene/src/light/area.rs", "fn sample"),
         ],
         shots: &[
             color("rays to the middle of each lamp", straight(Direct::Middle)),
