@@ -97,7 +97,12 @@ struct Validator {
 
 impl Validator {
     fn error(&mut self, message: impl Into<String>, span: Span) {
-        let error = Diagnostic::error(message).code("bad-value");
+        self.report(Diagnostic::error(message), span);
+    }
+
+    /// Reports an error, at its place if it has one: scenes built in code have none.
+    fn report(&mut self, error: Diagnostic, span: Span) {
+        let error = error.code("bad-value");
         self.diagnostics.push(if span.is_place() { error.at(span) } else { error });
     }
 
@@ -113,11 +118,10 @@ impl Validator {
             }
         }
         if is_valid && let Err(message) = together(thing) {
-            let error = Diagnostic::error(message).code("bad-value");
-            let error = if span.is_place() { error.at(span) } else { error };
+            let error = Diagnostic::error(message);
             let lacks_sun = error.message.contains("`cieSky`");
             let help = "write `sun x y z`, the way to it with y upwards; 1, 3, 5 and 16 need none";
-            self.diagnostics.push(if lacks_sun { error.help(help) } else { error });
+            self.report(if lacks_sun { error.help(help) } else { error }, span);
         }
     }
 
@@ -157,8 +161,7 @@ impl Validator {
             if nesting > MAX_MATERIAL_NESTING || parts > MAX_MATERIAL_PARTS {
                 let message = format!("this material is made of others {nesting} deep and {parts} in all");
                 let help = format!("at most {MAX_MATERIAL_NESTING} deep and {MAX_MATERIAL_PARTS} in all are allowed");
-                let error = Diagnostic::error(message).code("bad-value").help(help);
-                return self.diagnostics.push(if material.span.is_place() { error.at(material.span) } else { error });
+                return self.report(Diagnostic::error(message).help(help), material.span);
             }
             sizes.push((nesting, parts));
         }
