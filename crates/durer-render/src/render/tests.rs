@@ -521,7 +521,7 @@ fn light_in_watts_is_shown_in_lumens() {
         rendered.layers[1..].iter().map(|layer| layer.image.pixels.clone()).collect::<Vec<_>>()
     };
     let plain = values(&world);
-    world.edit().lumens = Some(179.0 * durer_scene::math::LUMINANCE);
+    world.edit().display.lumens = Some(179.0 * durer_scene::math::LUMINANCE);
     let watts = values(&world);
     assert_eq!(plain.len(), 2);
     for (plain, watts) in plain.iter().flatten().zip(watts.iter().flatten()) {
