@@ -17,7 +17,7 @@ const MAX_EXHAUSTIVE: usize = 4;
 /// Minimum number of references for separate bins for each half.
 const MIN_FOR_MORE_BINS: usize = 64;
 
-/// Bins of equal width over the centers of references.
+/// Bins of equal width over the centres of references.
 #[derive(Clone, Copy)]
 struct Grid {
     low: Vec4,
@@ -157,7 +157,7 @@ impl Builder<'_> {
         }
     }
 
-    /// Finds the cheapest border between bins; `None` if all centers are in one bin.
+    /// Finds the cheapest border between bins; `None` if all centres are in one bin.
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
         let grid = Grid::new(references, (self.bins)(references.len()).min(N));
         let bins = filled::<N>(references, &grid);

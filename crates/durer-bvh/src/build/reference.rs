@@ -27,7 +27,7 @@ impl Reference {
         Aabb { min: self.min.truncate(), max: self.max.truncate() }
     }
 
-    /// Twice the center.
+    /// Twice the centre.
     #[inline]
     pub fn middle(&self) -> Vec4 {
         self.min + self.max

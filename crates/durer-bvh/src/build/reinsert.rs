@@ -1,4 +1,4 @@
-//! Optimization of a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
+//! Optimisation of a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.

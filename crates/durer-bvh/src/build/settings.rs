@@ -13,7 +13,7 @@ pub enum BuildQuality {
     /// For most uses.
     #[default]
     Balanced,
-    /// For many rays: triangles are split where that helps, and the tree is optimized for longer.
+    /// For many rays: triangles are split where that helps, and the tree is optimised for longer.
     Best,
 }
 

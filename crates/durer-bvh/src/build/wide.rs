@@ -195,7 +195,7 @@ impl NodeWriter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds the nodes with too few references to parallelize further, in the order of
+    /// Finds the nodes with too few references to parallelise further, in the order of
     /// [`NodeWriter::fill`].
     fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {

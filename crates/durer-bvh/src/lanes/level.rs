@@ -97,7 +97,7 @@ impl SimdLevel {
     }
 }
 
-/// Loops over arrays in plain code that are compiled for each level, so that compilers vectorize
+/// Loops over arrays in plain code that are compiled for each level, so that compilers vectorise
 /// them to its width. Compilers do not fuse or reorder operations on their own, so all levels give
 /// the same bits. Functions that `run` calls should be inlined into it.
 pub trait PlainKernel {

@@ -34,7 +34,7 @@ pub fn bring_near<T>(thing: &T) {
     let _ = thing;
 }
 
-/// Asks the system to place uninitialized memory for `count` items on large pages, if it is large
+/// Asks the system to place uninitialised memory for `count` items on large pages, if it is large
 /// enough. The processor caches the addresses of only a limited number of pages.
 fn large_pages<T>(room: *const T, count: usize) {
     #[cfg(target_os = "linux")]

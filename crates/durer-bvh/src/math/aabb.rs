@@ -54,13 +54,13 @@ impl Aabb {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
-    /// Center of the box.
+    /// Centre of the box.
     #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Returns true if the center is farther from the origin than 256 times the size, in the
+    /// Returns true if the centre is farther from the origin than 256 times the size, in the
     /// maximum norm. Single precision is coarse on such a box.
     #[inline]
     pub fn is_far(self) -> bool {

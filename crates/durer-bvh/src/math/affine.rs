@@ -87,7 +87,7 @@ impl Affine {
         (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
     }
 
-    /// Maps a normal forward as [`Affine::normal`] does, without normalizing the result.
+    /// Maps a normal forward as [`Affine::normal`] does, without normalising the result.
     #[inline]
     pub fn long_normal(&self, n: Vec3) -> Vec3 {
         (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()

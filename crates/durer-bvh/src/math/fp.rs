@@ -141,7 +141,7 @@ pub fn pow(base: f32, exponent: f32) -> f32 {
 }
 
 /// Computes [`pow`] for ordinary numbers, and NaN for all others. Branchless, so that compilers can
-/// vectorize it.
+/// vectorise it.
 #[inline(always)]
 pub fn usual_pow(base: f32, exponent: f32) -> f32 {
     let power = f64::from(exponent) * log2(base);

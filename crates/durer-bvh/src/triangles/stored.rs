@@ -19,7 +19,7 @@ const NODE: usize = 4 * (6 * WIDTH + WIDTH + 2 + 1) + WIDTH;
 const CHECKSUM: usize = 8;
 
 impl TriangleBvh {
-    /// Serializes the tree. The bytes are the same on every machine, and
+    /// Serialises the tree. The bytes are the same on every machine, and
     /// [`TriangleBvh::from_bytes`] reads them. The SIMD level is not stored.
     ///
     /// ```
@@ -54,7 +54,7 @@ impl TriangleBvh {
         to
     }
 
-    /// Deserializes a tree written by [`TriangleBvh::to_bytes`].
+    /// Deserialises a tree written by [`TriangleBvh::to_bytes`].
     ///
     /// Untrusted bytes are safe: they are rejected, or give a tree that answers queries, though
     /// with wrong results if they were forged.

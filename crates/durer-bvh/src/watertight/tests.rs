@@ -44,7 +44,7 @@ fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     vec![(ball, true, Vec3::ZERO), (cube.collect(), true, Vec3::ZERO), (torus, false, Vec3::new(0.7, 0.0, 0.0))]
 }
 
-/// A vertex, the midpoint of an edge, a point of an edge, or the center of a face.
+/// A vertex, the midpoint of an edge, a point of an edge, or the centre of a face.
 fn target(mesh: &Triangles, random: &mut Random) -> Vec3 {
     let [a, b, c] = mesh[random.below(mesh.len())];
     match random.below(4) {
