@@ -47,7 +47,7 @@ impl Default for Options {
 /// Result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// All values are equal.
+    /// The values are equal everywhere.
     Identical,
     /// At most the allowed share of pixels exceeds the tolerance.
     Same,

@@ -73,7 +73,7 @@ fn grey(width: u32, height: u32, value: f32) -> Picture {
     picture(width, height, Scale::Display, |_, _| Vec3::splat(value))
 }
 
-/// All measures of constant pictures are closed forms.
+/// Measures of constant pictures are closed forms.
 #[test]
 fn constant_pictures() {
     let found = compare(&grey(20, 13, 0.4), &grey(20, 13, 0.5), &Options::default()).unwrap();
