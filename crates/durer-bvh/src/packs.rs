@@ -1,7 +1,7 @@
 //! Simple shapes, tested eight at a time.
 //!
 //! For scenes with only a few primitives, where a tree would cost more than it saves, and for
-//! planes, which have no bounding box. The arithmetic is that of a test of a single primitive, in
+//! planes, which have no bounding box. Each primitive is computed as in a test of it alone, in
 //! double precision and in the same order, so hits have the same bits.
 
 use super::TraversalCounter;

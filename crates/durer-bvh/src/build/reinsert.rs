@@ -89,7 +89,7 @@ impl Linked {
         if a == i { b } else { a }
     }
 
-    /// Searches better places for the nodes with the greatest possible savings and applies the
+    /// Searches for better places for the nodes with the greatest possible savings and applies the
     /// moves that do not conflict. Returns the share of the total area that they save.
     pub fn pass(&mut self) -> f64 {
         // Removing a subtree saves at least its parent's area, and inserting it costs at least its

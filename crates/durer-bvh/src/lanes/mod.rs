@@ -1,4 +1,4 @@
-//! SIMD operations on eight lanes, with most of the unsafe code of the library.
+//! SIMD operations on eight lanes, with all unsafe code of the library.
 //!
 //! [`Lanes`] lists the operations that traversal needs. Each level implements it once, and
 //! [`SimdLevel::run`] calls a [`Kernel`] with the selected level. Hits depend only on addition,

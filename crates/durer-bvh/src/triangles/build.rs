@@ -183,7 +183,7 @@ impl TriangleBvh {
 
 fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
     let is_wrong = |triangle: &[u32; 3]| triangle.iter().any(|i| *i as usize >= vertices.len());
-    // Indices are nearly always valid, so search the first invalid one only if there is one.
+    // Indices are nearly always valid, so search for the first invalid one only if there is one.
     if !parallel::any(triangles, 1 << 16, is_wrong) {
         return Ok(());
     }

@@ -1,10 +1,10 @@
 //! Watertight ray-triangle intersection: a ray never slips between two triangles that share an
 //! edge, and crosses exactly one of the triangles around an edge or a vertex.
 //!
-//! A shear of the triangle aligns the ray with one axis. What remains is a test if the projected
-//! edges wind around the origin. Corners shared by two triangles are rounded alike, and the sign of
-//! each edge function is exact, so two neighbours never disagree. If an edge passes through the
-//! ray, the ray counts as moved by an infinitesimal (e, e^2) in the plane across it.
+//! A shear of the triangle aligns the ray with one axis. The remaining question is whether the
+//! projected edges wind around the origin. Corners shared by two triangles are rounded alike, and
+//! the sign of each edge function is exact, so two neighbours never disagree. If an edge passes
+//! through the ray, the ray counts as moved by an infinitesimal (e, e^2) in the plane across it.
 //!
 //! Single precision decides if a triangle is crossed; double precision computes the distance. A ray
 //! that starts beside a triangle, off by no more than the rounding of its origin, is therefore on

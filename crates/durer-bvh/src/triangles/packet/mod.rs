@@ -2,7 +2,7 @@
 //!
 //! A packet holds up to 64 rays whose directions have the same signs and the same longest axis.
 //! Interval arithmetic tests a node once for all rays. When a remaining child is visited, its box
-//! is tested with the rays in lanes, and so is each triangle of a leaf. Triangle tests are those of
+//! is tested with the rays in lanes, and so is each triangle of a leaf. Triangles are tested as for
 //! single rays, with the same roundings, so the hits are the same.
 //!
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
