@@ -33,7 +33,7 @@ pub struct Finding {
     pub explained: f64,
 }
 
-/// Explained share above which the search ends.
+/// Minimum share of the difference that a mistake in a part of the picture must explain.
 const WELL: f64 = 0.9;
 /// Unexplained share above which findings are dropped: a wrong explanation is worse than none.
 const MAX_LEFT: f64 = 0.05;
