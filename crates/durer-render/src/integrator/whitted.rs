@@ -17,7 +17,7 @@ use durer_scene::dialect::set;
 use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 use durer_scene::sampler::SampleId;
-use queue::{Queue, Segment};
+use queue::Queue;
 pub use secondary::refract;
 use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
@@ -191,7 +191,7 @@ impl<'w> Whitted<'w> {
                     hit: None,
                     bounce: None,
                 });
-                queue.push(Segment::camera(ray, camera as u32, self.settings.bounces, node));
+                queue.push_camera(ray, camera as u32, self.settings.bounces, node);
             }
             let mut batch = [0; TOGETHER];
             loop {
@@ -278,7 +278,7 @@ impl<'w> Whitted<'w> {
         &self,
         points: &mut [Shaded],
         shadows: &mut [Ray64; TOGETHER],
-        parts: &mut Parts<'w>,
+        parts: &mut [Lit],
         queue: &mut Queue,
         tally: &mut T,
     ) {

@@ -4,7 +4,7 @@ use super::{DisplayRules, Geometry, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::Rules;
 use durer_scene::light::{Light, Profile};
-use durer_scene::math::{Color, Vec3};
+use durer_scene::math::Color;
 use durer_scene::medium::Medium;
 use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
