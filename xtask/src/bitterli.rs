@@ -32,11 +32,11 @@ const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
 /// What is known of why a picture is not Tungsten's.
 const CAUSES: [(&str, &str); 3] = [
-    ("coffee", "coats: they take the mean loss of light that enters them, whatever its direction"),
-    ("veach-mis", "the file: its metals lack the factor 0.3 and Beckmann's distribution that Tungsten's have"),
+    ("coffee", "coats lose the mean share of the light that enters them, whatever its direction"),
+    ("veach-mis", "the file's metals lack the factor 0.3 and Beckmann's distribution of Tungsten's metals"),
     (
         "water-caustic",
-        "single pixels in which the water mirrors the lamp, in each picture others; without what is above 1, +0.2 %",
+        "single pixels, different in each picture, where the water mirrors the light; clamped at 1, +0.2 %",
     ),
 ];
 
