@@ -68,8 +68,8 @@ impl Default for RenderOptions {
 
 impl RenderOptions {
     /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name several
-    /// things (`assets`, `compat`) add to what was set before.
-    ///
+    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name
+    /// several things (`assets`, `compat`) add to what was set before.
     /// # Errors
     ///
     /// A sentence, if there is no such option, or the text is not a value of it.
