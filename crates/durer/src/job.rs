@@ -146,7 +146,7 @@ macro_rules! options {
             ///
             /// # Errors
             ///
-            /// A sentence, if there is no such option or the text is not a value of it.
+            /// A sentence, for an unknown option or a text that is not a value of it.
             pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
                 let option = RenderJob::OPTIONS.iter().find(|option| option.name == name);
                 match option.map(|option| option.form) {
@@ -339,7 +339,7 @@ impl RenderJob {
     ///
     /// # Errors
     ///
-    /// A sentence, if there is no such integrator, or an option does not belong to it or is out of
+    /// A sentence, for an unknown integrator, or an option that does not belong to it or is out of
     /// range.
     pub fn resolved_method(&self, usual: Method) -> Result<Method, String> {
         let has = |kind: &Method, (option, _): &(&str, Value)| option_index(kind, option).is_some();

@@ -138,7 +138,7 @@ impl Picture {
     ///
     /// # Errors
     ///
-    /// [`Error::Image`]: there is no such format, or it cannot store such pictures.
+    /// [`Error::Image`]: the format is unknown, or cannot store such pictures.
     /// [`Error::Save`]: the file cannot be written.
     #[cfg(feature = "fs")]
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {

@@ -106,7 +106,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         .at(written.span)
         .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
         .help(help);
-    // If that year's program traces no secondary rays by default, leaving them out is no mistake.
+    // If that year's program traces no secondary rays by default, their absence is intended.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
     let black: usize =
         all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();

@@ -24,7 +24,7 @@ fn reported(_: &SceneProbe) -> Vec<Finding> {
 
 macro_rules! checks {
     ($($code:literal: $about:literal, $find:expr;)+) => {
-        /// All kinds of findings.
+        /// Every kind of finding.
         pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
     };
 }

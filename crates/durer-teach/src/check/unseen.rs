@@ -38,7 +38,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             !super::objects::same(&scout.world().objects()[i as usize], &scout.world().objects()[by as usize])
         })
         .collect();
-    // Losing most of a small scene is no accident.
+    // Warn if most of a small scene is missing: probably a mistake.
     let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };

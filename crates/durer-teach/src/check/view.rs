@@ -31,7 +31,7 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
 }
 
-/// Reports objects around the camera that are no rooms.
+/// Reports objects around the camera, except rooms.
 pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     if !has_eye(scout) {
         return Vec::new();

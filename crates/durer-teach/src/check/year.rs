@@ -90,7 +90,7 @@ fn blunt(scout: &SceneProbe) -> Vec<Finding> {
 
 /// Exponent above which a highlight is smaller than a pixel.
 const SHARPEST: f32 = 2e4;
-/// Exponent below which there is no visible highlight.
+/// Exponent below which highlights are invisible.
 const BLUNT: f32 = 0.7;
 
 /// Reports highlights smaller than a pixel.

@@ -18,9 +18,9 @@ pub enum Pick {
     FirstWritten,
     /// The nearest, but the far side of spheres.
     FarSpheres,
-    /// Like `FarthestObject`, with the farthest triangle of meshes.
+    /// `FarthestObject`, with the farthest triangle of meshes.
     FarthestTriangle,
-    /// Like `LastWritten`, with the last triangle of meshes.
+    /// `LastWritten`, with the last triangle of meshes.
     LastTriangle,
     /// The nearest, but spheres are not hit from inside.
     NearRoots,
@@ -270,7 +270,7 @@ pub struct Shadows {
     pub left: f32,
     /// If one light is blocked, later ones are too.
     pub later_too: bool,
-    /// If any light is blocked, there is no ambient light.
+    /// If any light is blocked, ambient light is missing.
     pub ambient_of_any: bool,
     /// Only the light of this index casts shadows.
     pub only_light: Option<usize>,
@@ -284,8 +284,8 @@ pub struct Shadows {
     pub short: bool,
     /// Highlights remain in shadow.
     pub highlights_left: bool,
-    /// If one light is blocked there is no direct light; with `true`, no reflected and transmitted
-    /// light either.
+    /// If one light is blocked, all direct light is missing; with `true`, also reflected and
+    /// transmitted light.
     pub black: Option<bool>,
 }
 
@@ -322,7 +322,7 @@ pub struct Bounces {
     pub epsilon: Option<f32>,
 }
 
-/// All deviations of a student's tracer. The default is a correct tracer.
+/// Deviations of a student's tracer. The default is a correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Habits {
     /// Hit that is selected.

@@ -67,12 +67,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name several
     /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name
     /// several things (`assets`, `compat`) add to what was set before.
+    ///
     /// # Errors
     ///
-    /// A sentence, if there is no such option, or the text is not a value of it.
+    /// A sentence, for an unknown option or a text that is not a value of it.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let mut rows = READING.iter().chain(VIEW).chain(WORK);
         let set = match rows.find(|row| row.option.name == name) {

@@ -254,7 +254,7 @@ pub fn doc(name: &str) -> &'static str {
 ///
 /// # Errors
 ///
-/// A sentence, if there is no such quirk.
+/// A sentence, for unknown quirks.
 pub fn compat(text: &str) -> Result<(Compat, bool), String> {
     let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
     Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {

@@ -59,7 +59,7 @@ impl Values {
     }
 }
 
-/// All families.
+/// Every family.
 pub const MISTAKES: [&[Mistake]; 7] = [
     light::MISTAKES,
     highlights::MISTAKES,
