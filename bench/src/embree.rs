@@ -71,7 +71,7 @@ macro_rules! functions {
         impl Functions {
             #[allow(non_snake_case)]
             fn load(library: &Library) -> Result<Self> {
-                // SAFETY: the types are those of Embree 4's header.
+                // SAFETY: the types match Embree 4's header.
                 unsafe {
                     $(let $name: Symbol<unsafe extern "C" fn($($arg),*) $(-> $out)?> =
                         library.get(concat!(stringify!($name), "\0").as_bytes())?;)*
@@ -170,7 +170,7 @@ impl Embree {
     pub fn build(self: &Arc<Self>, mesh: &Mesh, quality: Quality, robust: bool) -> (Scene, f64) {
         let f = &self.functions;
         self.commit(quality, robust, |scene| {
-            // SAFETY: calls in the order of the manual; the buffers are as large as was asked for.
+            // SAFETY: calls in the order of the manual; the buffers have the requested size.
             unsafe {
                 let geometry = (f.rtcNewGeometry)(self.device, 0);
                 let vertices = (f.rtcSetNewGeometryBuffer)(geometry, 1, 0, 0x9003, 12, mesh.vertices.len());
@@ -208,7 +208,7 @@ impl Embree {
     /// Both handles must be valid; the geometry is consumed.
     unsafe fn attach(&self, scene: Handle, geometry: Handle) {
         let f = &self.functions;
-        // SAFETY: as the caller's.
+        // SAFETY: by the caller's contract.
         unsafe {
             (f.rtcCommitGeometry)(geometry);
             (f.rtcAttachGeometry)(scene, geometry);
@@ -284,7 +284,7 @@ fn single(ray: &Ray) -> RayHit1 {
 impl Scene {
     pub fn closest(&self, ray: &Ray) -> Found {
         let mut query = single(ray);
-        // SAFETY: the record is that of the header, and aligned.
+        // SAFETY: the record matches the header, and is aligned.
         unsafe { (self.embree.functions.rtcIntersect1)(self.scene, &mut query, std::ptr::null()) };
         if query.geom == NO_GEOMETRY { Found::NONE } else { Found { t: query.tfar, triangle: query.prim } }
     }
@@ -330,7 +330,7 @@ impl Scene {
             }
             let f = &self.embree.functions;
             let call = if any { f.rtcOccluded16 } else { f.rtcIntersect16 };
-            // SAFETY: records are those of the header, and aligned.
+            // SAFETY: records match the header, and are aligned.
             unsafe { call(valid.0.as_ptr(), self.scene, &mut query, &arguments) };
             for (i, found) in found.iter_mut().enumerate() {
                 let hit = if any { query.ray[8][i] < 0.0 } else { query.geom[i] != NO_GEOMETRY };

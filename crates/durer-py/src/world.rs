@@ -29,7 +29,7 @@ fn failed(error: impl ToString) -> PyErr {
     RenderError::new_err(error.to_string())
 }
 
-/// A scene, read and compiled.
+/// A compiled scene.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
     loaded: Loaded,

@@ -1,4 +1,4 @@
-//! Time, where there is any.
+//! Clock, on platforms that have one.
 
 pub use std::time::Duration;
 

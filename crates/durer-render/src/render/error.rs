@@ -48,7 +48,7 @@ pub enum RenderError {
     /// The part belongs to another scene.
     #[error("this part is not of this scene")]
     OtherScene,
-    /// An error in this program.
+    /// A bug in this program.
     #[error(transparent)]
     Panic(#[from] Panicked),
 }

@@ -23,7 +23,7 @@ pub enum Sampling {
     Center,
     /// Sobol points, distributed by the filter: a sample affects its own pixel only.
     Filtered {
-        /// Samples a pixel.
+        /// Samples per pixel.
         samples: u32,
         /// Reconstruction filter.
         filter: Filter,
@@ -32,7 +32,7 @@ pub enum Sampling {
     Course2004 {
         /// Positions of samples.
         sampler: Sampler,
-        /// Samples a pixel.
+        /// Samples per pixel.
         samples: u32,
         /// Filter; without one, a pixel is the mean of the samples within it.
         filter: Option<CourseFilter>,

@@ -22,7 +22,7 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// A sentence, if the text is something else.
+    /// A sentence, for any other text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || "say it as 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {

@@ -270,7 +270,7 @@ pub fn compat(text: &str) -> Result<(Compat, bool), String> {
 ///
 /// # Errors
 ///
-/// A sentence, if the text is something else.
+/// A sentence, for any other text.
 pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
     let numbers = || {
         let mut parts = text.splitn(3, ',');
@@ -286,7 +286,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 ///
 /// # Errors
 ///
-/// A sentence, if the text is something else.
+/// A sentence, for any other text.
 pub fn grid_cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
