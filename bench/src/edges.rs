@@ -1,4 +1,4 @@
-//! How many rays are lost at the edges and vertices of a closed mesh.
+//! Counts the rays that are lost at the edges and vertices of a closed mesh.
 
 use crate::Options;
 use crate::embree::{Embree, Quality};
@@ -12,10 +12,10 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// What rays are aimed at.
+/// Targets of the rays.
 const AIMS: [&str; 4] = ["vertices", "edge midpoints", "points of edges", "centroids"];
 
-/// A sphere of 10,242 vertices: an icosahedron whose triangles are divided into four, five times.
+/// Returns a sphere of 10,242 vertices: an icosahedron subdivided five times.
 fn sphere(center: Vec3, radius: f32) -> Mesh {
     let golden = 0.5 * (1.0 + 5.0_f32.sqrt());
     let mut vertices: Vec<Vec3> = Vec::new();
@@ -26,7 +26,7 @@ fn sphere(center: Vec3, radius: f32) -> Mesh {
             vertices.push(Vec3::from(p).normalize());
         }
     }
-    // Its faces are the triples of corners as near to each other as corners get.
+    // The faces are the triples of vertices at the minimum distance from each other.
     let near = |i: usize, j: usize| vertices[i].distance(vertices[j]) < 1.2;
     let mut triangles: Vec<[u32; 3]> = Vec::new();
     for i in 0..12 {
@@ -58,8 +58,8 @@ fn sphere(center: Vec3, radius: f32) -> Mesh {
     Mesh { name: "sphere".into(), vertices, triangles }
 }
 
-/// Ray number `i`: aimed at each triangle in turn, from inside or from outside where the triangle
-/// faces it.
+/// Returns ray `i`, aimed at each triangle in turn, and true if it starts inside; otherwise it
+/// starts on the triangle's front side.
 fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool) {
     let [a, b, c] = mesh.corners(i % mesh.triangles.len() as u32);
     let unit = random_2d(4, i, aim as u32, 0, 0).x;
@@ -68,7 +68,7 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
     let inside = (i / mesh.triangles.len() as u32).is_multiple_of(2);
     let origin = match inside {
         true => center + 0.5 * radius * cosine(normal, i, 8),
-        // Not from so low that the rounding of the goal leads beside the sphere.
+        // Not so low that rounding of the target lets the ray pass the sphere.
         false => {
             let back = (normal + cosine(normal, i, 9)).normalize();
             goal + radius * (0.5 + 100.0 * random_2d(4, i, aim as u32, 0, 1).x) * back
@@ -77,7 +77,7 @@ fn ray(mesh: &Mesh, center: Vec3, radius: f32, aim: usize, i: u32) -> (Ray, bool
     (Ray::new(origin, goal - origin), inside)
 }
 
-/// How many of so many rays at each aim are lost.
+/// Returns the number of lost rays for each target, out of `count`.
 fn lost(mesh: &Mesh, place: (Vec3, f32), count: u32, closest: impl Fn(&Ray) -> Found + Sync) -> [usize; 4] {
     [0, 1, 2, 3].map(|aim| {
         let is_lost = |i: &u32| closest(&ray(mesh, place.0, place.1, aim, *i).0) == Found::NONE;

@@ -1,4 +1,4 @@
-//! Embree 4, loaded when the command runs. Names and layouts are those of its `rtcore.h`.
+//! Bindings to Embree 4, loaded at run time. Names and layouts are those of `rtcore.h`.
 
 use crate::rays::{Found, Mesh};
 use anyhow::{Context, Result, bail};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
-/// How to get it.
+/// Instructions for installing Embree.
 pub const HOW: &str = "Embree 4 is not found. One way to it:
   pip download embreex --no-deps -d /tmp/embreex && cd /tmp/embreex && unzip -o embreex-*.whl
 and then DURER_EMBREE=/tmp/embreex/embreex.libs (a folder, or the file libembree4*.so itself); Debian's libembree-dev 4 will
@@ -39,7 +39,7 @@ struct RayHit1 {
     padding: [c_uint; 3],
 }
 
-/// Sixteen rays side by side; fields in the order of [`RayHit1`].
+/// Sixteen rays in structure-of-arrays layout; fields in the order of [`RayHit1`].
 #[repr(C, align(64))]
 struct RayHit16 {
     ray: [[f32; 16]; 12],
@@ -65,13 +65,13 @@ const COHERENT: c_uint = 1 << 16;
 
 macro_rules! functions {
     ($($name:ident: fn($($arg:ty),*) $(-> $out:ty)?;)*) => {
-        // Named as in the header.
+        // Names as in the header.
         #[allow(non_snake_case)]
         struct Functions { $($name: unsafe extern "C" fn($($arg),*) $(-> $out)?,)* }
         impl Functions {
             #[allow(non_snake_case)]
             fn load(library: &Library) -> Result<Self> {
-                // SAFETY: the types are those of Embree 4's header.
+                // SAFETY: the types match Embree 4's header.
                 unsafe {
                     $(let $name: Symbol<unsafe extern "C" fn($($arg),*) $(-> $out)?> =
                         library.get(concat!(stringify!($name), "\0").as_bytes())?;)*
@@ -109,7 +109,7 @@ functions! {
 impl Embree {
     /// Loads the library.
     pub fn load(path: &Path, threads: usize) -> Result<Self> {
-        // Its companion, the task library, lies beside it under a name that only the wheel knows.
+        // The task library is beside it under a name chosen by the wheel.
         let companions: Vec<Library> = siblings(path, "libtbb")
             .iter()
             // SAFETY: loading runs the initialisers of a library that the user chose.
@@ -166,11 +166,11 @@ impl Embree {
         format!("{}.{}.{}", self.version / 10000, self.version / 100 % 100, self.version % 100)
     }
 
-    /// Builds a scene of one mesh; gives the seconds of the commit with it.
+    /// Builds a scene of one mesh; also returns the seconds of the commit.
     pub fn build(self: &Arc<Self>, mesh: &Mesh, quality: Quality, robust: bool) -> (Scene, f64) {
         let f = &self.functions;
         self.commit(quality, robust, |scene| {
-            // SAFETY: calls in the order of the manual; the buffers are as large as was asked for.
+            // SAFETY: calls in the order of the manual; the buffers have the requested size.
             unsafe {
                 let geometry = (f.rtcNewGeometry)(self.device, 0);
                 let vertices = (f.rtcSetNewGeometryBuffer)(geometry, 1, 0, 0x9003, 12, mesh.vertices.len());
@@ -184,7 +184,7 @@ impl Embree {
         })
     }
 
-    /// Builds a scene of one scene in many places; gives the seconds of the commit with it.
+    /// Builds a scene of instances; also returns the seconds of the commit.
     pub fn build_instances(self: &Arc<Self>, object: &Scene, places: &[DAffine3]) -> (Scene, f64) {
         const INSTANCE: c_int = 121;
         const COLUMNS_OF_3X4: c_int = 0x9234;
@@ -205,10 +205,10 @@ impl Embree {
 
     /// # Safety
     ///
-    /// Both handles must be valid; the geometry is given away.
+    /// Both handles must be valid; the geometry is consumed.
     unsafe fn attach(&self, scene: Handle, geometry: Handle) {
         let f = &self.functions;
-        // SAFETY: as the caller's.
+        // SAFETY: by the caller's contract.
         unsafe {
             (f.rtcCommitGeometry)(geometry);
             (f.rtcAttachGeometry)(scene, geometry);
@@ -236,7 +236,7 @@ impl Embree {
 
 impl Drop for Embree {
     fn drop(&mut self) {
-        // SAFETY: no scene outlives it, for each holds an `Arc`.
+        // SAFETY: no scene outlives it, because each holds an `Arc`.
         unsafe { (self.functions.rtcReleaseDevice)(self.device) }
     }
 }
@@ -245,7 +245,7 @@ impl Drop for Embree {
 pub struct Scene {
     embree: Arc<Embree>,
     scene: Handle,
-    /// What its tree takes in memory, vertices and indices not counted.
+    /// Size of the tree in bytes, without vertices and indices.
     pub bytes: usize,
 }
 
@@ -284,19 +284,19 @@ fn single(ray: &Ray) -> RayHit1 {
 impl Scene {
     pub fn closest(&self, ray: &Ray) -> Found {
         let mut query = single(ray);
-        // SAFETY: the record is that of the header, and aligned.
+        // SAFETY: the record matches the header, and is aligned.
         unsafe { (self.embree.functions.rtcIntersect1)(self.scene, &mut query, std::ptr::null()) };
         if query.geom == NO_GEOMETRY { Found::NONE } else { Found { t: query.tfar, triangle: query.prim } }
     }
 
     pub fn occluded(&self, ray: &Ray) -> bool {
         let mut query = single(ray);
-        // SAFETY: a ray with a hit behind it is longer than needed.
+        // SAFETY: a `RayHit1` is longer than the `RTCRay` that is needed.
         unsafe { (self.embree.functions.rtcOccluded1)(self.scene, &mut query, std::ptr::null()) };
         query.tfar < 0.0
     }
 
-    /// Sixteen rays at once, marked as coherent or not.
+    /// Traces sixteen rays at once, marked as coherent or not.
     pub fn packets(&self, rays: &[Ray], found: &mut [Found], any: bool, coherent: bool) {
         let arguments = Arguments {
             flags: if coherent { COHERENT } else { 0 },
@@ -330,7 +330,7 @@ impl Scene {
             }
             let f = &self.embree.functions;
             let call = if any { f.rtcOccluded16 } else { f.rtcIntersect16 };
-            // SAFETY: records are those of the header, and aligned.
+            // SAFETY: records match the header, and are aligned.
             unsafe { call(valid.0.as_ptr(), self.scene, &mut query, &arguments) };
             for (i, found) in found.iter_mut().enumerate() {
                 let hit = if any { query.ray[8][i] < 0.0 } else { query.geom[i] != NO_GEOMETRY };
@@ -344,7 +344,7 @@ impl Scene {
     }
 }
 
-/// Files beside a library (or in a folder) whose names begin so.
+/// Returns the files beside a library (or in a folder) whose names start with `prefix`.
 fn siblings(path: &Path, prefix: &str) -> Vec<PathBuf> {
     let folder = if path.is_dir() { path } else { path.parent().unwrap_or(Path::new(".")) };
     let mut found: Vec<PathBuf> = std::fs::read_dir(folder)
@@ -357,7 +357,7 @@ fn siblings(path: &Path, prefix: &str) -> Vec<PathBuf> {
     found
 }
 
-/// Where the library is: as `DURER_EMBREE` says, or in the places where pip and Debian put it.
+/// Finds the library: at `DURER_EMBREE`, or where pip and Debian install it.
 pub fn find() -> Result<PathBuf> {
     if let Some(path) = std::env::var_os("DURER_EMBREE") {
         let path = PathBuf::from(path);
@@ -368,7 +368,7 @@ pub fn find() -> Result<PathBuf> {
     }
     let mut folders: Vec<PathBuf> =
         ["/tmp/embreex/embreex.libs", "/usr/lib/x86_64-linux-gnu", "/usr/lib", "/usr/local/lib"].map(Into::into).into();
-    // What `pip install embreex` left.
+    // Installed by `pip install embreex`.
     if let Ok(output) = std::process::Command::new("python3")
         .args(["-c", "import sysconfig; print(sysconfig.get_paths()['platlib'])"])
         .output()

@@ -1,4 +1,4 @@
-//! The same rays through Dürer, Embree and the crates that a Rust user would otherwise take.
+//! Traces the same rays with Dürer, Embree and other Rust crates.
 
 mod edges;
 mod embree;
@@ -35,7 +35,7 @@ Examples:
 
 Meshes are found in ../shared/meshes, or under DURER_CORPUS; Embree where DURER_EMBREE says.";
 
-/// What the command line says.
+/// Options of the command line.
 pub struct Options {
     pub meshes: Vec<PathBuf>,
     pub cases: Vec<String>,
@@ -51,7 +51,7 @@ pub struct Options {
 }
 
 impl Options {
-    /// Whether rays of this kind are asked for.
+    /// Returns true if this kind of rays is selected.
     pub fn wants(&self, case: &rays::Case) -> bool {
         self.cases.is_empty() || self.cases.iter().any(|name| name == case.name)
     }

@@ -1,4 +1,4 @@
-//! The crates that a Rust user would otherwise take, each in the way that its manual shows.
+//! Other Rust crates, each used as its manual shows.
 
 use crate::rays::{Found, Mesh};
 use bvh::aabb::{Aabb, Bounded};
@@ -48,7 +48,7 @@ impl Obvhs {
     }
 }
 
-/// bvh: a binary tree that gives candidates, nearest boxes first.
+/// bvh: a binary tree that returns candidates, nearest boxes first.
 pub struct BvhCrate {
     tree: bvh::bvh::Bvh<f32, 3>,
     triangles: Vec<Corners>,
@@ -89,13 +89,13 @@ impl BvhCrate {
         bvh::ray::Ray::new(Point3::new(o.x, o.y, o.z), Vector3::new(d.x, d.y, d.z))
     }
 
-    /// From either side: the crate's test takes one.
+    /// Tests both sides, because the crate's test is one-sided.
     fn test(query: &bvh::ray::Ray<f32, 3>, [a, b, c]: &[Point3<f32>; 3]) -> f32 {
         query.intersects_triangle(a, b, c).distance.min(query.intersects_triangle(a, c, b).distance)
     }
 
     pub fn closest(&self, ray: &Ray) -> Found {
-        // The crate makes directions unit vectors.
+        // The crate normalises directions.
         let (query, unit) = (Self::ray(ray), ray.dir.length());
         let mut best = Found { t: ray.t_max * unit, triangle: u32::MAX };
         for candidate in self.tree.nearest_traverse_iterator(&query, &self.triangles) {
@@ -129,7 +129,7 @@ impl Parry {
         let vector = |v: Vec3| parry3d::math::Vector::new(v.x, v.y, v.z);
         let query = parry3d::query::Ray::new(vector(ray.origin), vector(ray.dir));
         let hit = self.0.cast_local_ray_and_get_normal(&query, ray.t_max, true)?;
-        // Faces behind the first half of the numbers are seen from behind.
+        // Face indices from `count` on are hits from behind.
         let count = self.0.indices().len() as u32;
         let parry3d::shape::FeatureId::Face(face) = hit.feature else { return None };
         Some(Found { t: hit.time_of_impact, triangle: face % count })

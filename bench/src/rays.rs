@@ -1,4 +1,4 @@
-//! Meshes and the rays through them: the very same for every tracer.
+//! Meshes and rays, identical for every tracer.
 
 use anyhow::{Context, Result};
 use durer::bvh::TriangleHit;
@@ -8,7 +8,7 @@ use durer::math::{Aabb, Ray, Vec3};
 use durer::sampler::random_2d;
 use std::path::Path;
 
-/// What a tracer found: enough to compare.
+/// A hit, reduced to what is compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
     pub t: f32,
@@ -50,21 +50,21 @@ impl Mesh {
     }
 }
 
-/// Rays of one kind, and whether any hit will do.
+/// Rays of one kind, and true if any hit will do.
 pub struct Case {
     pub name: &'static str,
     pub any: bool,
-    /// Whether neighbours in the list are neighbours in space.
+    /// True if neighbours in the list are neighbours in space.
     pub coherent: bool,
     pub rays: Vec<Ray>,
 }
 
-/// Whether it is seen from inside.
+/// Returns true if the mesh is seen from inside.
 fn is_hall(mesh: &Mesh) -> bool {
     ["hall", "kitchen"].contains(&mesh.name.as_str())
 }
 
-/// The camera: from outside for things, from the middle for halls.
+/// Camera rays: from outside for objects, from the middle for halls.
 fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
     let bounds = mesh.bounds();
     let hall = is_hall(mesh);
@@ -78,7 +78,7 @@ fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
     };
     let right = forward.cross(Vec3::Y).normalize();
     let up = right.cross(forward);
-    // Tiles of eight by eight pixels, as renderers go; sixteen neighbours lie in four by four.
+    // Tiles of 8 x 8 pixels, as in renderers; sixteen consecutive rays are a block of 4 x 4.
     let order = |i: u32| {
         let (tile, within) = (i / 64, i % 64);
         let (block, pixel) = (within / 16, within % 16);
@@ -97,7 +97,7 @@ fn primary(mesh: &Mesh, side: u32) -> Vec<Ray> {
         .collect()
 }
 
-/// A direction over a surface, by the cosine.
+/// Samples a cosine-distributed direction around a normal.
 pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
     let u = random_2d(2, i, 0, 0, dimension);
     let z = 2.0 * u.x - 1.0;
@@ -107,12 +107,13 @@ pub fn cosine(n: Vec3, i: u32, dimension: u32) -> Vec3 {
     (n + 0.999 * on_sphere).normalize()
 }
 
-/// All kinds of rays through a mesh, `side`^2 primary ones; `closest` finds where they hit.
+/// Generates every kind of rays through a mesh, with `side`^2 primary rays; `closest` finds their
+/// hits.
 pub fn cases(mesh: &Mesh, side: u32, closest: impl Fn(&Ray) -> Found) -> Vec<Case> {
     let size = mesh.bounds().size().length();
     let first = primary(mesh, side);
     let (mut bounces, mut shadows, mut occlusions) = (Vec::new(), Vec::new(), Vec::new());
-    // Above things; in halls between floor and ceiling.
+    // Above objects; in halls between floor and ceiling.
     let hall = is_hall(mesh);
     let away = if hall { 0.3 * mesh.bounds().size() } else { Vec3::splat(size) };
     let light = mesh.bounds().center() + away * Vec3::new(0.32, 0.81, 0.47);

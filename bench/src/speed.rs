@@ -1,4 +1,4 @@
-//! How fast: tables of medians and ratios.
+//! Ray tracing speed: tables of medians and ratios.
 
 use crate::Options;
 use crate::embree::{Embree, Quality, Scene};
@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// Something that traces; the rays go through it in one call, so that nothing is chosen ray by ray.
+/// A tracer; one call traces all rays, so that no dispatch happens per ray.
 type Trace<'a> = Box<dyn Fn(&[Ray], &mut [Found]) + Sync + 'a>;
 
 struct Tracer<'a> {
@@ -22,14 +22,14 @@ struct Tracer<'a> {
     trace: Trace<'a>,
 }
 
-/// Calls a function for each ray.
+/// Traces each ray with a function.
 fn each(rays: &[Ray], found: &mut [Found], trace: impl Fn(&Ray) -> Found) {
     for (ray, found) in rays.iter().zip(found) {
         *found = trace(ray);
     }
 }
 
-/// The answer to whether anything is hit, in the same form.
+/// Converts an occlusion result to a `Found`.
 fn hit(occluded: bool) -> Found {
     if occluded { Found { t: 0.0, triangle: 0 } } else { Found::NONE }
 }
@@ -45,7 +45,7 @@ macro_rules! single {
     }};
 }
 
-/// Our tree, in the form of the others.
+/// Our tree, with the interface of the others.
 struct Ours(TriangleBvh);
 
 impl Ours {
@@ -72,11 +72,11 @@ impl Ours {
     }
 }
 
-/// Seconds for all rays on so many threads.
+/// Measures the seconds for all rays on `threads` threads.
 fn time(tracer: &Tracer, rays: &[Ray], found: &mut [Found], threads: usize) -> f64 {
     let clock = Instant::now();
     if threads == 1 {
-        // The thread's own time: what others do on the machine does not count.
+        // Thread CPU time excludes other processes.
         let start = thread_seconds();
         (tracer.trace)(rays, found);
         return thread_seconds() - start;
@@ -99,10 +99,10 @@ fn time(tracer: &Tracer, rays: &[Ray], found: &mut [Found], threads: usize) -> f
     clock.elapsed().as_secs_f64()
 }
 
-/// Processor time of this thread.
+/// Returns the CPU time of this thread in seconds.
 fn thread_seconds() -> f64 {
     let mut time = libc::timespec { tv_sec: 0, tv_nsec: 0 };
-    // SAFETY: the place for the answer is valid.
+    // SAFETY: the pointer to the result is valid.
     unsafe { libc::clock_gettime(libc::CLOCK_THREAD_CPUTIME_ID, &mut time) };
     time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }
@@ -112,7 +112,7 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
-/// How many answers differ by more than rounding.
+/// Counts results that differ by more than rounding.
 fn differences(a: &[Found], b: &[Found]) -> usize {
     let same = |a: &Found, b: &Found| a.t == b.t || (a.t - b.t).abs() <= 1e-3 * a.t.abs();
     a.iter().zip(b).filter(|(a, b)| !same(a, b)).count()
@@ -147,14 +147,14 @@ pub fn run(options: &Options) -> Result<()> {
     Ok(())
 }
 
-/// Numbers as they lie in a file.
+/// Reads numbers from a binary file.
 fn numbers<T>(path: &Path, number: impl Fn([u8; 4]) -> T) -> Result<Vec<T>> {
     let bytes = std::fs::read(path).with_context(|| path.display().to_string())?;
     Ok(bytes.as_chunks().0.iter().map(|&bytes| number(bytes)).collect())
 }
 
-/// Millions of rays a second through our batches, of a mesh and rays that another program wrote:
-/// what its own way to them costs.
+/// Prints millions of rays per second through our batches, for a mesh and rays written by another
+/// program, to measure the overhead of that program's interface.
 pub fn arrays(folder: &Path, options: &Options) -> Result<()> {
     let floats = |name: &str| numbers(&folder.join(name), f32::from_le_bytes);
     let points =
@@ -205,7 +205,7 @@ fn one_mesh(mesh: &Mesh, options: &Options, embree: Option<&Arc<Embree>>, ratios
     println!();
 }
 
-/// One mesh in many places, each turned and stretched in its own way.
+/// Measures instances of one mesh, each with its own rotation and scale.
 fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Embree>>, ratios: &mut Vec<f64>) {
     println!("{} instances of {}: {} triangles", count, mesh.name, mesh.triangles.len());
     let places = places(mesh, count);
@@ -238,7 +238,7 @@ fn instances(mesh: &Mesh, count: u32, options: &Options, embree: Option<&Arc<Emb
     println!();
 }
 
-/// Our instances, in the form of the others, and how many triangles each has.
+/// Our instances with the interface of the others, and the number of triangles of each.
 struct Placed(InstanceBvh, u32);
 
 impl Placed {
@@ -253,7 +253,7 @@ impl Placed {
     }
 }
 
-/// Places in a cube of cells, each about as large as the mesh.
+/// Returns transforms in a cube of cells, each about as large as the mesh.
 fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
     let side = (1..).find(|side| side * side * side >= count).expect("some cube is large enough");
     let (center, size) = (mesh.bounds().center().as_dvec3(), f64::from(mesh.bounds().size().max_element()));
@@ -262,7 +262,7 @@ fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
         let random = |dimension: u32| random_2d(5, i, 0, 0, dimension).as_dvec2();
         let (turns, stretch) = (6.0 * random(0), 0.6 + 0.6 * random(1));
         let mut matrix = DMat3::from_rotation_y(turns.x) * DMat3::from_rotation_x(turns.y);
-        // Stretched along one axis, and sheared.
+        // Stretch along one axis, and shear.
         matrix *= DMat3::from_diagonal(DVec3::new(stretch.x, stretch.y, 0.9));
         matrix.y_axis += 0.3 * random(2).x * matrix.x_axis;
         DAffine3 { matrix3: matrix, translation: size * cell - matrix * center }
@@ -270,7 +270,7 @@ fn places(mesh: &Mesh, count: u32) -> Vec<DAffine3> {
     (0..count).map(place).collect()
 }
 
-/// The same as one mesh, from which rays are made.
+/// Returns the instances as one mesh, from which rays are generated.
 fn flattened(mesh: &Mesh, places: &[DAffine3]) -> Mesh {
     let place =
         |place: &DAffine3| mesh.vertices.iter().map(|v| place.transform_point3(v.as_dvec3()).as_vec3()).collect();
@@ -291,7 +291,7 @@ fn one_case(
     let mut seconds = vec![Vec::new(); tracers.len()];
     for round in 0..options.rounds {
         for (i, tracer) in tracers.iter().enumerate() {
-            // The other crates take long, and are here for orientation.
+            // The other crates are slow and only for orientation.
             if round >= 2 && !tracer.name.starts_with(['D', 'E']) {
                 continue;
             }

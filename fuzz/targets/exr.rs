@@ -1,4 +1,4 @@
-//! Any bytes as a picture named `x.exr`.
+//! Arbitrary bytes as a picture named `x.exr`.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::picture(data, "x.exr"));

@@ -1,4 +1,4 @@
-//! Any bytes as a file of measured light.
+//! Arbitrary bytes as a photometric file.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::profile(data));

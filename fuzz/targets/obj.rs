@@ -1,4 +1,4 @@
-//! Any bytes as a Wavefront mesh.
+//! Arbitrary bytes as an OBJ mesh.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::mesh(data, "x.obj"));

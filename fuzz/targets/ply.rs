@@ -1,4 +1,4 @@
-//! Any bytes as a Stanford mesh.
+//! Arbitrary bytes as a PLY mesh.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::mesh(data, "x.ply"));

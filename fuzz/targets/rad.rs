@@ -1,4 +1,4 @@
-//! Any bytes as a scene of Radiance's.
+//! Arbitrary bytes as a Radiance scene.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::model(data, "x.rad"));

@@ -1,4 +1,4 @@
-//! Any bytes as a mesh of triangles alone.
+//! Arbitrary bytes as an STL mesh.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::mesh(data, "x.stl"));

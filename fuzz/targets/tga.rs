@@ -1,4 +1,4 @@
-//! Any bytes as a picture named `x.tga`.
+//! Arbitrary bytes as a picture named `x.tga`.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::picture(data, "x.tga"));

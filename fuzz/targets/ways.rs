@@ -1,4 +1,4 @@
-//! Scenes that can be rendered, by tree, grid and brute force: one picture.
+//! Random valid scenes: BVH, grid and brute force give the same picture.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::ways(data));

@@ -1,4 +1,4 @@
-//! Any bytes as a scene of Mitsuba's.
+//! Arbitrary bytes as a Mitsuba scene.
 #![no_main]
 
 libfuzzer_sys::fuzz_target!(|data: &[u8]| durer::fuzz::model(data, "x.xml"));

@@ -1,13 +1,13 @@
-//! `cargo xtask additions`: how much a new thing of each kind takes. It is added to a copy of the
-//! sources, which is built and used.
+//! `cargo xtask additions`: measures the effort of adding a feature of each kind. Adds them to a
+//! copy of the sources, builds it and uses it.
 
 use crate::root;
 use anyhow::{Context, Result, bail, ensure};
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// A new thing: what it is, its file and the content of that, and what lists need: into which file,
-/// before which text, and what.
+/// A new feature: its kind, its file and content, and the entries that lists need: file, text to
+/// insert before, and insertion.
 struct Addition {
     kind: &'static str,
     file: &'static str,
@@ -119,7 +119,7 @@ const ADDITIONS: &[Addition] = &[
     },
 ];
 
-/// A scene of the new things.
+/// A scene with the new features.
 const SCENE: &str = "ObliqueCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size 4 slant 0.3 }
 Lights { GlowLight { position 2 3 4 color 1 1 1 } }
 Materials {
@@ -137,7 +137,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         _ => bail!("cargo xtask additions [--only TEXT]"),
     };
     let root = root()?;
-    // Built apart, so that the program with the new things does not take the place of ours.
+    // Built in a separate folder, so that it does not replace our program.
     let (copy, built) = (root.join("target/additions"), root.join("target/additions-built"));
     let _ = std::fs::remove_dir_all(&copy);
     std::fs::create_dir_all(&copy)?;
@@ -175,7 +175,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Adds a thing to a copy of the crates.
+/// Adds a feature to a copy of the crates.
 fn add(crates: &Path, addition: &Addition) -> Result<()> {
     let file = crates.join(addition.file);
     ensure!(!file.exists(), "{} is there already", addition.file);
@@ -190,7 +190,7 @@ fn add(crates: &Path, addition: &Addition) -> Result<()> {
     Ok(())
 }
 
-/// Uses them all.
+/// Uses the new features.
 fn used(durer: &Path, folder: &Path) -> Result<()> {
     std::fs::write(folder.join("scene.txt"), SCENE)?;
     std::fs::write(folder.join("a.balls"), "0 0 0 1\n2 0 0 0.5\n")?;

@@ -1,4 +1,4 @@
-//! How fast files of meshes are read, beside other crates, on the same files.
+//! Compares the speed of reading mesh files with other crates, on the same files.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
@@ -61,7 +61,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Triangles of a file.
+/// Reads a file and counts its triangles.
 fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let name = path.to_string_lossy();
@@ -75,7 +75,8 @@ fn read(path: &Path, bytes: &Arc<[u8]>) -> Result<usize> {
     Ok(loaded.scene.assets.meshes.values().map(|mesh| mesh.triangles.len()).sum())
 }
 
-/// A hilly square of so many million triangles in all formats; those of text are a tenth of it.
+/// Writes a hilly square in all formats, with `millions` million triangles, or a tenth of that in
+/// text formats and STL.
 fn written(folder: &Path, millions: u32) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for (extension, share) in [("ply", 1.0), ("glb", 1.0), ("stl", 0.1), ("obj", 0.1)] {

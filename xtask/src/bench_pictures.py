@@ -1,10 +1,12 @@
-"""Whole pictures by Dürer and by POV-Ray 3.7: the same scenes, the same number of samples, in turns.
+"""Compares whole pictures by Dürer and by POV-Ray 3.7: the same scenes and number of samples, in
+turns.
 
     python3 bench_pictures.py DURER DRAGON.ply [--runs 3] [--threads 2] [--side 512] [--only TEXT]
 
-Ours has 16 samples a pixel and its usual filter. POV-Ray has a picture of four times the sides without anti-aliasing: the same rays
-through the same scene, at the least that it can spend on them. Memory is that of pictures of equal size and one sample. Means say
-whether both show the same: they are of linear light, of small pictures.
+Ours has 16 samples a pixel and the default filter. POV-Ray renders four times the width and
+height without anti-aliasing: the same rays through the same scene, at its lowest cost. Memory is
+measured on pictures of equal size with one sample. The means of small pictures in linear light
+verify that both show the same.
 """
 
 import argparse
@@ -26,7 +28,7 @@ def words(values):
 
 
 def vector(values):
-    """POV-Ray's axes are left-handed: z is turned round."""
+    """POV-Ray's axes are left-handed: negate z."""
     x, y, z = values
     return f"<{x:.6g},{y:.6g},{-z:.6g}>"
 
@@ -53,7 +55,8 @@ class Scene:
         self.theirs.append(f"light_source {{ {vector(place)} rgb <{','.join(map(str, color))}> }}")
 
     def material(self, diffuse, specular=0.0, exponent=1, mirror=0.0, glass=None):
-        """Its number, and POV-Ray's words for it. Its highlight is `specular`, Blinn's, whose exponent is 1 / roughness."""
+        """Returns its index, and POV-Ray's text. The highlight is Blinn's with strength
+        `specular`; POV-Ray's roughness is 1 / exponent."""
         text = f"PhongMaterial {{ diffuseColor {words(diffuse)} specularColor {words([specular] * 3)} exponent {exponent}"
         color, finish = ",".join(map(str, diffuse)), f"ambient 1 diffuse 1 specular {specular} roughness {1 / exponent:.6g}"
         if glass is not None:
@@ -67,7 +70,7 @@ class Scene:
         return len(self.materials) - 1, theirs
 
     def put(self, material, ours, theirs):
-        """An object; `theirs` is its POV-Ray text without the last brace."""
+        """Adds an object; `theirs` is its POV-Ray text without the last brace."""
         self.objects.append(f"MaterialIndex {material[0]} {ours}")
         self.theirs.append(f"{theirs} {material[1]} }}")
 
@@ -116,7 +119,7 @@ def hall(_):
 
 
 def read_ply(path):
-    """Corners and triangles of a binary file of floats and triangles."""
+    """Reads corners and triangles of a binary file of floats and triangles."""
     data = pathlib.Path(path).read_bytes()
     head, body = data.split(b"end_header\n", 1)
     counts = {line.split()[1]: int(line.split()[2]) for line in head.split(b"\n") if line.startswith(b"element")}
@@ -195,11 +198,11 @@ SCENES = [sphere, whitted, hall, dragon, gear, height_field, glass_balls]
 
 
 def run(command, folder, peak=False):
-    """CPU seconds, wall seconds and, if wanted, peak bytes of a command."""
+    """Returns CPU seconds, wall seconds and, if wanted, peak bytes of a command."""
     start, most = os.times().elapsed, 0
     with open(folder / "errors.txt", "w+b") as errors:
         process = subprocess.Popen([str(c) for c in command], cwd=folder, stdout=subprocess.DEVNULL, stderr=errors)
-        # What wait4 tells of memory counts this program's own, before the other one began.
+        # wait4's peak memory would include this process before exec.
         while peak and (os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)) is None:
             try:
                 status = pathlib.Path(f"/proc/{process.pid}/status").read_text()
@@ -227,7 +230,7 @@ def theirs(side, threads, picture):
 
 
 def mean(path):
-    """Of linear light, from a PPM."""
+    """Returns the mean of a PPM in linear light."""
     data = path.read_bytes()
     fields, at = [], 0
     while len(fields) < 4:

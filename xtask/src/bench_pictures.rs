@@ -1,4 +1,4 @@
-//! Whole pictures beside POV-Ray: `bench_pictures.py` says which and how.
+//! Compares whole pictures with POV-Ray: see `bench_pictures.py`.
 
 use anyhow::Result;
 use std::process::{Command, ExitCode};

@@ -1,5 +1,5 @@
-//! `cargo xtask bench-rays`: a workspace of its own, so that the crates we compare with are
-//! compiled for it alone.
+//! `cargo xtask bench-rays`: runs a separate workspace, so that the crates we compare with are only
+//! compiled for it.
 
 use crate::root;
 use std::process::{Command, ExitCode};

@@ -1,5 +1,5 @@
-//! Benedikt Bitterli's scenes, read from pbrt's files, beside the pictures that his own renderer,
-//! Tungsten, made of them: the table in docs/models.md.
+//! Compares Benedikt Bitterli's scenes, read from pbrt files, with the pictures of his own
+//! renderer, Tungsten: the table in docs/models.md.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files, Severity};
@@ -14,23 +14,22 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Samples of a pixel, unless asked otherwise; a pixel is 4 x 4 of the reference's.
+/// Default samples a pixel; a pixel covers 4 x 4 of the reference's.
 const SAMPLES: u32 = 256;
 const STEP: u32 = 4;
 
-/// How far the mean may be off, and FLIP after equal exposure.
+/// Limits for the deviation of the mean, and for FLIP after equal exposure.
 const MAX_OFF: f64 = 0.02;
 const MAX_FLIP: f64 = 0.08;
 
-/// Scenes whose file asks for other depths than Tungsten took: how often light is scattered after
-/// the first time. Without any, walls and floor of veach-mis agree to a thousandth.
+/// Scenes whose file asks for other depths than Tungsten used: the number of scattering events
+/// after the first hit. With 0, walls and floor of veach-mis agree to a thousandth.
 const BOUNCES: [(&str, u32); 2] = [("cornell-box", 62), ("veach-mis", 0)];
 
-/// Scenes for which pbrt's file asks for photons: how many each sample has, and the radius that is
-/// written there.
+/// Scenes whose pbrt file asks for photons: photons a sample, and the radius stated there.
 const PHOTONS: [(&str, u32, f32); 1] = [("water-caustic", 200_000, 0.01)];
 
-/// What is known of why a picture is not Tungsten's.
+/// Known causes of differences from Tungsten.
 const CAUSES: [(&str, &str); 3] = [
     ("coffee", "coats lose the mean share of the light that enters them, whatever its direction"),
     ("veach-mis", "the file's metals lack the factor 0.3 and Beckmann's distribution of Tungsten's metals"),
@@ -43,11 +42,11 @@ const CAUSES: [(&str, &str); 3] = [
 const BEGIN: &str = "<!-- made by cargo xtask bitterli -->\n";
 const END: &str = "<!-- end -->\n";
 
-/// A scene beside its reference.
+/// A scene and its comparison.
 struct Row {
     name: String,
     size: (u32, u32),
-    /// Ratio of mean luminances, and its inverse applied, FLIP and HDR-FLIP.
+    /// Ratio of mean luminances, and FLIP and HDR-FLIP after dividing by it.
     ratio: f64,
     flip: f64,
     hdr_flip: f64,
@@ -136,7 +135,7 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     part.render(&world, &Control::default(), &mut |_, _| {})?;
     let rendered = part.pictures()?;
     let ours = &rendered.layers.first().context("a picture")?.image;
-    // A lamp may be brighter than the reference's numbers can be: it is left out of both.
+    // An emitter may exceed the reference's number range: exclude it in both pictures.
     let seen = |image: &Image| {
         let pixel = |(&own, other): (&Vec3, &Vec3)| if other.is_finite() { own } else { Vec3::ZERO };
         Image { pixels: image.pixels.iter().zip(&whole.pixels).map(pixel).collect(), ..image.clone() }
@@ -160,18 +159,18 @@ fn compared(folder: &Path, samples: u32, keep: Option<&Path>) -> Result<Row> {
     Ok(Row { name, size: (reference.width, reference.height), ratio, flip, hdr_flip, bounces })
 }
 
-/// A picture of light.
+/// Wraps an image as a picture in linear light.
 fn light(image: &Image) -> Picture {
     Picture { image: image.clone(), scale: Scale::Linear }
 }
 
-/// The mean of the luminance.
+/// Returns the mean luminance.
 fn mean(image: &Image) -> f64 {
     let luminance = |p: &Vec3| f64::from(p.dot(Vec3::new(0.2126, 0.7152, 0.0722)));
     image.pixels.iter().map(luminance).sum::<f64>() / image.pixels.len() as f64
 }
 
-/// Squares of pixels as one.
+/// Averages blocks of pixels.
 fn smaller(image: &Image) -> Result<Image> {
     let (width, height) = (image.width / STEP, image.height / STEP);
     let pixel = |x: u32, y: u32| {

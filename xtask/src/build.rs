@@ -1,10 +1,11 @@
-//! The program that is tried.
+//! Builds the program under test.
 
 use anyhow::{Result, bail};
 use std::path::PathBuf;
 use std::process::Command;
 
-/// Builds `durer` as it is released; where it is. `DURER_EXE` names one that is built already.
+/// Builds `durer` in release mode and returns its path. `DURER_EXE` names an existing build
+/// instead.
 pub fn durer() -> Result<PathBuf> {
     if let Some(built) = std::env::var_os("DURER_EXE") {
         return Ok(PathBuf::from(built).canonicalize()?);

@@ -1,5 +1,5 @@
-//! What determinism costs: exact sums beside floating point, threads, and how soon a render ends
-//! that is cancelled.
+//! Measures the cost of determinism: exact sums against floating point, threads, and the latency of
+//! cancelling a render.
 
 use anyhow::{Result, bail};
 use durer::compile::AccelKind;
@@ -46,10 +46,10 @@ fn world(name: &str) -> Result<World> {
 
 const SIDE: u32 = 128;
 const SAMPLES: u32 = 16;
-/// What red, green and blue of Rec. 709 give to the luminance.
+/// Luminance weights of Rec. 709.
 const LUMINANCE: Vec3 = Vec3::new(0.2126, 0.7152, 0.0722);
 
-/// What the film keeps of a pixel, in floating point.
+/// Sums of a pixel as in the film, in floating point.
 #[derive(Clone, Default)]
 struct Plain {
     color: Vec3,
@@ -77,13 +77,13 @@ impl Plain {
     }
 }
 
-/// The time of the same samples added exactly, and added as `f32`: of each row the least of several
-/// in turns, for what disturbs a measurement lasts longer than a row.
+/// Returns the time of the same samples summed exactly, and summed as `f32`: the minimum of several
+/// runs in turns, because disturbances last longer than a row.
 fn film(world: &World) -> [Duration; 2] {
     let job = Job { width: SIDE, height: SIDE, ..Job::default() };
     let whitted = Whitted { world, settings: job.settings, cancel: None };
     let (raster, warp) = (raster(world, SIDE, SIDE), Filter::default().sampler());
-    // Not known to the compiler, so both ways call the same code.
+    // Opaque to the compiler, so both versions call the same code.
     let sample: &dyn Fn(u32, u32, u32) -> (Vec3, f32) = &|x, y, s| {
         let (offset, weight) = warp.sample(Sampler::Sobol.pixel_position(0, x, y, s, SAMPLES));
         let place = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) + offset;
@@ -124,8 +124,9 @@ fn large() -> Job {
     Job { width: 800, height: 600, sampling, ..Job::default() }
 }
 
-/// The least time of several of a render in one thread, of one in two, and of two at once in one
-/// thread each: what the machine's processors can do together, which may be two halves of one.
+/// Returns the minimum times of a render on one thread, of one on two threads, and of two renders
+/// at once on one thread each. The last shows what the processors achieve together, as they may be
+/// two hyperthreads of one core.
 fn threaded(world: &World) -> [Duration; 3] {
     let render = |threads| {
         let control = Control { threads: Some(threads), ..Control::default() };
@@ -151,7 +152,7 @@ fn threaded(world: &World) -> [Duration; 3] {
     least
 }
 
-/// How long a render goes on after it is cancelled.
+/// Measures how long a render continues after it is cancelled.
 fn latency(world: &World, number: u32) -> Duration {
     let job = Job { width: 1920, height: 1080, ..large() };
     let control = Control::default();

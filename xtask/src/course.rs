@@ -1,4 +1,4 @@
-//! Our pictures beside the official ones.
+//! Compares our pictures with the official ones.
 
 use anyhow::{Context, Result, bail};
 use durer::image::{Image8, read8};
@@ -6,26 +6,26 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 
-/// Differences of up to this much in a channel are rounding.
+/// Largest difference in a channel that counts as rounding.
 const ROUNDING: u8 = 2;
-/// Pictures of random samples are made this often, to know how much they differ among themselves.
+/// Number of renders of pictures with random samples, to estimate their variation.
 const SEEDS: u64 = 8;
 
-/// One row of the list.
+/// A row of the reference list.
 #[derive(Clone, Debug)]
 pub struct Row {
     picture: String,
-    /// The year whose scenes it is of, which is also the name of their folder.
+    /// Year of the scenes, also the name of their folder.
     pub dialect: String,
     shows: String,
     compare: String,
-    /// The official program.
+    /// Official program.
     pub program: String,
-    /// Its arguments; empty where they are not known.
+    /// Its arguments; empty if unknown.
     pub arguments: String,
 }
 
-/// What a comparison found.
+/// Result of a comparison.
 struct Finding {
     /// Share of pixels that differ by more than rounding, in percent, or another measure.
     share: f64,
@@ -41,11 +41,11 @@ enum Verdict {
     Look,
 }
 
-/// A row that does not agree, and why.
+/// A row that does not agree, and the reason.
 struct Reason {
     picture: &'static str,
-    /// Up to which share of pixels, in percent, the cause explains the difference; more is another
-    /// one.
+    /// Share of differing pixels, in percent, that the cause explains; a larger share has another
+    /// cause.
     most: f64,
     words: &'static str,
 }
@@ -54,7 +54,7 @@ const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason
     Reason { picture, most, words }
 }
 
-/// Rows that are known not to agree. None of them counts as passed.
+/// Rows that are known to differ. None of them counts as passed.
 const REASONS: &[Reason] = &[
     reason("output5_03.png", 15.0, "the official camera was not the scene's: see docs/course.md"),
     reason("output6_18a.png", 91.0, BOARD),
@@ -120,7 +120,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if failed == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// The rows of the list of reference pictures.
+/// Reads the rows of the reference list.
 pub fn rows(course: &Path) -> Result<Vec<Row>> {
     let mut reader = csv::Reader::from_path(course.join("reference.csv"))?;
     let mut rows = Vec::new();
@@ -139,13 +139,13 @@ pub fn rows(course: &Path) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// Where things are, and what was already made.
+/// Paths, and the outputs so far.
 struct Bench {
     durer: PathBuf,
     course: PathBuf,
     out: PathBuf,
     guess: bool,
-    /// Folder of the outputs, by program, arguments and seed.
+    /// Output folders, by program, arguments and seed.
     made: HashMap<String, PathBuf>,
 }
 
@@ -176,7 +176,7 @@ impl Bench {
         Ok(Finding { share, largest, verdict, remark: String::new() })
     }
 
-    /// Our picture for a row, made once for each set of arguments and seed.
+    /// Returns our picture for a row, rendered once for each set of arguments and seed.
     fn picture(&mut self, row: &Row, seed: u64) -> Result<Image8> {
         let key = format!("{} {} {} {seed}", row.dialect, row.program, row.arguments);
         let folder = match self.made.get(&key) {
@@ -225,7 +225,7 @@ impl Bench {
         text.contains("transparentColor") || text.contains("refractionIndex")
     }
 
-    /// Equal in mean and spread: the reference is one more picture of the kind that our seeds make.
+    /// Tests equality in mean and spread: the reference should look like another seed of ours.
     fn compare_random(&mut self, row: &Row, reference: &Image8, share: f64, largest: u8) -> Result<Finding> {
         let ours: Vec<Image8> = (0..SEEDS).map(|seed| self.picture(row, seed)).collect::<Result<_>>()?;
         let n = SEEDS as f64;
@@ -233,8 +233,8 @@ impl Bench {
         let values: Vec<Vec<f64>> = ours.iter().map(channels).collect();
         let theirs = channels(reference);
         let mean_of = |v: &[f64]| v.iter().sum::<f64>() / v.len() as f64;
-        // Each picture's distance from the mean of the others, for ours and for the reference
-        // alike.
+        // Distance of each picture from the mean of the others, in the same way for ours and the
+        // reference.
         let sums: Vec<f64> = (0..theirs.len()).map(|i| values.iter().map(|v| v[i]).sum()).collect();
         let spread = |picture: &[f64], others: &dyn Fn(usize) -> f64| {
             (picture.iter().enumerate().map(|(i, v)| square(v - others(i))).sum::<f64>() / picture.len() as f64).sqrt()
@@ -248,8 +248,8 @@ impl Bench {
         let own_spread = mean_of(&own);
         let spread_deviation = (own.iter().map(|s| square(s - own_spread)).sum::<f64>() / (n - 1.0)).sqrt();
         let spread_difference = reference_spread - own_spread;
-        // Four deviations of chance, and what truncation to whole grey levels may add: none of it
-        // on most pixels.
+        // Four standard deviations, plus the possible effect of truncation to whole grey levels,
+        // which is zero for most pixels.
         let chance = 4.0 * (1.0 + 1.0 / n).sqrt();
         let mean_equal = mean_difference.abs() <= chance * deviation + 0.1;
         let spread_equal = spread_difference.abs() <= chance * spread_deviation + 0.1;
@@ -266,7 +266,7 @@ impl Bench {
         let name = row.picture.trim_start_matches("reference/").replace('/', "_");
         let shown = [ours, reference].map(|image| image.pixels.iter().map(|p| p.map(f32::from)).collect::<Vec<_>>());
         let mut pixels = Vec::new();
-        // Ours, the official one, and the difference eightfold, side by side.
+        // Ours, the official one, and eight times the difference, side by side.
         let width = ours.width as usize;
         for y in 0..ours.height as usize {
             for part in 0..3 {
@@ -295,7 +295,7 @@ fn square(x: f64) -> f64 {
     x * x
 }
 
-/// The output files among some arguments: the option and the place of its file.
+/// Returns the output files among arguments: the option and the index of its file.
 pub fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)> {
     const OUTPUTS: [(&str, usize); 5] =
         [("-output", 1), ("-depth", 3), ("-normals", 1), ("-render_samples", 1), ("-render_filter", 1)];
@@ -305,7 +305,7 @@ pub fn files<'a>(words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, usize)>
         .filter_map(|(i, word)| OUTPUTS.iter().find(|(name, _)| name == word).map(|(name, offset)| (*name, i + offset)))
 }
 
-/// The name of the file that a row's picture is compared with.
+/// Returns the name of the file that a row's picture is compared with.
 fn output_name(row: &Row) -> Result<String> {
     let option = match row.shows.as_str() {
         "color" => "-output",
@@ -325,7 +325,7 @@ fn read(path: &Path) -> Result<Image8> {
     Ok(read8(&bytes, &path.to_string_lossy())?)
 }
 
-/// Percentage of pixels beyond rounding, and the largest difference.
+/// Returns the percentage of pixels beyond rounding, and the largest difference.
 fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
     let of_pixel = |(p, q): (&[u8; 3], &[u8; 3])| (0..3).map(|c| p[c].abs_diff(q[c])).max().unwrap_or(0);
     let differences: Vec<u8> = a.pixels.iter().zip(&b.pixels).map(of_pixel).collect();
@@ -333,8 +333,8 @@ fn difference(a: &Image8, b: &Image8) -> (f64, u8) {
     (100.0 * beyond as f64 / differences.len().max(1) as f64, differences.into_iter().max().unwrap_or(0))
 }
 
-/// Whether the same pixels show something other than the background, which is the commonest colour
-/// on the border.
+/// Checks that the same pixels show something other than the background, which is the most common
+/// colour on the border.
 fn compare_silhouettes(ours: &Image8, reference: &Image8, largest: u8) -> Finding {
     let background = |image: &Image8| {
         let (w, h) = (image.width as usize, image.height as usize);

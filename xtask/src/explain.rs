@@ -1,4 +1,4 @@
-//! Explanations of random pixels of all scenes, beside the pictures.
+//! Checks explanations of random pixels of all scenes against the pictures.
 
 use anyhow::{Context, Result};
 use durer::diag::{Diagnostics, Files};
@@ -13,18 +13,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-/// Pixels of each scene whose explanation is timed, and the slowest scenes that are told.
+/// Number of timed explanations in each scene, and of slowest scenes to report.
 const TIMED: u32 = 5;
 const SLOWEST: usize = 5;
 
-/// A scene, read in one way.
+/// A scene compiled in one dialect.
 struct Opened {
     name: String,
     world: World,
     settings: Settings,
 }
 
-/// What was found in it.
+/// Results of a scene.
 struct Found {
     name: String,
     differences: Vec<String>,
@@ -45,7 +45,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
         false => println!("the course is not there: only our own scenes"),
     }
     scenes.retain(|path| only.is_none_or(|only| path.to_string_lossy().contains(only.as_str())));
-    // Every scene with sane rules, and as its year's program understood it.
+    // Every scene with sane rules, and with its year's program's quirks.
     let ways: Vec<(&PathBuf, bool)> = scenes.iter().flat_map(|scene| [(scene, false), (scene, true)]).collect();
     let pool = rayon::ThreadPoolBuilder::new().stack_size(64 << 20).build()?;
     let read = || ways.par_iter().map(|(scene, official)| read(scene, *official, &course)).collect::<Result<Vec<_>>>();
@@ -68,7 +68,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if differ == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Files that may be scenes, in and below a folder.
+/// Collects files that may be scenes, recursively.
 fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<_>>()?;
     paths.sort();
@@ -82,7 +82,7 @@ fn collect(folder: &Path, scenes: &mut Vec<PathBuf>) -> Result<()> {
     Ok(())
 }
 
-/// Reads a scene; `None` if the file is none.
+/// Reads a scene; `None` if the file is not a scene.
 fn read(scene: &Path, official: bool, course: &Path) -> Result<Option<Opened>> {
     let assets = ["f16", "f04"].map(|year| course.join(year)).into_iter().filter(|folder| folder.is_dir()).collect();
     let options = LoadOptions { course: official, assets, ..LoadOptions::default() };
@@ -108,7 +108,7 @@ impl Opened {
     }
 }
 
-/// What a scene asks for; with shadows and some levels of rays in any case.
+/// Returns a scene's settings, with shadows and at least some levels of secondary rays.
 fn settings(loaded: &Loaded) -> Settings {
     Settings {
         bounces: loaded.rules.bounces.max(4),

@@ -1,4 +1,4 @@
-//! Random bytes and scenes against the readers and the tracer, side by side: see `fuzz/`.
+//! Fuzzes the readers and the tracer with random bytes and scenes, in parallel: see `fuzz/`.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::process::{Command, ExitCode, Stdio};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The targets, and the endings of files that they can begin with.
+/// Fuzz targets, and extensions of their seed files.
 const TARGETS: [(&str, &[&str]); 22] = [
     ("scene", &["txt"]),
     ("obj", &["obj"]),
@@ -20,7 +20,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("hdr", &["hdr"]),
     ("ktx2", &["ktx2"]),
     ("stl", &["stl"]),
-    // Draco and meshopt are in it.
+    // Includes Draco and meshopt.
     ("gltf", &["gltf", "glb"]),
     ("json", &["json"]),
     ("pbrt", &["pbrt"]),
@@ -33,8 +33,7 @@ const TARGETS: [(&str, &[&str]); 22] = [
     ("ways", &[]),
 ];
 
-/// Inputs are at most so many bytes, a run takes at most so many MiB of memory, an input so many
-/// seconds.
+/// Limits: bytes an input, MiB of memory a run, seconds an input.
 const MAX_BYTES: u64 = 16 << 10;
 const MAX_MEMORY: u32 = 2048;
 const MAX_SECONDS: u32 = 20;
@@ -73,7 +72,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if found.into_inner() == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Runs a target, and whether it found nothing.
+/// Runs a target; returns true if it found nothing.
 fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: f64) -> Result<bool> {
     let (corpus, seeds) = (fuzz.join("corpus").join(name), scratch.join(name).join("seeds"));
     std::fs::create_dir_all(&corpus)?;
@@ -105,10 +104,10 @@ fn is_clean(fuzz: &Path, scratch: &Path, name: &str, endings: &[&str], minutes: 
     Ok(false)
 }
 
-/// What the processes that this one waited for took of processors, where Linux tells.
+/// Returns the CPU time of finished child processes in hours; `None` except on Linux.
 fn hours_of_children() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // The name in parentheses may hold spaces. What follows are the fields from the third; 16 and
+    // The name in parentheses may contain spaces. After it come the fields from the third; 16 and
     // 17 are in 1/100 s.
     let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
     let ticks = |number: usize| fields.get(number - 3)?.parse::<f64>().ok();
@@ -117,13 +116,13 @@ fn hours_of_children() -> Option<f64> {
 
 fn cargo_fuzz(fuzz: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new("cargo");
-    // This was started by another toolchain's cargo, which must not choose the compiler.
+    // Another toolchain's cargo started this process and must not select the compiler.
     command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").args(["+nightly", "fuzz"]).args(arguments);
     command.current_dir(fuzz.join(".."));
     command
 }
 
-/// Says in plain words what has to be installed.
+/// Reports missing tools with installation instructions.
 fn what_is_missing() -> Result<()> {
     let there = |arguments: &[&str]| {
         let mut command = Command::new("cargo");
@@ -141,8 +140,7 @@ fn what_is_missing() -> Result<()> {
     Ok(())
 }
 
-/// Copies small files that targets can begin with, of the repository's scenes and of the corpus
-/// where it is.
+/// Copies small seed files from the repository's scenes, and from the corpus if it exists.
 fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
     std::fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
     let mut found = Vec::new();
@@ -155,7 +153,7 @@ fn collect_seeds(folder: &Path, endings: &[&str]) -> Result<()> {
     Ok(())
 }
 
-/// Files below a folder that are small and end so.
+/// Collects small files with certain extensions, recursively.
 fn files(folder: &Path, endings: &[&str], depth: usize, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
         let path = entry.path();

@@ -1,6 +1,5 @@
-//! `cargo xtask hashes`: hashes of the pictures and messages that the scenes, the course and the
-//! sample files give, one a line, to be kept and compared with. A change of the code's structure
-//! must leave every line as it was.
+//! `cargo xtask hashes`: prints hashes of the pictures and messages for the scenes, the course and
+//! the sample files, one a line, for later comparison. Refactoring must leave every line unchanged.
 //!
 //! A line is a kind, a path (with options, or the name of a picture), and the hash, with tabs
 //! between them:
@@ -11,11 +10,11 @@
 //! | `pixels` | a picture of that film, in single precision |
 //! | `course` | a picture that `durer course` writes |
 //! | `converted` | all files that `durer convert` writes |
-//! | `error` | nothing: the first error of a refusal, as text |
+//! | `error` | none: the first error message, as text |
 //! | `messages` | what these commands print on standard error |
 //! | `info`, `check` | what `durer info` and `durer check` print |
 //!
-//! The paths of temporary files are left out of messages, and bytes of memory out of `info`.
+//! Messages exclude the paths of temporary files, and `info` excludes bytes of memory.
 
 use anyhow::{Context, Result, ensure};
 use durer::source::Digest;
@@ -29,24 +28,24 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Cases that run at a time, each with one thread.
+/// Number of cases that run at a time, each with one thread.
 const WORKERS: usize = 2;
 
-/// Time that a case may take: many times what the slowest takes, as the machine may be busy.
+/// Time limit of a case: many times the slowest, as the machine may be busy.
 const LIMIT: Duration = Duration::from_secs(240);
 
-/// Memory that a case may take. A share of the machine's would refuse other files on another one.
+/// Memory limit of a case. A share of the machine's memory would refuse different files elsewhere.
 const MEMORY: &str = "4G";
 
 /// Endings of scenes and models, in lower case.
 const ENDINGS: [&str; 11] = ["3mf", "glb", "gltf", "obj", "pbrt", "ply", "rad", "rif", "stl", "txt", "xml"];
 
-/// What makes pictures, each run with one thread.
+/// Commands that render, each with one thread.
 const RENDER: &str = "render --hash --threads 1 --no-checkpoint -o @p.pfm";
 const PROGRAM: &str = "course --threads 1";
 
-/// Options for each of our scenes: first with all pictures that take no further samples, then with
-/// the other integrators and ways of sampling, smaller.
+/// Options for each of our scenes: first every picture without extra samples, then the other
+/// integrators and samplers at lower resolution.
 const OURS: [&str; 6] = [
     "--size 64x48 --samples 4 --show color,depth,normals,geometric-normals,position,uv,barycentric,albedo,object,\
      material,luminance,illuminance,sample-count,variance",
@@ -60,16 +59,16 @@ const OURS: [&str; 6] = [
 /// Options for each file of another program.
 const THEIRS: &str = "--size 32x24 --samples 2";
 
-/// Options for the course's scenes of which there is no reference picture.
+/// Options for the course's scenes without a reference picture.
 const COURSE: &str = "-size 48 48 -output @color.tga -depth 0 20 @depth.tga -normals @normals.tga";
 
-/// Folders with meshes of the course's scenes that come without theirs.
+/// Folders with meshes for course scenes that lack their own.
 const MESHES: &str = "--assets course/scenes/f04 --assets course/scenes/f16";
 
-/// Stands between the name of a case and that of one of its pictures.
+/// Separates the name of a case from the name of one of its pictures.
 const PICTURE: &str = ": ";
 
-/// Lines by their kind and path: the hash, or the text of an error.
+/// Lines by kind and path: the hash, or the text of an error.
 type Lines = BTreeMap<(String, String), String>;
 
 /// One run of the program.
@@ -77,9 +76,9 @@ struct Case {
     kind: Kind,
     /// The path on its lines.
     name: String,
-    /// The folder in which it runs, so that messages have relative paths.
+    /// Working directory, so that messages have relative paths.
     folder: PathBuf,
-    /// The arguments; a word after [`OUTPUT`] is a file that is written.
+    /// Arguments; a word after [`OUTPUT`] is an output file.
     arguments: Vec<String>,
 }
 
@@ -97,10 +96,10 @@ enum Kind {
     Check,
 }
 
-/// Precedes the name of a file that is written.
+/// Prefix of the name of an output file.
 const OUTPUT: &str = "@";
 
-/// How a run of the program ended.
+/// Outcome of a run.
 struct Ended {
     /// The exit code; `None` after a signal.
     code: Option<i32>,
@@ -169,7 +168,7 @@ fn cases(only: Option<&String>) -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// The runs with a scene that make no picture.
+/// Adds the runs of a scene that render nothing.
 fn read_only(folder: &Path, file: &str, assets: &str, cases: &mut Vec<Case>) {
     cases.extend(["json", "txt", "glb"].map(|ending| converted(folder, file, ending, assets)));
     let case = |kind, words| Case::new(kind, file.into(), folder, &format!("{words} {assets}"), Some(file));
@@ -182,7 +181,7 @@ fn converted(folder: &Path, file: &str, ending: &str, assets: &str) -> Case {
     Case::new(Kind::Converted, format!("{file} as {ending}"), folder, &words, Some(file))
 }
 
-/// The runs of which there are reference pictures, then the other scenes.
+/// Adds the runs with reference pictures, then the other scenes.
 fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
     let mut runs = BTreeSet::new();
     for row in crate::course::rows(&corpus.join("course"))? {
@@ -216,8 +215,7 @@ fn course(corpus: &Path, cases: &mut Vec<Case>) -> Result<()> {
     Ok(())
 }
 
-/// The scenes and models in a folder, as paths from `root`, sorted; with `deep` also those in the
-/// folders below.
+/// Returns the scenes and models in a folder, as sorted paths from `root`; recursively if `deep`.
 fn below(root: &Path, folder: &str, deep: bool) -> Result<Vec<String>> {
     let mut found = Vec::new();
     for entry in fs::read_dir(root.join(folder)).with_context(|| folder.to_string())? {
@@ -270,13 +268,13 @@ fn all(durer: &Path, cases: &[Case]) -> Result<Lines> {
 }
 
 impl Case {
-    /// A run with these words, then the file.
+    /// Creates a case from command-line words and a file.
     fn new(kind: Kind, name: String, folder: &Path, words: &str, file: Option<&str>) -> Case {
         let arguments = words.split_whitespace().chain(file).map(String::from).collect();
         Case { kind, name, folder: folder.into(), arguments }
     }
 
-    /// Runs it: kind, path and value of each of its lines.
+    /// Runs the case; returns kind, path and value of each line.
     fn lines(&self, durer: &Path) -> Result<Vec<(&'static str, String, String)>> {
         let place = tempfile::tempdir()?;
         let files = place.path().join("files");
@@ -305,7 +303,7 @@ impl Case {
         };
         let (out, errors) = (plain(&ended.out), plain(&ended.errors));
         if let Kind::Info | Kind::Check = self.kind {
-            // Bytes of memory are those of the structures, which may change.
+            // Memory sizes depend on internal structures, which may change.
             let lines = out.lines().filter(|line| !line.starts_with("memory "));
             let said = format!("{code}\n{}\n{errors}", lines.collect::<Vec<_>>().join("\n"));
             return Ok(vec![line(kind, Digest::of(said.as_bytes()).to_string())]);
@@ -345,7 +343,7 @@ impl Case {
 }
 
 impl Kind {
-    /// The first word of its lines.
+    /// Returns the first word of its lines.
     fn word(self) -> &'static str {
         match self {
             Kind::Film => "film",
@@ -357,7 +355,7 @@ impl Kind {
     }
 }
 
-/// The files in and below a folder, by their paths from it, with the hashes of their bytes.
+/// Hashes the files in a folder recursively, by relative path.
 fn hashed(folder: &Path, path: &str, found: &mut Vec<(String, String)>) -> Result<()> {
     for entry in fs::read_dir(folder.join(path))? {
         let entry = entry?;
@@ -371,7 +369,7 @@ fn hashed(folder: &Path, path: &str, found: &mut Vec<(String, String)>) -> Resul
     Ok(())
 }
 
-/// Runs a command with its output in files, and kills it after a while.
+/// Runs a command with its output in files; kills it after the time limit.
 fn ended(command: &mut Command, place: &Path) -> Result<Ended> {
     let [out, errors] = ["out", "errors"].map(|name| place.join(name));
     let mut child = command.stdin(Stdio::null()).stdout(File::create(&out)?).stderr(File::create(&errors)?).spawn()?;
@@ -395,7 +393,7 @@ fn written(lines: &Lines) -> String {
     lines.iter().map(|((kind, path), value)| format!("{kind}\t{path}\t{value}\n")).collect()
 }
 
-/// Reads lines that [`written`] wrote; `None` if they are not such lines.
+/// Parses lines that [`written`] wrote; `None` for other text.
 fn parsed(text: &str) -> Option<Lines> {
     let line = |line: &str| {
         let (kind, rest) = line.split_once('\t')?;
@@ -405,7 +403,7 @@ fn parsed(text: &str) -> Option<Lines> {
     text.lines().map(line).collect()
 }
 
-/// The lines that are not in both, or that have other values.
+/// Returns the lines that are missing on one side or differ.
 fn differences(old: &Lines, new: &Lines) -> Vec<String> {
     let keys: BTreeSet<_> = old.keys().chain(new.keys()).collect();
     let absent = "absent".to_string();

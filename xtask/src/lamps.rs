@@ -1,8 +1,8 @@
-//! Many lamps: what a picture of a room with a hundred thousand costs beside one with ten, at equal
-//! error.
+//! Many lights: compares the cost of a room with a hundred thousand lights to one with ten, at
+//! equal error.
 //!
-//! Lamps are as large and as strong together in both, and not in the picture: what is far smaller
-//! than a pixel has the noise of that alone, however its light is found.
+//! The lights have the same total area and power in both rooms, and are outside the picture:
+//! emitters far smaller than a pixel would dominate its noise, whatever the light sampling.
 
 use anyhow::{Context, Result};
 use durer::film::Filter;
@@ -16,23 +16,23 @@ use std::fmt::Write as _;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// How much more a hundred thousand may cost.
+/// Largest acceptable ratio of costs.
 const MOST: f64 = 2.0;
 
-/// Ways in which lamps are placed in each room: ten bring much or little noise by where they happen
-/// to be.
+/// Number of random placements in each room, because the noise of ten lights depends on where they
+/// are.
 const PLACINGS: u64 = 4;
 
-/// Pictures of each, by different random numbers.
+/// Number of pictures of each, with different seeds.
 const RUNS: u64 = 3;
 
-/// Rooms of the corpus, and the corners of what is in them.
+/// Rooms of the corpus, and the bounds of their interior.
 const ROOMS: [(&str, [f64; 3], [f64; 3]); 2] = [
     ("kitchen.ply", [-1.930758, -0.034231, -2.479913], [3.614574, 2.523191, 2.593479]),
     ("hall.ply", [-3.535412, -2.480083, -24.03392], [48.30188, 16.92997, 24.325836]),
 ];
 
-/// A room with square lamps that face down, in the upper part of its middle.
+/// Builds a room with square lights that face down, in the upper middle.
 fn room((name, low, high): (&str, [f64; 3], [f64; 3]), lamps: u32, placing: u64) -> Result<World> {
     let at = |axis: usize, share: f64| low[axis] + share * (high[axis] - low[axis]);
     let size = |axis: usize| high[axis] - low[axis];
@@ -54,12 +54,12 @@ fn room((name, low, high): (&str, [f64; 3], [f64; 3]), lamps: u32, placing: u64)
         writeln!(text, "Rectangle {{ corner {x} {y} {z} edge0 {side} 0 0 edge1 0 0 {side} }}")?;
     }
     text += "}\n";
-    // As if it lay beside the mesh.
+    // As if it were beside the mesh.
     let path = crate::corpus().join("meshes/room.txt");
     crate::world(path.to_str().context("the corpus has no name in Unicode")?, &text)
 }
 
-/// Pictures of the lower part of a room, and the least time of one.
+/// Pictures of the lower part of a room, and the minimum render time.
 struct Found {
     world: World,
     seconds: f64,
@@ -69,7 +69,7 @@ struct Found {
 impl Found {
     fn new(world: World) -> Result<Self> {
         let found = Found { world, seconds: f64::INFINITY, pictures: Vec::new() };
-        // What is made once is made.
+        // Warm up one-time initialisation.
         found.picture(0, 1)?;
         Ok(found)
     }
@@ -92,8 +92,8 @@ impl Found {
         Ok(())
     }
 
-    /// The error of a picture beside its mean, from pairs of pictures: their difference has twice
-    /// the square of it. And what an error costs: the seconds times its square.
+    /// Returns the relative error of a picture from pairs of pictures, whose difference has twice
+    /// the variance; and the cost: seconds times squared error.
     fn cost(&self) -> (f64, f64) {
         let (mut squares, mut pairs, mut sum, mut count) = (0.0, 0.0, 0.0, 0.0);
         for (i, a) in self.pictures.iter().enumerate() {
@@ -118,7 +118,7 @@ pub fn run() -> Result<ExitCode> {
         for placing in 0..PLACINGS {
             let found = |lamps| Found::new(room(given, lamps, placing)?);
             let (mut few, mut many) = (found(10)?, found(100_000)?);
-            // In turns, so that both meet the same machine.
+            // In turns, so that both see the same machine load.
             for seed in 1..=RUNS {
                 few.run(seed)?;
                 many.run(seed)?;

@@ -1,10 +1,10 @@
-//! Tests of the suite with many more numbers than there is time for on every change.
+//! Runs tests of the suite with far more iterations than in CI.
 
 use anyhow::{Result, bail};
 use std::process::{Command, ExitCode};
 use std::time::Instant;
 
-/// A test by its package and name, and how many times as much it does here.
+/// A test by package and name, and the factor for its iterations.
 const TESTS: [(&str, &str, u32); 4] = [
     // 10^9 lanes.
     ("durer-bvh", "lanes::tests::every_level_gives_the_same_bits", 1_000),

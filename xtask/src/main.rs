@@ -1,4 +1,4 @@
-//! Commands for those who build Dürer.
+//! Commands for developers of Dürer.
 
 mod additions;
 mod bench_files;
@@ -99,7 +99,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let help = arguments.iter().any(|argument| argument == "--help");
     match arguments.first().map(String::as_str) {
-        // It has a help of its own.
+        // It has its own help.
         Some("bench-rays") => bench_rays::run(&arguments[1..]),
         Some(_) if help => {
             println!("{USAGE}");
@@ -132,7 +132,7 @@ fn main() -> anyhow::Result<ExitCode> {
     }
 }
 
-/// The world of a scene in our language.
+/// Compiles a scene in our language.
 fn world(name: &str, text: &str) -> anyhow::Result<World> {
     let options = LoadOptions::default();
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -141,22 +141,22 @@ fn world(name: &str, text: &str) -> anyhow::Result<World> {
     world.with_context(|| format!("{name}: {diagnostics:?}"))
 }
 
-/// What follows an option.
+/// Returns the value of an option.
 fn value<'a>(arguments: &'a [String], name: &str) -> Option<&'a String> {
     arguments.iter().position(|a| a == name).and_then(|i| arguments.get(i + 1))
 }
 
-/// The data outside the repository.
+/// Returns the folder of data outside the repository.
 fn corpus() -> PathBuf {
     std::env::var_os("DURER_CORPUS").map_or_else(|| PathBuf::from("../shared"), PathBuf::from)
 }
 
-/// The `cargo` that runs this.
+/// Returns the `cargo` that runs this program.
 fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// The repository: `DURER_ROOT`, or where this was built.
+/// Returns the repository: `DURER_ROOT`, or the source folder of this build.
 fn root() -> anyhow::Result<PathBuf> {
     let built = || Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     std::env::var_os("DURER_ROOT")

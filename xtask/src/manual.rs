@@ -1,5 +1,5 @@
-//! `cargo xtask manual`: the language's reference as pages with pictures, and a grammar for
-//! editors, from what the code states.
+//! `cargo xtask manual`: writes the language reference with pictures, and a grammar for editors,
+//! from the statements in the code.
 
 mod python;
 
@@ -11,7 +11,7 @@ use std::process::{Command, ExitCode};
 
 const GENERATED: &str = "Written by `cargo xtask manual` from what the code states; a test holds it to that.";
 
-/// Size of an example's picture.
+/// Size of an example picture.
 const SIZE: &str = "240x180";
 
 pub fn run() -> Result<ExitCode> {
@@ -24,7 +24,7 @@ pub fn run() -> Result<ExitCode> {
     std::fs::create_dir_all(pictures())?;
     for entry in entries() {
         let Some(scene) = entry.scene() else { continue };
-        // Examples name files of the repository's scenes.
+        // Examples refer to files of the repository's scenes.
         let file = tempfile::Builder::new().suffix(".txt").tempfile_in(docs().join("../scenes"))?;
         std::fs::write(file.path(), scene)?;
         let picture = pictures().join(picture_name(&entry));
@@ -49,12 +49,12 @@ fn pictures() -> PathBuf {
 
 fn picture_name(entry: &Entry) -> String {
     let chapter = entry.chapter.title().to_lowercase();
-    // Two words may differ in nothing but what they stand in: `Noise`.
+    // Two keywords may differ only in their context: `Noise`.
     let kind = if entry.doc.contains("instead of the diffuse") { "-color" } else { "" };
     format!("{chapter}-{}{kind}.png", entry.name().to_lowercase())
 }
 
-/// All texts that are written, with their places.
+/// Returns the generated texts with their paths.
 fn pages() -> Vec<(PathBuf, String)> {
     let folder = docs().join("language");
     let mut pages = vec![(folder.join("index.md"), index()), (docs().join("editors/durer.tmLanguage.json"), grammar())];
@@ -91,12 +91,12 @@ fn index() -> String {
     out
 }
 
-/// A name in Markdown, where `<Object>` would be taken for HTML.
+/// Returns a name in Markdown; `<Object>` would be parsed as HTML.
 fn shown(name: &str) -> String {
     if name.contains('<') { format!("`{name}`") } else { name.into() }
 }
 
-/// As GitHub and mdBook make anchors of headings.
+/// Returns the anchor of a heading as GitHub and mdBook compute it.
 fn anchor(name: &str) -> String {
     name.to_lowercase().chars().filter(|c| c.is_alphanumeric() || *c == '_' || *c == '-').collect()
 }
@@ -142,7 +142,7 @@ fn spelled(keywords: &[Spelling]) -> String {
     keywords.iter().map(one).collect::<Vec<_>>().join(", ")
 }
 
-/// A TextMate grammar: comments, numbers, blocks, fields, paths.
+/// Returns a TextMate grammar: comments, numbers, blocks, fields, paths.
 fn grammar() -> String {
     let (mut blocks, mut fields): (Vec<&str>, Vec<&str>) = (Vec::new(), Vec::new());
     for entry in entries() {
@@ -153,7 +153,7 @@ fn grammar() -> String {
     let pattern = |list: &mut Vec<&str>| {
         list.sort_unstable();
         list.dedup();
-        // Component<Object> ends in no letter.
+        // `Component<Object>` does not end in a letter.
         format!("(?<![\\\\w<])(?:{})(?![\\\\w<])", list.join("|"))
     };
     format!(

@@ -1,10 +1,11 @@
-"""Equal scenes by Dürer and by Mitsuba 3, compared pixel by pixel.
+"""Compares equal scenes by Dürer and by Mitsuba 3, pixel by pixel.
 
     python peers.py DURER [--samples 1024] [--only TEXT]
 
-Each scene is rendered 32 times by both with different random numbers. For each channel of each pixel Welch's t says whether the
-means may be the same; with Sidak's correction for the number of pixels, at least 99.75 % of them must (the test of Mitsuba's own
-pictures). The means of the whole pictures must agree within 0.2 % and three standard errors.
+Both render each scene 32 times with different seeds. For each channel of each pixel, Welch's
+t-test checks if the means may be equal; with Sidak's correction for the number of pixels, at
+least 99.75 % of them must (the criterion of Mitsuba's own image tests). The means of the whole
+pictures must agree within 0.2 % and three standard errors.
 """
 
 import argparse
@@ -28,7 +29,7 @@ def rgb(color):
 
 
 class Scene:
-    """A scene for both: Mitsuba's dictionary, and the text of ours."""
+    """A scene for both: Mitsuba's dictionary, and our text."""
 
     def __init__(self, name, bounces=6, volumes=False, eye=(0, 0, 3.9), direction=(0, 0, -1), fov=39):
         self.name, self.bounces = name, bounces
@@ -80,7 +81,7 @@ class Scene:
         self.put(material, f"Sphere {{ center {words(center)} radius {radius:g} }}", theirs)
 
     def box(self, power=(12, 10, 8)):
-        """Five walls and a lamp below the ceiling."""
+        """Adds five walls and an area light below the ceiling."""
         white, red, green = matte((0.7, 0.7, 0.7)), matte((0.6, 0.1, 0.1)), matte((0.1, 0.5, 0.1))
         for corner, e0, e1, wall in [
             ((-1, -1, -1), (0, 0, 2), (2, 0, 0), white), ((-1, 1, -1), (2, 0, 0), (0, 0, 2), white),
@@ -107,7 +108,7 @@ def glass(ior=1.5, rest=""):
 
 
 def medium(extinction, albedo, g=0.0):
-    """Ours and theirs. Extinction is per unit of length, the same for all colours."""
+    """Returns our and their text. Extinction is per unit of length, equal for all colours."""
     left = float(np.exp(-extinction))
     scatter = [extinction * a for a in albedo]
     ours = (f"transmissionDepth 1 transmissionColor {left:.8g} {left:.8g} {left:.8g} transmissionScatter {words(scatter)} "
@@ -161,7 +162,7 @@ def scenes():
     s.sphere((0, 3, 1), 0.8, None, (5, 4, 4))
     yield s
     s = outside("a point light")
-    # Ours is what a white surface shows: irradiance over pi.
+    # Ours is the radiance of a white surface: irradiance over pi.
     s.lights.append("PointLight { position 1 3 2 color 6 5 4 attenuation 0 0 1 }")
     s.theirs["l"] = {"type": "point", "position": [1, 3, 2], "intensity": rgb([np.pi * c for c in (6, 5, 4)])}
     yield s
@@ -192,7 +193,7 @@ def scenes():
         yield s
     inside, theirs = medium(4.0, (0.9, 0.85, 0.7))
     s = sky(outside("milky glass", volumes=True))
-    # The way inside is no bounce of ours: both go on until the light is out.
+    # Transmission does not count as a bounce in ours: both continue until the light is gone.
     s.bounces, s.theirs["integrator"]["max_depth"] = 100, 400
     s.sphere((0.7, 0, 0), 0.6, glass(1.5, inside), medium=theirs)
     yield s
@@ -226,7 +227,7 @@ def compare(program, scene, samples, folder):
     theirs = [np.array(mi.render(loaded, spp=each, seed=seed)).astype(float) for seed in range(RUNS)]
     ours, theirs = np.array(ours), np.array(theirs)
     square = (ours.var(0, ddof=1) + theirs.var(0, ddof=1)) / RUNS
-    # Where nothing is random there is rounding.
+    # Without randomness there is only rounding.
     t2 = (ours.mean(0) - theirs.mean(0)) ** 2 / np.maximum(square, (1e-4 * theirs.mean(0)) ** 2 + 1e-12)
     freedom = 2 * (RUNS - 1)
     # Student's t as a normal deviate: Wallace 1959.
@@ -244,7 +245,7 @@ def compare(program, scene, samples, folder):
 
 
 def deviate(share):
-    """The normal deviate that is exceeded with a probability, by bisection."""
+    """Returns the normal deviate with a given upper tail probability, by bisection."""
     from math import erfc, sqrt
     low, high = 0.0, 10.0
     for _ in range(80):
@@ -259,7 +260,7 @@ def main():
     arguments.add_argument("--samples", type=int, default=1024)
     arguments.add_argument("--only", default="")
     given = arguments.parse_args()
-    # The variant that needs no compiler of its own.
+    # The variant that needs no compiler.
     mi.set_variant("scalar_rgb")
     global T
     T = mi.ScalarTransform4f

@@ -1,12 +1,11 @@
-//! Equal scenes by Dürer and Mitsuba 3: `peers.py` says which and how they are compared,
-//! `peers_time.py` how their times are, and `peers_direct.py` those of direct light, which Blender's
-//! Cycles has too.
+//! Compares equal scenes by Dürer and Mitsuba 3: `peers.py` compares pictures, `peers_time.py`
+//! times, and `peers_direct.py` times of direct light, also with Blender's Cycles.
 
 use anyhow::{Context, Result, bail};
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
-/// The version that the figures of docs/validation.md are of.
+/// Versions for the figures of docs/validation.md.
 const MITSUBA: &str = "mitsuba==3.9.1";
 const BLENDER: &str = "bpy==5.0.1";
 
@@ -35,8 +34,8 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// A Python with Mitsuba, made once from the package index; with Blender too, if there is one for
-/// this Python.
+/// Creates a Python environment with Mitsuba once, from the package index; with Blender too if it
+/// supports this Python.
 fn environment(folder: &Path, blender: bool) -> Result<PathBuf> {
     let python = folder.join("bin/python");
     if !python.exists() {

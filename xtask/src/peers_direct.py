@@ -1,13 +1,17 @@
-"""What direct light of point lamps costs: Dürer's `whitted`, Mitsuba 3's `direct` and Blender's Cycles on equal scenes.
+"""Cost of direct light from point lights: Dürer's `whitted`, Mitsuba 3's `direct` and Blender's
+Cycles on equal scenes.
 
-    python peers_direct.py DURER MESHES [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only TEXT]
+    python peers_direct.py DURER MESHES [--side 512] [--samples 16] [--runs 3] [--threads 2] [--only
+    TEXT]
 
-Each renders each scene in turns, with the same camera, filter and number of samples, one hit and its lamps deep. Time is the processor's,
-of all threads: ours less that of a picture of one sample, which reads and builds; theirs after a first picture, which compiles or builds,
-Cycles' less that of one sample. Figures are of the least time of the runs. Means say whether all show the same. Where there are two lamps, ours
-looks at both from each hit and theirs at one: their samples cost less, and have noise.
+The programs render each scene in turns, with the same camera, filter and number of samples, one hit
+deep with its lights. Time is CPU time of all threads: ours minus a picture of one sample, which
+covers reading and building; theirs after a first picture, which compiles or builds, Cycles' minus
+one sample. Figures use the minimum time of the runs. The means verify that all show the same. With
+two lights, ours samples both at each hit and theirs one: their samples are cheaper, and noisy.
 
-Cycles is left out where Blender (`bpy` of the package index) is missing, and where a scene has a sphere, which it does not know but as a mesh.
+Cycles is skipped if Blender (`bpy` of the package index) is missing, and for scenes with
+spheres, which it only knows as meshes.
 """
 
 import json
@@ -19,7 +23,8 @@ import time
 
 
 def cycles(path):
-    """A process of its own: renders what a file describes, tells its times, and leaves its picture."""
+    """Runs in its own process: renders the scene of a file, prints the times, and saves the
+    picture."""
     import bpy
     import mathutils
     import numpy as np
@@ -28,7 +33,7 @@ def cycles(path):
     scene = bpy.context.scene
     collection = scene.collection.objects
     for number, (position, color) in enumerate(given["lamps"]):
-        # In watts: a white surface at distance 1 that faces it sends out its colour.
+        # In watts: a white surface at distance 1 that faces the light shows the light's colour.
         lamp = bpy.data.lights.new(f"lamp{number}", "POINT")
         lamp.energy, lamp.color, lamp.shadow_soft_size, lamp.use_soft_falloff = 4 * math.pi**2, color, 0, False
         place = bpy.data.objects.new(f"lamp{number}", lamp)
@@ -74,7 +79,7 @@ def cycles(path):
 
 
 def scenes(meshes, folder):
-    """Each with lamps and triangles; a scene with a sphere has no triangles."""
+    """Yields scenes with point lights and triangles; a scene with a sphere has no triangles."""
     import numpy as np
     from peers import Scene
     from peers_time import mesh, read_ply, write_ply

@@ -1,23 +1,23 @@
 //! `cargo xtask prose`: finds sentences that an engineer of the field would not write.
 //!
-//! It reads comments, messages (string literals of several words) and documents, joins their lines, and looks for the words of
-//! `xtask/prose.txt`. Comments are also held to 100 columns.
+//! Reads comments, messages (string literals of several words) and documents, joins their lines,
+//! and searches for the words of `xtask/prose.txt`. Also limits comments to 100 columns.
 
 use anyhow::{Context, Result};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Columns that a comment may have.
+/// Maximum number of columns of a comment.
 const MAX_COLUMNS: usize = 100;
-/// Ends a line of code that must keep a listed word.
+/// Marks a line of code that must keep a listed word.
 const KEEP: &str = "// prose: keep";
 
 /// A word or phrase to avoid.
 struct Rule {
     phrase: String,
     instead: String,
-    /// Found at the beginning of doc comments only.
+    /// True if it only applies to the start of doc comments.
     begin: bool,
 }
 
@@ -26,7 +26,7 @@ struct Paragraph {
     text: String,
     /// Byte offset where each line starts, with its number.
     lines: Vec<(usize, usize)>,
-    /// Whether it begins a doc comment.
+    /// True if it starts a doc comment.
     begins: bool,
 }
 
@@ -36,7 +36,7 @@ impl Paragraph {
     }
 }
 
-/// Prints what is found and the counts; fails if there is anything.
+/// Prints findings and counts; fails if there is any.
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let root = crate::root()?;
     let list = std::fs::read_to_string(root.join("xtask/prose.txt"))?;
@@ -81,7 +81,7 @@ fn rules(list: &str) -> Result<Vec<Rule>> {
     Ok(rules)
 }
 
-/// Rust sources and documents, in order. Lists of words and texts of others are left out.
+/// Returns Rust sources and documents, sorted. Excludes word lists and third-party texts.
 fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     let (mut all, mut folders) = (Vec::new(), vec![root.to_path_buf()]);
     while let Some(folder) = folders.pop() {
@@ -99,7 +99,7 @@ fn sources(root: &Path) -> Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-/// Lines, messages and rules of what is found in a file.
+/// Returns line, message and rule of the findings in a file.
 fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
     let mut all = Vec::new();
     for (number, line) in text.lines().enumerate() {
@@ -130,7 +130,7 @@ fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, S
     all
 }
 
-/// Byte offsets at which a rule matches whole words of a lower-case text.
+/// Returns the byte offsets at which a rule matches whole words of a lower-case text.
 fn places(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
     let (phrase, open) = rule.phrase.strip_suffix('*').map_or((rule.phrase.as_str(), false), |phrase| (phrase, true));
     let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
@@ -144,7 +144,7 @@ fn places(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
     lower.match_indices(phrase).map(|found| found.0).filter(whole).collect()
 }
 
-/// Paragraphs of a document, without its code blocks and code spans.
+/// Returns the paragraphs of a document, without code blocks and code spans.
 fn document(text: &str) -> Vec<Paragraph> {
     let (mut all, mut fenced) = (vec![Paragraph::empty(false)], false);
     for (number, line) in text.lines().enumerate() {
@@ -158,10 +158,10 @@ fn document(text: &str) -> Vec<Paragraph> {
     all
 }
 
-/// Comments and messages of Rust code.
+/// Returns comments and messages of Rust code.
 fn code(text: &str) -> Vec<Paragraph> {
     let mut all: Vec<Paragraph> = Vec::new();
-    // Whether the line before is a comment, and of which kind.
+    // `None` if the line before is not a comment; otherwise true for a doc comment.
     let mut before = None;
     for (number, line) in text.lines().enumerate() {
         let trimmed = line.trim_start();
@@ -204,12 +204,13 @@ impl Paragraph {
     }
 }
 
-/// A line whose code spans are replaced by a mark.
+/// Replaces code spans by a mark.
 fn without_code(line: &str) -> String {
     line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "§" }).collect()
 }
 
-/// Contents of the string literals that a line holds or goes on with, as far as the line tells.
+/// Returns the contents of the string literals that start or continue on a line, judged by the line
+/// alone.
 fn literals(line: &str) -> Vec<String> {
     let (mut all, mut current, mut escaped) = (Vec::new(), None::<String>, false);
     for c in line.chars() {
@@ -221,7 +222,7 @@ fn literals(line: &str) -> Vec<String> {
         }
         escaped = c == '\\' && !escaped;
     }
-    // A literal that goes on below is as good as its beginning.
+    // Of a literal that continues below, use the first line.
     all.extend(current);
     all
 }

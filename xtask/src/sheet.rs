@@ -1,5 +1,4 @@
-//! Contact sheets: models as they are rendered without being asked anything, beside the pictures
-//! that came with them.
+//! Contact sheets: models rendered with default options, beside their reference pictures.
 
 use anyhow::{Context, Result, bail};
 use durer::diag::{Diagnostics, Files};
@@ -13,7 +12,7 @@ use durer::{LoadOptions, load};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Pixels of a side of one picture, pictures of a row, rows of a sheet.
+/// Side of a picture in pixels, pictures a row, rows a sheet.
 const SIDE: u32 = 256;
 const ACROSS: u32 = 6;
 const DOWN: u32 = 5;
@@ -63,7 +62,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// All models in a folder and the folders in it.
+/// Collects the models in a folder recursively.
 fn below(folder: &Path, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
@@ -78,7 +77,7 @@ fn below(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The picture that came with a model of Khronos.
+/// Returns the screenshot of a Khronos sample model.
 fn screenshot(path: &Path) -> Option<PathBuf> {
     let folder = path.parent()?.parent()?.join("screenshot");
     ["screenshot.png", "screenshot.jpg"].iter().map(|name| folder.join(name)).find(|path| path.is_file())
@@ -102,8 +101,7 @@ fn rendered(path: &Path, samples: u32, front: bool) -> Result<Image> {
     Ok(Image::clone(&part.pictures()?.layers.first().context("a picture")?.image))
 }
 
-/// A picture of any size as one of ours: each pixel the mean of what it covers, on grey where there
-/// is nothing.
+/// Resizes a picture of any size by averaging, on grey.
 fn within(image: &Image) -> Result<Image> {
     let scale = image.width.max(image.height) as f32 / SIDE as f32;
     let (left, top) =
@@ -122,7 +120,7 @@ fn within(image: &Image) -> Result<Image> {
     Ok(Image::from_pixels(SIDE, SIDE, pixels)?)
 }
 
-/// Pictures side by side.
+/// Joins pictures side by side.
 fn joined(cells: &[Image]) -> Result<Image> {
     let rows = (cells.len() as u32).div_ceil(ACROSS);
     let mut sheet =

@@ -1,4 +1,5 @@
-//! Solids at full length: a million points against the Boolean of the parts, and the cost of rays.
+//! Tests solids at full length: a million points against the Boolean of the parts, and the cost of
+//! rays.
 
 use anyhow::{Context, Result};
 use durer::bvh::{TraversalCounter, TraversalStats};
@@ -16,7 +17,7 @@ use std::time::{Duration, Instant};
 
 const POINTS: usize = 1_000_000;
 const RAYS: u32 = 200_000;
-/// Times are the least of so many turns, which take place one after the other.
+/// Number of runs in turns; times are their minimum.
 const TURNS: usize = 7;
 
 pub fn run() -> Result<ExitCode> {
@@ -60,12 +61,12 @@ pub fn run() -> Result<ExitCode> {
     Ok(if status.success() { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// A number from 0 to 1.
+/// Returns a random number from 0 to 1.
 fn random(i: u32, dimension: u32) -> f32 {
     (hash(0, i, dimension, 0, 0) >> 40) as f32 / (1u64 << 24) as f32
 }
 
-/// Balls of a lattice of ten by ten by ten, a little out of place.
+/// Returns spheres on a jittered lattice of 10 x 10 x 10.
 fn balls(radius: f32) -> String {
     let ball = |i: u32| {
         let [x, y, z] = [i % 10, i / 10 % 10, i / 100].map(|k| k as f32);
@@ -93,7 +94,7 @@ fn compiled(body: &str) -> Result<World> {
     compile(&scene, Dialect::Durer.rules(), AccelKind::Bvh, resources, &mut diagnostics).context("no world")
 }
 
-/// A ray between two places in and around the lattice.
+/// Returns a ray between two random points in and around the lattice.
 fn ray(i: u32) -> Ray {
     let place = |first: u32| Vec3::new(random(i, first), random(i, first + 1), random(i, first + 2)) * 16.0 - 3.0;
     let origin = place(3);

@@ -1,5 +1,5 @@
-//! Programs that are killed while they work and save, disks that are full, folders that must not be
-//! written.
+//! Tests robustness: programs that are killed while they render and save, full disks, read-only
+//! folders.
 
 use crate::build::durer;
 use anyhow::{Context, Result, bail, ensure};
@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Output, Stdio};
 use std::time::Instant;
 
-/// What the killed program makes.
+/// Options of the program that is killed.
 const WORK: &str = "--size 160x120 --samples 64 --checkpoint-every 10ms --threads 2 --quiet --resume --hash";
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
@@ -40,7 +40,7 @@ impl Bench {
         command
     }
 
-    /// An empty folder.
+    /// Creates an empty folder.
     fn place(&self, name: &str) -> Result<PathBuf> {
         let place = self.folder.path().join(name);
         fs::create_dir_all(&place)?;
@@ -61,8 +61,8 @@ fn last_line(output: &Output) -> String {
     String::from_utf8_lossy(&output.stdout).lines().last().unwrap_or_default().to_string()
 }
 
-/// Kills the program at random times until it was killed often enough; it must end with the film
-/// that it would have had.
+/// Kills the program at random times until it was killed often enough; it must finish with the same
+/// film as without.
 fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     let (calm, wild) = (bench.place("calm")?.join("p.exr"), bench.place("wild")?.join("p.exr"));
     let start = Instant::now();
@@ -72,7 +72,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     let (mut killed, mut finished, mut litter, mut parts) = (0, 0, 0, 0);
     while killed < kills {
         let mut child = bench.render(WORK, &wild).spawn()?;
-        // Some while it starts, most while it works, some while the picture is saved.
+        // Some during start-up, most during rendering, some during saving.
         let share = (hash(seed, killed as u32, finished, 0, 0) >> 11) as f64 / (1_u64 << 53) as f64;
         std::thread::sleep(usual.mul_f64(share * 0.4));
         child.kill()?;
@@ -109,8 +109,7 @@ fn kills(bench: &Bench, kills: u64, seed: u64) -> Result<()> {
     Ok(())
 }
 
-/// Every writer against a disk that is full after so many bytes, and against one that cannot be
-/// written.
+/// Tests every writer on a disk that is full after some bytes, and on a read-only disk.
 fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
     let mut writers: Vec<(String, String)> =
         FORMATS.iter().map(|format| (format!("p.{}", format.extensions[0]), "--size 48x36".into())).collect();
@@ -127,7 +126,8 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
             let place = bench.place("limited")?;
             let path = place.join(name);
             fs::write(&path, "old")?;
-            // As on a full disk, writing beyond the limit is an error then, and no signal.
+            // Writing beyond the limit then returns an error, as on a full disk, instead of a
+            // signal.
             let inner = bench.render(&format!("{options} --quiet"), &path);
             let mut command = Command::new("sh");
             command.args(["-c", "trap '' XFSZ; exec prlimit --fsize=\"$0\" \"$@\"", &limit.to_string()]);
@@ -137,7 +137,7 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
             ensure!(names(&place)? == [name.clone()], "{name}: litter at {limit}: {:?}", names(&place)?);
             fs::remove_file(path)?;
         }
-        // One page less and less is free, always too few for the file.
+        // Ever fewer free pages, always too few for the file.
         let small =
             tiny_disk(bench, name, options, "head -c \"$FILL\" /dev/zero > filler", size.div_ceil(PAGE).min(10))?;
         let read_only = tiny_disk(bench, name, options, "mount -o remount,ro .", 1)?;
@@ -146,10 +146,11 @@ fn full_disks(bench: &Bench, offsets: u64) -> Result<()> {
     Ok(())
 }
 
-/// Bytes that a file takes at least on such a disk.
+/// Block size of such a disk in bytes.
 const PAGE: u64 = 4096;
 
-/// Runs on a disk of its own, spoilt by a command; how often it could be tried.
+/// Runs on a separate disk after a command that spoils it; returns the number of tries that were
+/// possible.
 fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) -> Result<u64> {
     const SCRIPT: &str = "mount -t tmpfs -o size=64k tmpfs \"$0\" || exit 99; cd \"$0\"; echo old > \"$NAME\"
         eval \"$SPOIL\" 2> /dev/null; \"$@\" 2>&1; code=$?
@@ -159,11 +160,11 @@ fn tiny_disk(bench: &Bench, name: &str, options: &str, spoil: &str, tries: u64) 
         let inner = bench.render(&format!("{options} --quiet --threads 1"), &place.join(name));
         let mut command = Command::new("unshare");
         command.args(["-Urm", "sh", "-c", SCRIPT]).arg(&place).arg(inner.get_program()).args(inner.get_args());
-        // Of sixteen pages the old file has one.
+        // The old file occupies one of sixteen pages.
         let fill = (15 - i) * PAGE;
         let output = command.env("NAME", name).env("SPOIL", spoil).env("FILL", fill.to_string()).output()?;
         match output.status.code() {
-            // No rights to mount anything here.
+            // No permission to mount.
             Some(99) | None => return Ok(0),
             Some(98) => bail!("{name}: the old file is not intact"),
             Some(97) => bail!("{name}: litter"),

@@ -1,5 +1,4 @@
-//! Light against answers that are known, as tables that a lighting engineer can read:
-//! docs/validation.md.
+//! Compares light with known answers, in tables for lighting engineers: docs/validation.md.
 
 mod cases;
 mod measure;
@@ -9,10 +8,10 @@ use anyhow::{Result, bail};
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-/// Samples of each case, unless asked otherwise.
+/// Default samples of each case.
 const SAMPLES: u32 = 1 << 18;
 
-/// A table as it grows, and how many of its rows are wrong.
+/// A growing table, and the number of its wrong rows.
 #[derive(Default)]
 struct Table {
     text: String,

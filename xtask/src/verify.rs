@@ -1,11 +1,11 @@
-//! `durer verify` over all scenes.
+//! Runs `durer verify` on all scenes.
 
 use crate::build::durer;
 use anyhow::{Context, Result};
 use std::path::PathBuf;
 use std::process::{Command, ExitCode};
 
-/// Ways of sampling and rules of stopping; scenes take turns.
+/// Samplers and stopping rules; scenes use them in turns.
 const JOBS: [&str; 6] = [
     "--show color,depth,normals,albedo,sample-count,variance",
     "--samples 40 --noise-threshold 0.03",

@@ -1,5 +1,4 @@
-//! Reads files of meshes that are in memory already, by other crates: `cargo xtask bench-files`
-//! starts it.
+//! Reads mesh files from memory with other crates; started by `cargo xtask bench-files`.
 
 use std::time::{Duration, Instant};
 

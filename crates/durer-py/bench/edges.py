@@ -1,9 +1,10 @@
-"""Rays lost at edges and vertices: Dürer beside what else is installed, with the same rays.
+"""Compares how many rays each installed library loses at edges and vertices, with the same rays.
 
     python crates/durer-py/bench/edges.py [thousands of rays]
 
-Each mesh is closed and convex, and all rays begin inside it: one that meets nothing is lost, and one that crosses more than one
-triangle is counted twice. Rays go to places on edges and to vertices.
+Each mesh is closed and convex, and all rays start inside it. A ray that hits nothing is lost,
+and a ray that crosses more than one triangle is counted twice. Rays are aimed at points on edges
+and at vertices.
 """
 
 import sys
@@ -17,7 +18,7 @@ Rays = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def ball(cuts: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """A sphere with points at its poles, turned so that nothing lies along an axis."""
+    """Returns a sphere with vertices at its poles, rotated so that nothing is axis-aligned."""
     t, p = np.meshgrid(np.linspace(0, np.pi, cuts + 1)[1:-1], np.arange(2 * cuts) * np.pi / cuts, indexing="ij")
     ring = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], -1).reshape(-1, 3)
     v = np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]])
@@ -32,7 +33,7 @@ def ball(cuts: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
 
 
 def box(cuts: int) -> tuple[np.ndarray, np.ndarray]:
-    """A cube of right triangles, at whole numbers."""
+    """Returns a cube of right triangles with integer vertices."""
     g = np.arange(cuts + 1)
     u, w = (a.reshape(-1) for a in np.meshgrid(g, g, indexing="ij"))
     i = (np.arange(cuts)[:, None] * (cuts + 1) + np.arange(cuts)).reshape(-1)
@@ -46,19 +47,21 @@ def box(cuts: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def rays(v: np.ndarray, f: np.ndarray, count: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """From places near the middle to edges, and one in eight to vertices, both as float32 has them."""
+    """Returns rays from points near the centre to edges, and one in eight to vertices, in
+    float32."""
     a, b = v[f[rng.integers(len(f), size=count)][:, :2].T]
     share = rng.uniform(size=(count, 1)).astype("f4")
     share[: count // 8] = 0
     middle, size = (v.max(0) + v.min(0)) / 2, np.ptp(v, axis=0).min()
     o = (middle + 0.2 * size * rng.uniform(-1, 1, (count, 3))).astype("f4")
-    # Some begin at round numbers, as people write them.
+    # Some start at round numbers, as people write them.
     o[::2] = np.round(o[::2] * 4) / 4
     return o, (a + share * (b - a)) - o
 
 
 def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
-    """For each program that can tell, how many triangles rays cross."""
+    """Returns for each library that can count, a function for the number of triangles that rays
+    cross."""
     mesh = durer.Mesh(v, f)
     found: dict[str, Rays] = {"durer": lambda o, d: mesh.count(o, d, progress=False)}
     try:
@@ -85,7 +88,7 @@ def counters(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
 
 
 def rivals(v: np.ndarray, f: np.ndarray) -> dict[str, Rays]:
-    """For each program, which rays meet something."""
+    """Returns for each library a function that tells which rays hit something."""
     mesh = durer.Mesh(v, f)
     found: dict[str, Rays] = {"durer": lambda o, d: mesh.closest(o, d, progress=False).hit}
     try:
@@ -143,7 +146,7 @@ def main() -> None:
         print(f"{name} of {len(f)} triangles: of {count} rays to its edges and vertices, so many are lost or counted twice")
         counts = counters(v, f)
         for rival, hits in rivals(v, f).items():
-            # trimesh's own takes long.
+            # trimesh's own ray caster is slow.
             some = slice(0, 20_000 if rival.startswith("trimesh") else count)
             lost = int((~np.asarray(hits(o[some], d[some]))).sum())
             twice = "?" if rival not in counts else str(int((counts[rival](o[some], d[some]) > 1).sum()))

@@ -1,8 +1,9 @@
-"""Rays a second from Python: Dürer beside embreex, trimesh, Open3D and Mitsuba, each that is installed, in one run with the same rays.
+"""Rays per second from Python: Dürer and the installed ones of embreex, trimesh, Open3D and
+Mitsuba, in one run with the same rays.
 
     python crates/durer-py/bench/rays.py [mesh.ply] [millions of rays]
 
-With cargo, also the same rays through the kernel from Rust, without Python.
+With cargo, also traces the same rays through the kernel from Rust, without Python.
 """
 
 import shutil
@@ -18,7 +19,7 @@ import durer
 
 
 def ball(cuts: int) -> tuple[np.ndarray, np.ndarray]:
-    """A bumpy sphere, where no mesh is given."""
+    """Returns a bumpy sphere, the default mesh."""
     t, p = np.meshgrid(np.linspace(0.01, np.pi - 0.01, cuts), np.linspace(0, 2 * np.pi, 2 * cuts), indexing="ij")
     r = 1 + 0.05 * np.sin(20 * t) * np.sin(20 * p)
     v = np.stack([r * np.sin(t) * np.cos(p), r * np.sin(t) * np.sin(p), r * np.cos(t)], -1).reshape(-1, 3)
@@ -29,7 +30,7 @@ def ball(cuts: int) -> tuple[np.ndarray, np.ndarray]:
 
 def ways(count: int) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     side, rng = int(count**0.5), np.random.default_rng(1)
-    # Pixels in tiles of 8 x 8, as renderers ask.
+    # Pixels in tiles of 8 x 8, as renderers order them.
     tiles = np.arange(side // 8 * 8).reshape(-1, 8)
     y, x = (a.reshape(-1) for a in np.meshgrid(np.arange(side // 8 * 8), np.arange(side // 8 * 8), indexing="ij"))
     order = np.lexsort((x % 8, y % 8, x // 8, y // 8))
@@ -79,7 +80,7 @@ def rivals(v: np.ndarray, f: np.ndarray) -> dict:
     try:
         import mitsuba
 
-        # Its compiled kind: all threads, rays as columns.
+        # The compiled variant: all threads, rays as columns.
         mitsuba.set_variant("llvm_ad_rgb")
         shape = mitsuba.Mesh("mesh", len(v), len(f))
         parameters = mitsuba.traverse(shape)
@@ -95,7 +96,7 @@ def rivals(v: np.ndarray, f: np.ndarray) -> dict:
 
 
 def rust(v: np.ndarray, f: np.ndarray, o: np.ndarray, d: np.ndarray, threads: int) -> float:
-    """Millions of rays a second through the kernel's batches, called from Rust."""
+    """Returns millions of rays per second through the kernel's batches, called from Rust."""
     with tempfile.TemporaryDirectory() as folder:
         arrays = {"vertices.f32": v.astype("<f4"), "faces.u32": f.astype("<u4"), "origins.f32": o, "directions.f32": d}
         for name, array in arrays.items():
@@ -135,7 +136,7 @@ def main() -> None:
         for threads in (1, 2) if shutil.which("cargo") else ():
             name = f"durer, {threads} thread{'s' * (threads > 1)}"
             rates, python = [], []
-            # As the kernel's rate is taken: nine rounds after each other, with nobody between them.
+            # Measured like the kernel's rate: nine rounds in a row without others in between.
             for _ in range(3):
                 rates.append(rust(v, f, o, d, threads))
                 python.append(len(o) / np.median([clock(everyone[name], o, d) for _ in range(9)]) / 1e6)

@@ -1,11 +1,12 @@
-"""Runs other packages' own tests of rays against Dürer's classes.
+"""Runs other packages' own ray tests against Dürer's classes.
 
     python crates/durer-py/bench/theirs.py embreex test_intersection.py
     python crates/durer-py/bench/theirs.py open3d test_raycasting_scene.py
 
-The test files are those of their repositories: `tests/test_intersection.py` of trimesh/embreex, and
-`python/test/t/geometry/test_raycasting_scene.py` of isl-org/Open3D, which needs open3d itself for its tensors and meshes. They are run as
-they are: here only the names that they import lead to our classes.
+The test files come from the packages' repositories: `tests/test_intersection.py` of
+trimesh/embreex, and `python/test/t/geometry/test_raycasting_scene.py` of isl-org/Open3D, which
+needs open3d itself for its tensors and meshes. They run unchanged; only the names that they
+import lead to our classes.
 """
 
 import sys
@@ -20,7 +21,7 @@ import durer.open3d
 
 
 def embreex() -> None:
-    """The modules of embreex, all with our classes."""
+    """Installs modules named like embreex's, with our classes."""
     for name in ("embreex", "embreex.rtcore", "embreex.rtcore_scene", "embreex.mesh_construction"):
         sys.modules[name] = module = types.ModuleType(name)
         module.__dict__.update(vars(durer.embreex))
@@ -29,7 +30,7 @@ def embreex() -> None:
 
 
 def open3d() -> None:
-    """Open3D with our class in the place of its own; tensors become arrays, and answers tensors."""
+    """Replaces Open3D's class with ours; converts tensors to arrays, and answers to tensors."""
     import open3d as o3d
 
     def array(value: Any) -> Any:
@@ -48,7 +49,7 @@ def open3d() -> None:
             return lambda *args, **named: tensor(found(*map(array, args), **{key: array(value) for key, value in named.items()}))
 
     o3d.t.geometry.RaycastingScene = RaycastingScene
-    # What their tests take from a helper of their own: the devices to try.
+    # Replacement for a helper of their tests: the list of devices to try.
     sys.modules["open3d_test"] = helper = types.ModuleType("open3d_test")
     helper.list_devices = lambda **_: [o3d.core.Device("CPU:0")]  # type: ignore[attr-defined]
 

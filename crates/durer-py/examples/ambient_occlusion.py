@@ -1,4 +1,4 @@
-"""Ambient occlusion, baked to the vertices of a mesh: how much of the sky each of them sees.
+"""Ambient occlusion, baked to the vertices of a mesh: the share of the sky that each vertex sees.
 
     python ambient_occlusion.py [rays for a vertex] [baked.ply]
 """
@@ -12,7 +12,7 @@ import durer
 
 
 def directions_about(normals: np.ndarray, count: int, seed: int = 1) -> np.ndarray:
-    """So many directions about each normal, by the cosine with it: shape (n, count, 3)."""
+    """Returns `count` cosine-distributed directions around each normal: shape (n, count, 3)."""
     u, v = np.random.default_rng(seed).uniform(size=(2, len(normals), count))
     z, r, turn = np.sqrt(1 - u), np.sqrt(u), 2 * np.pi * v
     other = np.where(np.abs(normals[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]])
@@ -24,8 +24,9 @@ def directions_about(normals: np.ndarray, count: int, seed: int = 1) -> np.ndarr
 
 
 def openness(mesh: durer.Mesh, count: int) -> np.ndarray:
-    """The share of the sky above each vertex, by the cosine, that is seen: 1 where nothing is in the way. Above is what the triangles
-    around it say, each for its part; they share so many rays."""
+    """Returns the cosine-weighted share of the sky that each vertex sees: 1 if nothing occludes
+    it. The triangles around a vertex each sample their own hemisphere, and share its rays by
+    area."""
     triangles = np.repeat(np.arange(len(mesh.faces)), 3)
     corners = mesh.surface(triangles, np.tile([[0, 0], [1, 0], [0, 1]], (len(mesh.faces), 1)))
     ways = directions_about(corners.normal, -(-count // 6))

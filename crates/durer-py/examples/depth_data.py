@@ -1,4 +1,5 @@
-"""A data set for learning: depth, normals, instances and optical flow of random scenes from random cameras, with all that is true.
+"""A training set: depth, normals, instances and optical flow of random scenes from random cameras,
+with ground truth.
 
     python depth_data.py [pictures] [folder]
 """
@@ -16,7 +17,7 @@ WIDTH, HEIGHT, FOCAL = 160, 120, 150.0
 
 
 def some_scene(rng: np.random.Generator) -> durer.Scene:
-    """A floor with some balls and boxes on it, turned about z."""
+    """Returns a floor with some balls and boxes, rotated about z."""
     shapes = [durer.Mesh(*ball(1, 24)), durer.Mesh(*box((-1, -1, -1), (1, 1, 1)))]
     objects: list = [durer.Mesh(*grid(-12, 12, -12, 12, 1))]
     for _ in range(rng.integers(4, 9)):
@@ -27,7 +28,7 @@ def some_scene(rng: np.random.Generator) -> durer.Scene:
 
 
 def camera_at(eye: np.ndarray, target: np.ndarray) -> Camera:
-    """OpenCV's camera at a place that looks at a point; z of the world is up."""
+    """Returns an OpenCV camera at `eye` that looks at a point; z is up in the world."""
     forward = (target - eye) / np.linalg.norm(target - eye)
     right = np.cross(forward, (0, 0, 1))
     right /= np.linalg.norm(right)
@@ -37,7 +38,7 @@ def camera_at(eye: np.ndarray, target: np.ndarray) -> Camera:
 
 
 def sample(seed: int) -> dict[str, np.ndarray]:
-    """One example, which the seed alone decides: two poses and what is true of them."""
+    """Returns one example, determined by the seed: two poses and their ground truth."""
     rng = np.random.default_rng(seed)
     scene = some_scene(rng)
     angle, far, high = rng.uniform(0, 2 * np.pi), rng.uniform(5, 10), rng.uniform(1.5, 5)

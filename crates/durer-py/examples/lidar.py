@@ -1,4 +1,4 @@
-"""A lidar scan: a sensor with rows of beams that turns, and what comes back to it.
+"""A lidar scan: a sensor with rows of beams that rotates, and the returns it receives.
 
     python lidar.py [steps of a turn] [scan.ply]
 """
@@ -12,10 +12,11 @@ import durer
 
 
 def scan(scene: durer.Scene, place, rows: int = 32, steps: int = 900, reach: float = 60.0, noise: float = 0.0, seed: int = 1):
-    """Points, the number of the object, and how much comes back of each beam that meets something within reach.
+    """Returns points, object indices and intensities of all beams that hit something within reach.
 
-    Beams go from 25 degrees below the horizon to 15 above it; z is up. Noise is the standard deviation of a range. What comes back
-    of a rough surface falls with the cosine and with the square of the distance.
+    Beams go from 25 degrees below the horizon to 15 above it; z is up. Noise is the standard
+    deviation of a range. The intensity from a rough surface falls with the cosine and with the
+    square of the distance.
     """
     height = np.radians(np.linspace(-25, 15, rows))[:, None]
     turn = 2 * np.pi * np.arange(steps) / steps

@@ -1,4 +1,5 @@
-"""Writes the notebooks beside this file: the programs in cells, with what they find as pictures.
+"""Writes the notebooks beside this file: the example programs in cells, with their results as
+pictures.
 
     python notebooks.py
 """
@@ -9,7 +10,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 
-#: What follows the functions of a program: calls, and what is to be seen.
+#: Cells after the functions of a program: calls and pictures.
 CALLS = {
     "signed_distance": [
         "mesh = durer.Mesh(*together(ball(1.0, 48), box((1.2, -0.5, -0.5), (2.0, 0.5, 0.5))))\n"
@@ -57,7 +58,7 @@ CALLS = {
     ],
 }
 
-#: A notebook that comes of no program.
+#: A notebook without a program.
 PICTURES = [
     "# Pictures, and why they are as they are\n\nA scene in code, its picture, what is odd about it, why a pixel has its colour, and a view that goes around it.",
     "import durer\n\nred, white = (durer.PhongMaterial(diffuse_color=c) for c in [(0.8, 0.2, 0.1), (0.8, 0.8, 0.8)])\n"
@@ -74,7 +75,7 @@ PICTURES = [
 
 
 def cells_of(name: str) -> list[str]:
-    """The text of a notebook's cells for a program; the first is prose."""
+    """Returns the text of a notebook's cells for a program; the first is prose."""
     source = (HERE / f"{name}.py").read_text()
     tree = ast.parse(source)
     title, _, rest = (ast.get_docstring(tree) or "").partition(":")
@@ -85,7 +86,7 @@ def cells_of(name: str) -> list[str]:
         if isinstance(node, ast.If) or isinstance(node, ast.Import) and node.names[0].name == "sys":
             continue
         start = node.lineno - 1
-        # Comments that stand right above belong to it.
+        # Comments directly above belong to the definition.
         while lines[start - 1].startswith("#"):
             start -= 1
         is_import = isinstance(node, (ast.Import, ast.ImportFrom))
@@ -98,7 +99,7 @@ def cells_of(name: str) -> list[str]:
 
 
 def notebook(cells: list[str]) -> str:
-    """A notebook, format 4.5, without outputs."""
+    """Returns a notebook in format 4.5, without outputs."""
     made = []
     for i, text in enumerate(cells):
         cell = {"id": f"cell-{i}", "metadata": {}, "source": text.splitlines(keepends=True)}
@@ -108,7 +109,7 @@ def notebook(cells: list[str]) -> str:
 
 
 def all_notebooks() -> dict[str, str]:
-    """Names and contents of all notebooks."""
+    """Returns the names and contents of all notebooks."""
     return {**{name: notebook(cells_of(name)) for name in CALLS}, "pictures": notebook(PICTURES)}
 
 

@@ -1,4 +1,4 @@
-"""Hours of sun: how long each place of a square sees it on a day, among houses.
+"""Hours of sun: how long each point of a square is in the sun on a day, among houses.
 
     python shadow_hours.py [places along a side] [hours.pgm]
 """
@@ -15,9 +15,11 @@ TILT = 23.44
 
 
 def sun(latitude: float, day: int, minutes: int = 10) -> np.ndarray:
-    """Directions to the sun (east, north, up) every so many minutes of a day while it is up; day 0 is the first of January.
+    """Returns directions to the sun (east, north, up) every `minutes` while it is up; day 0 is the
+    first of January.
 
-    The declination by the usual cosine (Cooper, *Solar Energy* 12, 1969), time by the sun itself: noon is when it stands south.
+    The declination follows Cooper's cosine (*Solar Energy* 12, 1969). Time is solar time: at
+    noon the sun is due south.
     """
     declination = -np.radians(TILT) * np.cos(2 * np.pi * (day + 10) / 365)
     hour = 2 * np.pi * ((np.arange(0, 24 * 60, minutes) + minutes / 2) / (24 * 60) - 0.5)
@@ -34,7 +36,7 @@ def sun(latitude: float, day: int, minutes: int = 10) -> np.ndarray:
 
 
 def hours(city: durer.Mesh, places, latitude: float, day: int, minutes: int = 10) -> np.ndarray:
-    """Hours of sun at places, of shape (..., 3)."""
+    """Returns the hours of sun at points of shape (..., 3)."""
     ways = sun(latitude, day, minutes)
     lit = ~city.occluded(np.asarray(places)[..., None, :], ways)
     return lit.sum(-1) * minutes / 60

@@ -1,4 +1,5 @@
-"""What the examples beside this file share: meshes, as vertices and faces, corners counterclockwise from outside; and files."""
+"""Shared by the examples: meshes as vertices and faces, counterclockwise from outside; and file
+formats."""
 
 import struct
 import zlib
@@ -7,7 +8,7 @@ import numpy as np
 
 
 def ball(radius: float = 1.0, cuts: int = 32, center=(0.0, 0.0, 0.0)):
-    """A sphere of `cuts` rows of triangles from pole to pole."""
+    """Returns a sphere of `cuts` rows of triangles from pole to pole."""
     t, p = np.meshgrid(np.linspace(0, np.pi, cuts + 1)[1:-1], np.arange(2 * cuts) * np.pi / cuts, indexing="ij")
     ring = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], -1).reshape(-1, 3)
     vertices = np.concatenate([ring, [[0, 0, 1], [0, 0, -1]]])
@@ -21,21 +22,21 @@ def ball(radius: float = 1.0, cuts: int = 32, center=(0.0, 0.0, 0.0)):
 
 
 def box(low, high):
-    """A box along the axes."""
+    """Returns an axis-aligned box."""
     vertices = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)]) * (np.subtract(high, low)) + low
     sides = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     return vertices, np.array([corners for a, b, c, d in sides for corners in ((a, b, c), (a, c, d))])
 
 
 def together(*meshes):
-    """Several meshes as one."""
+    """Joins several meshes into one."""
     starts = np.cumsum([0] + [len(vertices) for vertices, _ in meshes])
     faces = [faces + start for (_, faces), start in zip(meshes, starts)]
     return np.concatenate([vertices for vertices, _ in meshes]), np.concatenate(faces)
 
 
 def grid(x0: float, x1: float, y0: float, y1: float, cuts: int, z: float = 0.0):
-    """A level square of `cuts` times `cuts` cells, which is seen from above."""
+    """Returns a level square of `cuts` times `cuts` cells that faces up."""
     x, y = np.meshgrid(np.linspace(x0, x1, cuts + 1), np.linspace(y0, y1, cuts + 1), indexing="ij")
     i = (np.arange(cuts)[:, None] * (cuts + 1) + np.arange(cuts)).reshape(-1)
     up, right = 1, cuts + 1
@@ -44,7 +45,7 @@ def grid(x0: float, x1: float, y0: float, y1: float, cuts: int, z: float = 0.0):
 
 
 def save_ply(path, vertices, faces, gray) -> None:
-    """Writes a mesh with a shade of grey, from 0 to 1, for each vertex."""
+    """Writes a mesh with a grey value from 0 to 1 for each vertex."""
     with open(path, "w") as file:
         file.write(f"ply\nformat ascii 1.0\nelement vertex {len(vertices)}\n")
         file.write("".join(f"property float {axis}\n" for axis in "xyz"))
@@ -56,14 +57,15 @@ def save_ply(path, vertices, faces, gray) -> None:
 
 
 def save_pgm(path, gray) -> None:
-    """Writes a picture of greys from 0 to 1."""
+    """Writes a grey picture with values from 0 to 1."""
     shades = np.round(255 * np.clip(gray, 0, 1)).astype(np.uint8)
     with open(path, "wb") as file:
         file.write(f"P5 {shades.shape[1]} {shades.shape[0]} 255\n".encode() + shades.tobytes())
 
 
 class Picture:
-    """Greys from 0 to 1 that a notebook shows: a PNG file (ISO/IEC 15948) of eight bits."""
+    """A grey picture with values from 0 to 1 for a notebook: a PNG file (ISO/IEC 15948) of eight
+    bits."""
 
     def __init__(self, gray, zoom: int = 1) -> None:
         self.gray = np.kron(np.round(255 * np.clip(np.nan_to_num(gray), 0, 1)).astype(np.uint8), np.ones((zoom, zoom), np.uint8))

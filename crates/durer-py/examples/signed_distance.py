@@ -1,4 +1,4 @@
-"""A grid of signed distances: how far each of its points is from a surface, negative inside.
+"""A grid of signed distances: the distance of each point from a surface, negative inside.
 
     python signed_distance.py [cells along a side] [distances.npz]
 """
@@ -12,7 +12,8 @@ import durer
 
 
 def signed_distances(mesh: durer.Mesh, cells: int, margin: float = 0.1):
-    """Distances at the corners of cubic cells around a closed mesh; with them the least corner and a cell's side."""
+    """Returns distances at the corners of cubic cells around a closed mesh, the least corner,
+    and the cell size."""
     low, high = mesh.bounds.astype(float)
     side = (high - low).max() * (1 + 2 * margin) / cells
     start = (low + high) / 2 - side * cells / 2

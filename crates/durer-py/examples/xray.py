@@ -1,4 +1,4 @@
-"""Thickness as X-rays measure it: of all that a ray crosses, the length inside.
+"""Thickness as X-rays measure it: the length of each ray inside the material.
 
     python xray.py [pixels along a side] [xray.pgm]
 """
@@ -12,10 +12,11 @@ import durer
 
 
 def thickness(mesh: durer.Mesh, origins, directions) -> np.ndarray:
-    """The length within the closed mesh along each ray, whose directions have length 1. A surface within another, turned inside
-    out, is a hollow."""
+    """Returns the length inside the closed mesh along each ray, for unit directions. A surface
+    within another with inverted triangles is a hollow."""
     hits = mesh.all_hits(origins, directions)
-    # The way inside is the sum of ends less the sum of beginnings: crossings count with the side from which they are crossed.
+    # The length inside is the sum of exits less the sum of entries: crossings count with their
+    # sign.
     towards = np.broadcast_to(directions, (*hits.count.shape, 3)).reshape(-1, 3)[hits.ray]
     leaving = np.sign((mesh.normals[hits.triangle] * towards).sum(axis=1))
     return np.bincount(hits.ray, leaving * hits.t, hits.count.size).reshape(hits.count.shape)
@@ -27,7 +28,7 @@ def main(side: int = 200, output: str = "xray.pgm") -> None:
     x, y = np.meshgrid(np.linspace(-1.2, 1.2, side), np.linspace(1.2, -1.2, side))
     origins = np.stack([x, y, np.full(x.shape, 5.0)], -1)
     length = thickness(mesh, origins, [0, 0, -1.0])
-    # Beer's and Lambert's law: what is left of the light.
+    # Beer-Lambert law: the light that is left.
     save_pgm(output, 1 - np.exp(-1.2 * length))
     print(f"{side} x {side} rays; the longest way inside is {length.max():.3f}; wrote {output}")
 

@@ -1,5 +1,5 @@
-//! The native half of `import durer`: arrays that are checked already, and texts of JSON. What
-//! users see is in `python/durer`.
+//! The native half of `import durer`. It takes checked arrays and returns arrays and JSON text. The
+//! public interface is in `python/durer`.
 
 mod pictures;
 mod rays;
@@ -11,8 +11,8 @@ mod world;
 
 use pyo3::prelude::*;
 
-/// The native half of `durer`. Its functions take what `durer` has checked, and change without
-/// notice.
+/// Native half of `durer`. Its functions take arguments that `durer` has checked, and may change
+/// without notice.
 #[pymodule]
 fn _durer(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;

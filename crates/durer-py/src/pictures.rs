@@ -1,4 +1,4 @@
-//! Arrays as pictures.
+//! Pictures as arrays.
 
 use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
@@ -14,17 +14,17 @@ fn wrong(error: impl ToString) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
-/// An array of rows, columns and three channels as a picture.
+/// Converts an array of rows, columns and three channels to a picture.
 fn image(array: &PyReadonlyArray3<f32>) -> PyResult<Image> {
     let (shape, values) = (array.as_array().shape().to_vec(), array.as_slice()?);
     let pixels = values.chunks_exact(3).map(Vec3::from_slice).collect();
     Image::from_pixels(shape[1] as u32, shape[0] as u32, pixels).map_err(wrong)
 }
 
-/// A picture, and whether it is values for a screen instead of linear light.
+/// A picture, and true if it has display values instead of linear light.
 type Scaled<'py> = (PyReadonlyArray3<'py, f32>, bool);
 
-/// How a picture differs from a reference, as JSON, and the FLIP error of each pixel.
+/// Compares a picture with a reference; returns JSON, and the FLIP error of each pixel.
 #[pyfunction]
 pub fn compare<'py>(
     py: Python<'py>,
@@ -41,10 +41,10 @@ pub fn compare<'py>(
     Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }
 
-/// A picture with its name, the share of each pixel that is seen, and whether it is light.
+/// A picture with its name, its coverage, and true if it is light.
 type Named<'py> = (String, PyReadonlyArray3<'py, f32>, Option<Vec<f32>>, bool);
 
-/// The bytes of a picture's file, by the extension of a name.
+/// Encodes a picture file, by the extension of a name.
 #[pyfunction]
 pub fn encode<'py>(
     py: Python<'py>,
@@ -69,7 +69,7 @@ pub fn encode<'py>(
     Ok(PyBytes::new(py, &bytes))
 }
 
-/// The values of a picture's file, its width and height, and whether they are for a screen.
+/// Decodes a picture file: values, width, height, and true for display values.
 #[pyfunction]
 pub fn decode<'py>(py: Python<'py>, bytes: &[u8], name: &str) -> PyResult<(Bound<'py, PyArray1<f32>>, u32, u32, bool)> {
     let picture = install(py, None, || Picture::read(bytes, name))

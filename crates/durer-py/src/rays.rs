@@ -1,4 +1,4 @@
-//! Rays as they lie in arrays.
+//! Rays in numpy arrays.
 
 use durer::math::{Ray, Ray64, Vec3};
 use glam::DVec3;
@@ -6,22 +6,22 @@ use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// So many rays are one job: their copies stay in a near cache.
+/// Number of rays a job; its copies fit in a near cache.
 pub const JOB: usize = 2048;
 
-/// Rows of three numbers, of either precision.
+/// Rows of three numbers, in either precision.
 #[derive(FromPyObject)]
 pub enum Array<'py> {
     Single(PyReadonlyArray2<'py, f32>),
     Double(PyReadonlyArray2<'py, f64>),
 }
 
-/// How many rays there are; their origins and directions, and where they begin and end: a row for
-/// each ray, or one for all.
+/// Number of rays, origins, directions, `t_min` and `t_max`; each array has a row for each ray, or
+/// one for all.
 pub type Asked<'py> =
     (usize, Array<'py>, PyReadonlyArray2<'py, f32>, PyReadonlyArray1<'py, f32>, PyReadonlyArray1<'py, f32>);
 
-/// Points one after the other, a row for each thing, or one for all.
+/// Contiguous points: a row for each element, or one for all.
 #[derive(Clone, Copy)]
 pub enum Points<'a> {
     Single(&'a [f32]),
@@ -29,7 +29,7 @@ pub enum Points<'a> {
 }
 
 impl<'a> Points<'a> {
-    /// Those of an array.
+    /// Borrows the points of an array.
     pub fn new(array: &'a Array<'_>) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("points are rows of three numbers, one after the other");
         match array {
@@ -41,7 +41,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// How many there are.
+    /// Returns the number of rows.
     pub fn count(&self) -> usize {
         match self {
             Points::Single(rows) => rows.len() / 3,
@@ -49,7 +49,7 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The i-th, or the only one.
+    /// Returns point `i`, or the only one.
     pub fn at(&self, i: usize) -> DVec3 {
         let at = if self.count() == 1 { 0 } else { 3 * i };
         match self {
@@ -58,13 +58,13 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// The same as it is seen from another point, rounded once.
+    /// Returns point `i` relative to `center`, rounded once.
     pub fn seen_from(&self, center: DVec3, i: usize) -> Vec3 {
         (self.at(i) - center).as_vec3()
     }
 }
 
-/// Rays as they lie in arrays.
+/// Rays borrowed from arrays.
 #[derive(Clone, Copy)]
 pub struct Rays<'a> {
     pub count: usize,
@@ -74,14 +74,14 @@ pub struct Rays<'a> {
     t_max: &'a [f32],
 }
 
-/// Points in a row: three numbers each.
+/// Borrows an array as contiguous points.
 pub fn points<'a>(array: &'a PyReadonlyArray2<'_, f32>) -> PyResult<&'a [f32]> {
     let wrong = || PyValueError::new_err("points are rows of three float32, one after the other");
     array.as_slice().ok().filter(|slice| slice.len().is_multiple_of(3)).ok_or_else(wrong)
 }
 
 impl<'a> Rays<'a> {
-    /// The rays of arrays, if these are long enough.
+    /// Borrows the rays of arrays after checking their lengths.
     pub fn new((count, origins, directions, t_min, t_max): &'a Asked) -> PyResult<Self> {
         let wrong = || PyValueError::new_err("rays are numbers, one after the other, one for all or one for each");
         let count = *count;
@@ -92,7 +92,8 @@ impl<'a> Rays<'a> {
         all.then_some(Rays { count, origins, directions, t_min, t_max }).ok_or_else(wrong)
     }
 
-    /// Those of a job, by the number of the first, as they are seen from a point: rounded once.
+    /// Returns the rays of a job, relative to `center` and rounded once; `first` is the index of
+    /// the first.
     pub fn job(&self, first: usize, center: DVec3) -> Vec<Ray> {
         match self.origins {
             Points::Single(rows) if center == DVec3::ZERO => {
@@ -110,12 +111,12 @@ impl<'a> Rays<'a> {
         }
     }
 
-    /// Those of a job with their origins in double precision.
+    /// Returns the rays of a job with origins in double precision.
     pub fn exact_job(&self, first: usize) -> Vec<Ray64> {
         self.each(first, |i, dir, t_min, t_max| Ray64::new(self.origins.at(i), dir, t_min, t_max))
     }
 
-    /// What becomes of the rays of a job.
+    /// Maps the rays of a job.
     #[inline(always)]
     fn each<R>(&self, first: usize, ray: impl Fn(usize, Vec3, f32, f32) -> R) -> Vec<R> {
         let step = |list: &[f32], each: usize| if list.len() == each { 0 } else { each };

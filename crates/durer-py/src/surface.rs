@@ -1,4 +1,4 @@
-//! What is known of the surface where rays met it: points, normals, and where a ray goes on.
+//! Surface attributes at hits: points, normals, and origins of secondary rays.
 
 use crate::rays::{JOB, points};
 use crate::tree::{Target, Tree, zeros};
@@ -9,7 +9,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-/// What was met: objects, if there are several, triangles, and u and v.
+/// Hits: objects, if there are several, triangles, and u and v.
 pub type Met<'py> = (Option<PyReadonlyArray1<'py, i32>>, PyReadonlyArray1<'py, i32>, PyReadonlyArray2<'py, f32>);
 
 struct Hits<'a> {
@@ -19,7 +19,7 @@ struct Hits<'a> {
     uv: &'a [[f32; 2]],
 }
 
-/// A triangle that was met, in the space of its object, and where that is placed.
+/// The triangle of a hit in object space, and the object's placement.
 struct Face<'a> {
     corners: [DVec3; 3],
     to_world: Option<&'a Affine>,
@@ -52,41 +52,41 @@ impl<'a> Hits<'a> {
 }
 
 impl Face<'_> {
-    /// The point with such coordinates in the triangle's own space.
+    /// Returns the point at barycentric coordinates in the triangle's own space.
     fn point(&self, [u, v]: [f32; 2]) -> DVec3 {
         let ([a, b, c], u, v) = (self.corners, f64::from(u), f64::from(v));
         (1.0 - u - v) * a + u * b + v * c
     }
 
-    /// A point of the triangle's own space in space.
+    /// Transforms a point from the triangle's own space to world space.
     fn placed(&self, point: DVec3) -> DVec3 {
         self.to_world.map_or(point + self.center, |map| map.forward().transform_point3(point))
     }
 
-    /// The unit normal in the triangle's own space; zero if it has no area.
+    /// Returns the unit normal in the triangle's own space; zero if the triangle has no area.
     fn normal(&self) -> DVec3 {
         let [a, b, c] = self.corners;
         (b - a).cross(c - a).normalize_or_zero()
     }
 
-    /// Where a ray of some direction starts that goes on from a point, on the side to which it goes.
+    /// Returns the origin of a secondary ray in a direction, on the side of that direction.
     ///
-    /// Where a ray meets a triangle, the kernel knows in double precision; whether it meets it, in
-    /// single. So a ray that starts in front of a triangle's plane, by more than its origin is
-    /// rounded, does not meet it on the way forwards. `error` bounds what is rounded, each part with
+    /// The kernel computes the hit distance in double precision, and decides the hit in single
+    /// precision. So a ray that starts in front of a triangle's plane, by more than the rounding of
+    /// its origin, does not hit it on the way forwards. `error` bounds the rounding, each part with
+    /// a factor of two to spare:
     /// as much again to spare:
     ///
-    /// - the origin, to single precision in the space of the object;
-    /// - the way to space and back, in double precision: moved to and from the middle of a mesh that
-    ///   is far away, or by a matrix, where the bound is that of [`Affine::point_error`], or as
-    ///   [`Ray64`] keeps it;
-    /// - the corners around, which the kernel sees from the origin and in a sheared plane, with
-    ///   seven roundings at most. A ray that passes an edge by no more than these might be taken to
-    ///   meet what is behind it.
+    /// - the origin, to single precision in object space;
+    /// - the transform to world space and back, in double precision: a translation to and from the
+    ///   centre of a distant mesh, or a matrix, with the bound of [`Affine::point_error`], or as
+    ///   [`Ray64`] stores it;
+    /// - the surrounding corners, which the kernel sees relative to the origin and sheared, with at
+    ///   most seven roundings. A ray that passes an edge by no more than these might be taken to
+    ///   hit what is behind it.
     ///
-    /// The origin lies off the plane by twice the bound, as far as its parts count along the normal,
-    /// and off the edges by eight times: so it is in front of the neighbours too, down to folds of
-    /// a few degrees.
+    /// The origin is off the plane by twice the bound, projected onto the normal, and off the edges
+    /// by eight times: so it is in front of the neighbours too, down to folds of a few degrees.
     ///
     /// [`Ray64`]: durer::math::Ray64
     fn leave(&self, uv: [f32; 2], dir: Vec3) -> DVec3 {
@@ -109,8 +109,8 @@ impl Face<'_> {
     }
 }
 
-/// A point of a triangle, moved off its edges by a margin where it is nearer; in the middle of what
-/// is narrower, and by no more than a few margins in any case.
+/// Moves a point of a triangle off its edges by `margin`; to the middle of narrow parts, and by no
+/// more than a few margins.
 fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3 {
     let [a, b, c] = corners;
     let inward = [(b, c), (c, a), (a, b)].map(|(from, to)| (from, normal.cross(to - from).normalize_or_zero()));
@@ -131,12 +131,12 @@ fn inset(corners: [DVec3; 3], normal: DVec3, point: DVec3, margin: f64) -> DVec3
     if moved.length() <= 4.0 * margin {
         return point + moved;
     }
-    // Between two sides that are nearer to each other: in the middle.
+    // Between two sides that are closer than two margins: in the middle.
     let middle = (next - near) / (1.0 - cosine);
     if middle.is_finite() { point + middle.min(margin) * way } else { point }
 }
 
-/// Three numbers for each hit, worked out by all threads.
+/// Computes three numbers for each hit on all threads.
 fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     py: Python,
     hits: &Hits,
@@ -155,8 +155,7 @@ fn rows<T: numpy::Element + Copy + Default + Send + Sync>(
     Ok(values)
 }
 
-/// The points where rays met the surface, in single precision or `double`; not numbers where they
-/// did not.
+/// Returns the hit points, in single precision or `double`; NaN for misses.
 #[pyfunction]
 pub fn met_points<'py>(
     py: Python<'py>,
@@ -176,8 +175,8 @@ pub fn met_points<'py>(
     })
 }
 
-/// The normals of the triangles that rays met, outwards also where a mesh is mirrored; zero where
-/// they met none.
+/// Returns the normals of the triangles that were hit, outwards also for mirrored instances; zero
+/// for misses.
 #[pyfunction]
 pub fn met_normals<'py>(
     py: Python<'py>,
@@ -193,7 +192,7 @@ pub fn met_normals<'py>(
     Ok(rows(py, &hits, threads, 0.0, normal)?.into_pyarray(py))
 }
 
-/// Where rays start that go on from where others met the surface, each in its direction.
+/// Returns the origins of secondary rays at hits, each with its direction.
 #[pyfunction]
 pub fn met_leave<'py>(
     py: Python<'py>,

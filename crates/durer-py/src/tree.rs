@@ -1,4 +1,4 @@
-//! Trees of triangles, and questions to them.
+//! Trees of triangles, and queries on them.
 
 use crate::rays::{Array, Asked, JOB, Points, Rays, points};
 use crate::work::{each, install};
@@ -11,12 +11,12 @@ use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// Triangles, or trees of triangles in places.
+/// Triangles, or instances of trees of triangles.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Tree {
     pub target: Target,
-    /// Where the origin of a mesh's own coordinates is. Far away, these are more exact than those
-    /// of space, for they are single.
+    /// Origin of a mesh's own coordinates. Single-precision coordinates relative to it are more
+    /// exact for distant meshes.
     pub center: DVec3,
 }
 
@@ -29,7 +29,7 @@ pub enum Target {
 type HitArrays<'py> =
     (Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>);
 
-/// The same, without objects where all is one.
+/// t, triangle, object (if there are several), u and v.
 type ClosestArrays<'py> = (
     Bound<'py, PyArray1<f32>>,
     Bound<'py, PyArray1<i32>>,
@@ -110,8 +110,8 @@ impl Tree {
     }
 }
 
-/// The ray along an axis that leaves the bounds soonest; one that hits nothing where the point is
-/// no point within them.
+/// Returns the axis-aligned ray that leaves the bounds soonest; a ray that hits nothing if the
+/// point is outside or NaN.
 fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     let bounds = tree.bounds();
     let inside = point.cmpge(bounds.min).all() && point.cmple(bounds.max).all();
@@ -127,8 +127,8 @@ fn outward(tree: &TriangleBvh, point: Vec3) -> Ray {
     Ray::new(point, if inside { best.1 } else { Vec3::ZERO })
 }
 
-/// So many zeros. Where there are many, all threads write them: one alone takes a tenth of the time
-/// of tracing.
+/// Returns `count` zeros, written by all threads if there are many: a single thread takes a tenth
+/// of the time of tracing.
 pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, count: usize) -> Vec<T> {
     match count <= 2 * JOB {
         true => vec![T::default(); count],
@@ -140,7 +140,7 @@ pub fn zeros<T: Clone + Default + Send>(py: Python, threads: Option<usize>, coun
 
 #[pymethods]
 impl Tree {
-    /// A tree of triangles, by their vertices as they are seen from `center`.
+    /// Builds a tree of triangles from vertices relative to `center`.
     #[staticmethod]
     fn mesh(
         py: Python,
@@ -164,7 +164,7 @@ impl Tree {
         Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
-    /// The tree of the same triangles with vertices that have moved, in the same order of triangles.
+    /// Refits the tree to moved vertices of the same triangles.
     fn refitted(
         &self,
         py: Python,
@@ -183,7 +183,7 @@ impl Tree {
         Ok(Tree { target: Target::Mesh(Arc::new(tree)), center: DVec3::from_array(center) })
     }
 
-    /// Trees in places: for each a matrix of three rows and four columns.
+    /// Builds a tree of instances: for each a matrix of three rows and four columns.
     #[staticmethod]
     fn placed(trees: Vec<PyRef<Tree>>, matrices: PyReadonlyArray2<f64>) -> PyResult<Self> {
         let rows = matrices.as_slice()?.as_chunks::<12>().0;
@@ -202,7 +202,7 @@ impl Tree {
         Ok(Tree { target: Target::Placed(InstanceBvh::new(placed)), center: DVec3::ZERO })
     }
 
-    /// The first hit of each ray.
+    /// Returns the first hit of each ray.
     fn closest<'py>(
         &self,
         py: Python<'py>,
@@ -214,7 +214,7 @@ impl Tree {
         let count = rays.count;
         let (mut t, mut uv) = (zeros(py, threads, count), zeros::<f32>(py, threads, 2 * count));
         let mut triangle = zeros(py, threads, count);
-        // In a mesh, whose object is known, there is no array of objects.
+        // A mesh is a single object and needs no array of objects.
         let mut object = zeros(py, threads, if matches!(self.target, Target::Placed(_)) { count } else { 0 });
         let objects = object.chunks_mut(JOB).map(Some).chain(std::iter::repeat_with(|| None));
         let found = t.chunks_mut(JOB).zip(uv.as_chunks_mut().0.chunks_mut(JOB)).zip(triangle.chunks_mut(JOB));
@@ -229,7 +229,7 @@ impl Tree {
         Ok((t.into_pyarray(py), triangle.into_pyarray(py), object, uv.into_pyarray(py)))
     }
 
-    /// Whether each ray meets anything.
+    /// Returns true for each ray that hits anything.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -245,7 +245,7 @@ impl Tree {
         Ok(answers.into_pyarray(py))
     }
 
-    /// How many triangles each ray crosses.
+    /// Returns the number of triangles that each ray crosses.
     fn count<'py>(
         &self,
         py: Python<'py>,
@@ -263,7 +263,7 @@ impl Tree {
         Ok(counts.into_pyarray(py))
     }
 
-    /// All hits of all rays, ray by ray; with them how many each ray has.
+    /// Returns all hits of all rays, ray by ray, with the number of hits of each ray.
     fn all_hits<'py>(
         &self,
         py: Python<'py>,
@@ -291,7 +291,7 @@ impl Tree {
         Ok((counts.into_pyarray(py), hits))
     }
 
-    /// Whether points lie inside, by parity.
+    /// Returns true for each point that is inside, by parity.
     fn contains<'py>(
         &self,
         py: Python<'py>,
@@ -308,7 +308,7 @@ impl Tree {
         Ok(answers.into_pyarray(py))
     }
 
-    /// The nearest point of a mesh for each point: distance, triangle, the point, u and v.
+    /// Returns the nearest point of a mesh for each point: distance, triangle, point, u and v.
     #[allow(clippy::type_complexity)]
     fn nearest<'py>(
         &self,
@@ -344,7 +344,7 @@ impl Tree {
         Ok((distance.into_pyarray(py), triangle.into_pyarray(py), near.into_pyarray(py), uv.into_pyarray(py)))
     }
 
-    /// The box around everything, as it is seen from the center: least and greatest corner.
+    /// Returns the bounds relative to the centre: least and greatest corner.
     fn bounds(&self) -> ([f32; 3], [f32; 3]) {
         let bounds = match &self.target {
             Target::Mesh(tree) => tree.bounds(),
@@ -353,7 +353,7 @@ impl Tree {
         (bounds.min.to_array(), bounds.max.to_array())
     }
 
-    /// Bytes in memory.
+    /// Returns the size in memory in bytes.
     fn bytes(&self) -> usize {
         match &self.target {
             Target::Mesh(tree) => tree.memory_usage(),

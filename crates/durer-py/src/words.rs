@@ -1,13 +1,13 @@
-//! Options as a list; and the command itself.
+//! The list of options, and the command itself.
 
 use durer::options::{OptionGroup, statements};
 use pyo3::prelude::*;
 
-/// An option: name, help, name of its value, the words that its value may be, and whether it concerns
-/// `reading`, the `picture` or the `work`.
+/// An option: name, help, name of its value, allowed words, and subject: `reading`, `picture` or
+/// `work`.
 type Statement = (&'static str, String, Option<String>, Vec<&'static str>, &'static str);
 
-/// The options of a render.
+/// Returns the options of a render.
 #[pyfunction]
 pub fn options() -> Vec<Statement> {
     let group = |group| match group {

@@ -1,8 +1,8 @@
-//! Work on threads with the interpreter's lock released, while the calling thread hears Ctrl-C and
-//! tells of progress.
+//! Runs work on threads with the interpreter's lock released, while the calling thread handles
+//! Ctrl-C and reports progress.
 //!
-//! All that may share its work among threads does so in a [`pool`] of this process, never in the one
-//! that rayon has for everybody: after a fork, that one waits for threads which are not there.
+//! Parallel work runs in a [`pool`] of this process, never in rayon's global pool: after a fork,
+//! that one waits for threads which do not exist.
 
 use durer::threads;
 use pyo3::prelude::*;
@@ -13,16 +13,17 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-/// How often signals are heard and progress is told.
+/// Interval of checking signals and reporting progress.
 pub const LOOK: Duration = Duration::from_millis(50);
 
-/// A process, a number of threads that was asked for, and the threads.
+/// A process, its requested number of threads, and the pool.
 type Known = (u32, Option<usize>, Option<Arc<ThreadPool>>);
 
-/// Threads that are kept. They belong to a process: after a fork they are gone.
+/// Cached pools. They belong to a process: after a fork the threads are gone.
 static POOLS: Mutex<Vec<Known>> = Mutex::new(Vec::new());
 
-/// So many threads, the same for all work of this process; `None` where there are none.
+/// Returns the shared pool of this process with the requested number of threads; `None` if threads
+/// are not available.
 pub fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
     let process = std::process::id();
@@ -34,7 +35,7 @@ pub fn pool(asked: Option<usize>) -> Option<Arc<ThreadPool>> {
     pool
 }
 
-/// Does some work with so many threads and without the interpreter's lock.
+/// Runs work on a number of threads without the interpreter's lock.
 pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
     py.detach(|| match pool(asked) {
         Some(pool) => pool.install(work),
@@ -42,7 +43,7 @@ pub fn install<R: Send>(py: Python, asked: Option<usize>, work: impl FnOnce() ->
     })
 }
 
-/// Signals are heard, and `watch`, if it is one, is told how much is done of how much.
+/// Checks signals, and reports progress to `watch`.
 pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     Python::attach(|py| {
         py.check_signals()?;
@@ -50,7 +51,7 @@ pub fn look(watch: Option<&Py<PyAny>>, done: u64, all: u64) -> PyResult<()> {
     })
 }
 
-/// Does all jobs; stops where Ctrl-C was pressed or `watch` raised something.
+/// Runs all jobs; stops after Ctrl-C or an exception of `watch`.
 pub fn each<J: Send>(
     py: Python,
     asked: Option<usize>,
@@ -58,7 +59,7 @@ pub fn each<J: Send>(
     mut jobs: Vec<J>,
     work: impl Fn(J) + Sync + Send,
 ) -> PyResult<()> {
-    // So little that threads would take longer.
+    // Too little work for threads.
     if jobs.len() <= 1 {
         py.detach(|| jobs.drain(..).for_each(work));
         return py.check_signals();

@@ -1,4 +1,4 @@
-//! Scenes that are described, and what is made of their pictures.
+//! Described scenes and their renders.
 
 use crate::rays::{self, JOB, Rays};
 use crate::work::{LOOK, each, install, look, pool};
@@ -29,7 +29,7 @@ fn failed(error: impl ToString) -> PyErr {
     RenderError::new_err(error.to_string())
 }
 
-/// A scene, read and compiled.
+/// A compiled scene.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct World {
     loaded: Loaded,
@@ -38,17 +38,17 @@ pub struct World {
     read: Diagnostics,
 }
 
-/// Whole numbers of a hit, and others.
+/// Number of integers of a hit, and of other values.
 const NUMBERS: usize = 3;
 const VALUES: usize = 10;
-/// The point in double precision, and how far from it a ray starts that leaves it.
+/// Number of doubles of a hit: the point, and the offset at which a secondary ray starts.
 const PLACES: usize = 4;
 type Found<'py> = (Bound<'py, PyArray1<i32>>, Bound<'py, PyArray1<f32>>, Bound<'py, PyArray1<f64>>);
 
-/// Those of some rays.
+/// The outputs of some rays.
 type Row<'a> = ((&'a mut [i32], &'a mut [f32]), &'a mut [f64]);
 
-/// Findings in lines: `file:line:column: error: message`.
+/// Formats diagnostics as lines: `file:line:column: error: message`.
 fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -> Vec<String> {
     let line = |d: &durer::diag::Diagnostic| {
         let place = d.span.and_then(|span| {
@@ -62,11 +62,12 @@ fn lines(files: &Files, read: &Diagnostics, wanted: impl Fn(Severity) -> bool) -
     read.iter().filter(|d| wanted(d.severity)).map(line).collect()
 }
 
-/// As Python has it of its own files: with a number, by which it is `FileNotFoundError`, say.
+/// Converts an error into an OSError with its number, so that Python raises for example
+/// `FileNotFoundError`.
 fn unreadable(error: &SourceError, path: &Path) -> PyErr {
     let number = match error {
         SourceError::Io { error, .. } => error.raw_os_error(),
-        // ENOENT, everywhere.
+        // ENOENT on every system.
         SourceError::Missing { .. } => Some(2),
         _ => None,
     };
@@ -91,7 +92,7 @@ fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
 
 #[pymethods]
 impl World {
-    /// Reads the scene in a file, or a text that counts as one, with files that are in no folder.
+    /// Reads a scene from a file, or from a text as if it were a file, with embedded files.
     #[new]
     fn new(
         py: Python,
@@ -108,7 +109,7 @@ impl World {
                 Some(text) => load_text(&path, text.into(), &options, &mut files, &mut read),
                 None => load(&path, &options, &mut files, &mut read).map_err(|e| unreadable(&e, &path))?,
             };
-            // In the threads that are there already.
+            // Use the current pool.
             options.threads = None;
             let world = loaded.as_ref().and_then(|loaded| loaded.compile(&options, &mut files, &mut read));
             match (loaded, world) {
@@ -122,32 +123,32 @@ impl World {
         })
     }
 
-    /// Warnings and notes.
+    /// Returns warnings and notes.
     fn warnings(&self) -> Vec<String> {
         lines(&self.files, &self.read, |severity| severity != Severity::Error)
     }
 
-    /// The name of its dialect.
+    /// Returns the name of the dialect.
     fn dialect(&self) -> &'static str {
         self.loaded.dialect.name()
     }
 
-    /// The hash of the scene and all its files.
+    /// Returns the hash of the scene and all its files.
     fn digest(&self) -> String {
         self.world.digest().to_string()
     }
 
-    /// Where its files are.
+    /// Returns the paths of its files.
     fn sources(&self) -> Vec<PathBuf> {
         self.loaded.files()
     }
 
-    /// The description as JSON.
+    /// Returns the description as JSON.
     fn description(&self) -> String {
         durer::format::json::write(&self.loaded.scene, self.loaded.dialect)
     }
 
-    /// A part of a picture of which nothing is made yet.
+    /// Creates an empty part of a picture.
     fn part(&self, py: Python, pairs: Pairs) -> PyResult<Part> {
         let options = options(&pairs)?;
         let job = options.resolve(&self.loaded).map_err(PyValueError::new_err)?;
@@ -156,7 +157,7 @@ impl World {
         Ok(Part(Arc::new(part)))
     }
 
-    /// Goes on with a part; says whether it is finished.
+    /// Continues a part; returns true if it is finished.
     fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
         let (control, part) = (options(&pairs)?.control(), part.0.clone());
         let (stop, interrupted) = py.detach(|| {
@@ -191,8 +192,8 @@ impl World {
         }
     }
 
-    /// What each ray meets first: object, triangle and material; t, the point, and the normals of
-    /// the true surface and for shading.
+    /// Returns the first hit of each ray: object, triangle and material; t, point, geometric normal
+    /// and shading normal.
     fn closest<'py>(
         &self,
         py: Python<'py>,
@@ -220,14 +221,15 @@ impl World {
                 values[4..7].copy_from_slice(&surface.n_geo.to_array());
                 values[7..].copy_from_slice(&surface.n_shade.to_array());
                 place[..3].copy_from_slice(&surface.point().to_array());
-                // As the renderer has it: see `durer::integrator`, where rays leave surfaces.
+                // Same offset as in the renderer: see `durer::integrator`, where rays leave
+                // surfaces.
                 place[3] = f64::from(2.0 * surface.n_geo.abs().dot(surface.error));
             }
         })?;
         Ok((ids.into_pyarray(py), values.into_pyarray(py), places.into_pyarray(py)))
     }
 
-    /// Whether each ray meets anything.
+    /// Returns true for each ray that hits anything.
     fn occluded<'py>(
         &self,
         py: Python<'py>,
@@ -245,7 +247,7 @@ impl World {
         Ok(answers.into_pyarray(py))
     }
 
-    /// Why a pixel has its colour, as JSON.
+    /// Explains a pixel's colour as JSON.
     fn explain(&self, py: Python, pairs: Pairs, pixel: (u32, u32)) -> PyResult<String> {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
@@ -254,7 +256,7 @@ impl World {
         Ok(report::explanation(&report::Subject::Pixel(found), &names).to_string())
     }
 
-    /// What is odd about it, as JSON.
+    /// Checks the scene, and returns the findings as JSON.
     fn check(&self, py: Python, pairs: Pairs) -> PyResult<String> {
         let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
         let World { loaded, world, files, read } = self;
@@ -264,67 +266,65 @@ impl World {
     }
 }
 
-/// What is made of a picture.
+/// A partial render.
 #[pyclass(frozen, module = "durer._durer")]
 pub struct Part(Arc<render::PartialRender>);
 
-/// A picture: name, width, height, values, and the share of each pixel that is seen, if not all of
-/// each.
+/// A picture: name, width, height, values, and coverage if it is not 1 everywhere.
 type Picture<'py> = (String, u32, u32, Bound<'py, PyArray1<f32>>, Option<Bound<'py, PyArray1<f32>>>);
 
 #[pymethods]
 impl Part {
-    /// From the bytes of a file.
+    /// Reads a part from the bytes of a file.
     #[staticmethod]
     fn read(py: Python, bytes: &[u8]) -> PyResult<Part> {
         let part = install(py, None, || render::PartialRender::read(bytes)).map_err(failed)?;
         Ok(Part(Arc::new(part)))
     }
 
-    /// The bytes of a file.
+    /// Returns the bytes of a file.
     fn write<'py>(&self, py: Python<'py>) -> Bound<'py, PyBytes> {
         let bytes = install(py, None, || self.0.write());
         PyBytes::new(py, &bytes)
     }
 
-    /// The hash of the film.
+    /// Returns the hash of the film.
     fn hash(&self, py: Python) -> String {
         install(py, None, || self.0.hash().to_string())
     }
 
-    /// The hash of all that decides the picture.
+    /// Returns the hash of everything that determines the picture.
     fn identity(&self) -> String {
         self.0.identity().to_string()
     }
 
-    /// Which part of the work it is.
+    /// Returns the shard.
     fn shard(&self) -> String {
         self.0.shard().to_string()
     }
 
-    /// The job as JSON.
+    /// Returns the job as JSON.
     fn job(&self) -> PyResult<String> {
         serde_json::to_string(self.0.job()).map_err(failed)
     }
 
-    /// All work, and how much of it is done.
+    /// Returns the total work, and the work done.
     fn work(&self) -> (u64, u64) {
         self.0.work()
     }
 
-    /// Whether nothing of its work is left.
+    /// Returns true if no work is left.
     fn is_finished(&self) -> bool {
         self.0.is_finished()
     }
 
-    /// Samples, rays, and samples that were left out.
+    /// Returns the numbers of samples, rays, and rejected samples.
     fn statistics(&self) -> (u64, u64, u64) {
         let statistics = self.0.statistics();
         (statistics.samples, statistics.rays, statistics.rejected)
     }
 
-    /// The pictures: values as files of floating point have them, or, if `shown`, as a screen shows
-    /// them.
+    /// Returns the pictures: values as in floating-point files, or display values if `shown`.
     fn pictures<'py>(&self, py: Python<'py>, shown: bool) -> PyResult<Vec<Picture<'py>>> {
         let rendered = install(py, None, || self.0.pictures()).map_err(failed)?;
         let layers = if shown { rendered.pictures } else { rendered.layers };
@@ -336,14 +336,14 @@ impl Part {
         Ok(layers.into_iter().map(picture).collect())
     }
 
-    /// The names of all kinds of pictures beside colour, with what they show.
+    /// Returns the names and descriptions of all kinds of pictures beside colour.
     #[staticmethod]
     fn kinds() -> Vec<(&'static str, &'static str)> {
         durer::film::aov::AOVS.iter().map(|aov: &Aov| (aov.name, aov.doc)).collect()
     }
 }
 
-/// Puts parts together, each with its name.
+/// Merges named parts.
 #[pyfunction]
 pub fn merge(py: Python, parts: Vec<(String, Vec<u8>)>) -> PyResult<Part> {
     let whole = install(py, None, || {

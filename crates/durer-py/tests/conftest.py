@@ -1,4 +1,4 @@
-"""What several tests use."""
+"""Shared fixtures."""
 
 from pathlib import Path
 

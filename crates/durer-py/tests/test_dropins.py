@@ -1,4 +1,4 @@
-"""The ray classes of other packages' users, beside closed forms and, where they are installed, those packages."""
+"""Tests of the drop-in classes against closed forms and, if installed, the original packages."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ def test_open3d_calls_answer():
     points = np.array([[0.5, 0.5, 0.5], [2, 0.5, 0.5], [3.5, 0.5, 0.75]], np.float32)
     assert scene.compute_signed_distance(points).tolist() == [-0.5, 1, -0.25]
     assert scene.compute_occupancy(points).tolist() == [1, 0, 1]
-    # What lies in two meshes lies outside, as in Open3D.
+    # As in Open3D, a point in two meshes is outside.
     twice = durer.open3d.RaycastingScene()
     for shift in (0, 0.5):
         twice.add_triangles(CUBE + np.float32(shift), CUBE_FACES)

@@ -1,4 +1,4 @@
-"""Farms: Dask with workers that are killed, and the templates of `durer farm`."""
+"""Tests of farms: Dask with workers that are killed, and the templates of `durer farm`."""
 
 import os
 import random
@@ -30,7 +30,7 @@ def test_dask_makes_the_same_bits_whoever_dies(scenes, killed, after):
             nonlocal left
             if left and done > after:
                 left -= 1
-                # Each is asked for once: Dask takes those away that have ended, meanwhile.
+                # Kill each only once: Dask removes ended workers meanwhile.
                 workers = [w.process.process for w in cluster.workers.values() if w.process]
                 random_.choice([process for process in workers if process and process.is_alive()]).kill()
 
@@ -96,7 +96,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}
 
 @pytest.mark.parametrize("engine", ["slurm", "k8s", "openjd", "dask"])
 def test_frames_are_what_the_command_makes(engine, tmp_path):
-    """The jobs of templates, run as their engines would: each task by its number, then what merges."""
+    """Runs the jobs of templates as their engines would: each task by its index, then the merge."""
     for frame in (3, 5, 7):
         (tmp_path / f"walk.{frame:02}.txt").write_text(WALK.format((frame - 5) / 4))
     words = ["--size", "48x32", "--samples", "4"]
@@ -117,7 +117,7 @@ def test_frames_are_what_the_command_makes(engine, tmp_path):
         for task in range(6):
             run(*container["command"], *container["args"], JOB_COMPLETION_INDEX=str(task))
     if engine in ("slurm", "k8s"):
-        # What the comment says is to be done then.
+        # The commands in the template's comment.
         merge = [line.removeprefix("#") for line in job.stdout.splitlines() if line.startswith("#   ")]
         assert len(merge) == 3
         run("bash", "-c", "\n".join(merge))

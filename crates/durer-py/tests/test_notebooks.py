@@ -1,4 +1,4 @@
-"""The example notebooks run in a kernel, and show pictures."""
+"""Tests that the example notebooks run in a kernel and show pictures."""
 
 import runpy
 from pathlib import Path

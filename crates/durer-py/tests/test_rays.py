@@ -1,4 +1,4 @@
-"""Rays against closed forms, brute force, and wrong input."""
+"""Tests of rays against closed forms, brute force, and invalid input."""
 
 import multiprocessing
 import signal
@@ -20,7 +20,7 @@ CUBE_FACES = [
 
 
 def sphere(cuts: int = 24) -> tuple[np.ndarray, np.ndarray]:
-    """A closed sphere of radius 1 about the origin, of latitudes and longitudes."""
+    """A closed sphere of radius 1 around the origin, of latitudes and longitudes."""
     theta, phi = np.linspace(0, np.pi, cuts + 1)[1:-1], np.linspace(0, 2 * np.pi, 2 * cuts, endpoint=False)
     t, p = np.meshgrid(theta, phi, indexing="ij")
     ring = np.stack([np.sin(t) * np.cos(p), np.sin(t) * np.sin(p), np.cos(t)], -1).reshape(-1, 3)
@@ -216,7 +216,7 @@ def test_progress_is_told_and_what_it_raises_stops(ball):
 
 
 def test_the_lock_is_released(ball):
-    """Another thread goes on while rays are traced."""
+    """Another thread continues while rays are traced."""
     ticks, stop = [], threading.Event()
     counter = threading.Thread(target=lambda: [ticks.append(1) or time.sleep(0.001) for _ in iter(stop.is_set, True)])
     d = directions(1_000_000)

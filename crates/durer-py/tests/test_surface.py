@@ -1,4 +1,4 @@
-"""Where rays meet surfaces: points and normals, rays that go on from there, places far away, and copies."""
+"""Tests of surface points: normals, secondary rays, distant meshes, and copies."""
 
 import copy
 import pickle
@@ -20,7 +20,7 @@ SHAPES = {"ball": sphere(), "cube": (2 * CUBE - 1, np.array(CUBE_FACES)), "bumpy
 
 
 def goes_on(scene, middle, seed):
-    """Rays that meet something, go on from there in any direction, and are on the side to which they go."""
+    """Secondary rays in any direction start on the side of their direction."""
     middle = np.asarray(middle, np.float64)
     for way in (directions(20_000, seed), None):
         origins = middle if way is None else middle + 3 * way
@@ -155,7 +155,7 @@ def test_what_is_not_finite_or_there_twice_is_open():
     assert twice.open_edges == 18 and not twice.is_closed
     one = durer.Mesh(CUBE, np.concatenate([faces, faces[:1], faces[:1]]))
     assert one.open_edges == 3
-    # To both sides: a sheet without thickness, which has an inside of no size.
+    # Opposite orientations: a sheet without thickness, whose inside is empty.
     sheet = durer.Mesh(CUBE, [[0, 1, 3], [3, 1, 0]])
     assert sheet.is_closed and not sheet.contains([[0, 0.3, 0.5]]).any()
     assert durer.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)).is_closed

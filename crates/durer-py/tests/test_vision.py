@@ -1,4 +1,4 @@
-"""Cameras of computer vision against OpenCV's formulas."""
+"""Tests of the vision cameras against OpenCV's formulas."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_flow_of_a_turned_camera_is_its_projection():
     assert np.isnan(flow[view.instances < 0]).all() and seen.any() and not seen[view.instances < 0].any()
     y, x = 24, 30
     assert np.allclose(flow[y, x] + [x, y], second.project(view.points[y, x]))
-    # What both see has one depth in the second picture.
+    # A point that both see has the second picture's depth there.
     there = np.round(flow[y, x] + [x, y]).astype(int)
     turn, shift = second._outer()
     assert seen[y, x] and (turn @ view.points[y, x] + shift)[2] == pytest.approx(second.view(scene).depth[there[1], there[0]], rel=0.02)

@@ -1,4 +1,5 @@
-"""The widget of notebooks: its camera, what it tells, in a kernel of Jupyter's, and its page in a browser."""
+"""Tests of the notebook widget: its camera, its explanations, in a Jupyter kernel, and its page
+in a browser."""
 
 import json
 import re
@@ -38,20 +39,20 @@ def test_the_camera_goes_around_what_it_looks_at(explorer):
     explorer._hear({**STILL, "turn": [0.5, 0]})
     there, looks = camera(explorer.world)
     assert explorer.picture != first and explorer.made == 1 and explorer.word.startswith("seen from")
-    # A quarter of a whole turn about the vertical: as high, as far away, and at a right angle.
+    # A quarter of a full turn about the vertical: same height and distance, at a right angle.
     flat = np.array([1, 0, 1])
     assert abs(there[1] - eye[1]) < 1e-4 and abs(np.linalg.norm(there - target) - far) < 1e-4 * far
     assert abs(((eye - target) * flat) @ ((there - target) * flat)) < 1e-3
     assert np.allclose(np.cross(looks, target - there), 0, atol=1e-4)
     explorer._hear({**STILL, "turn": [-0.5, 0]})
     assert np.allclose(camera(explorer.world)[0], eye, atol=1e-4)
-    # Dragged to the right, the scene turns with the hand: the eye goes to the left.
+    # Dragging to the right turns the scene with the hand: the eye moves left.
     explorer._hear({**STILL, "turn": [0.05, 0]})
     right = np.cross(along, [0, 1, 0])
     assert (camera(explorer.world)[0] - eye) @ right < 0
     explorer._hear({**STILL, "nearer": 0.5})
     assert abs(np.linalg.norm(camera(explorer.world)[0] - target) - far / 2) < 1e-3
-    # It never stands on its head.
+    # It never turns upside down.
     for _ in range(9):
         explorer._hear({**STILL, "turn": [0, 0.3]})
     assert "Error" not in explorer.word and camera(explorer.world)[0][1] > target[1]

@@ -1,4 +1,4 @@
-"""Scenes, pictures, parts; beside the command, which comes with the package."""
+"""Tests of scenes, pictures and parts against the command, which comes with the package."""
 
 import asyncio
 import copy
@@ -76,7 +76,7 @@ def test_shards_merge_to_one_run(whitted, tmp_path):
     damaged[-40] ^= 1
     with pytest.raises(durer.RenderError, match="damaged"):
         durer.Part.read(bytes(damaged))
-    # The version stands behind the magic and the format's number; the checksum is made anew by nobody else.
+    # The version follows the magic and the format's number.
     assert parts[0].shard == "1/3" and parts[0].is_finished and parts[0].job["width"] == 48
 
 
@@ -219,7 +219,7 @@ def test_rays_meet_what_pictures_show() -> None:
     np.testing.assert_allclose(found.normal[:4], [[0, 0, 1], [0.5, height, 0.5], [0, 1, 0], [0, 1, 0]], atol=1e-6)
     assert found.hit.tolist() == [True] * 4 + [False] * 2
     assert np.isnan(found.point[4:]).all() and (found.material[4:] == -1).all()
-    # The numbers are those of the pictures.
+    # The indices are those of the pictures.
     picture = world.render(size=(9, 9), show="object,material,depth", samples=1)
     middle = {name: picture[name][4, 4] for name in ("object", "material", "depth")}
     assert middle == {"object": found.object[0], "material": found.material[0], "depth": 2 * found.t[0]}

@@ -1,10 +1,10 @@
-//! Time, where there is any.
+//! Clock, on platforms that have one.
 
 pub use std::time::Duration;
 
 /// Instant of a clock that never runs backwards.
 ///
-/// WebAssembly without a host has no clock: all instants are the same there, so renders have no time
+/// WebAssembly without a host has no clock: all instants are equal there, so renders have no time
 /// limit and report durations of zero.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant(#[cfg(not(target_family = "wasm"))] std::time::Instant);

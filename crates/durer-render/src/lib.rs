@@ -1,5 +1,5 @@
-//! The renderer: compiles a [`durer_scene::scene::Scene`] into a [`world::World`] (immutable tables)
-//! and renders it into a [`film::Film`].
+//! The renderer: compiles a [`durer_scene::scene::Scene`] into a [`world::World`] (immutable
+//! tables) and renders it into a [`film::Film`].
 
 mod clock;
 pub mod compile;

@@ -1,22 +1,22 @@
-//! Threads for work in parallel: as many as are wanted, or as can be had; where there are none, the
-//! calling thread does it all.
+//! Thread pools with as many threads as requested and available. If none can be started, the
+//! calling thread does all work.
 
 use rayon::{ThreadBuilder, ThreadPool, ThreadPoolBuilder};
 use std::io;
 use std::sync::{Once, mpsc};
 
-/// More threads than this are never started, whatever is asked for.
+/// Maximum number of threads.
 pub const MOST: usize = 1024;
 
-/// How many threads there should be: as asked for; else as `RAYON_NUM_THREADS` says; else as many
-/// as the machine has.
+/// Returns the wanted number of threads: as requested, else `RAYON_NUM_THREADS`, else the number of
+/// processors.
 fn wanted(asked: Option<usize>) -> usize {
     let environment = || std::env::var("RAYON_NUM_THREADS").ok()?.parse().ok().filter(|&count: &usize| count > 0);
     let machine = || std::thread::available_parallelism().map_or(1, usize::from);
     asked.or_else(environment).unwrap_or_else(machine).clamp(1, MOST)
 }
 
-/// Starts as many threads as are wanted and can be had. Each waits for what it is to be in a pool.
+/// Starts the wanted threads, as far as the system allows. Each waits to be assigned to a pool.
 fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
@@ -26,8 +26,8 @@ fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     (0..wanted(asked)).map_while(start).collect()
 }
 
-/// Gives threads that are started already to a pool: this cannot fail half-way, as starting them
-/// can.
+/// Returns a spawn handler that assigns running threads to a pool, which cannot fail half-way as
+/// starting them could.
 fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBuilder) -> io::Result<()> {
     move |thread| {
         let sent = started.pop().map(|sender| sender.send(thread));
@@ -35,7 +35,7 @@ fn giving(mut started: Vec<mpsc::Sender<ThreadBuilder>>) -> impl FnMut(ThreadBui
     }
 }
 
-/// Threads of one's own; `None` where the system gives none.
+/// Returns a private pool; `None` if the system allows no threads.
 pub fn pool(asked: Option<usize>) -> Option<ThreadPool> {
     let started = started(asked);
     if started.is_empty() {
@@ -45,7 +45,7 @@ pub fn pool(asked: Option<usize>) -> Option<ThreadPool> {
     ThreadPoolBuilder::new().num_threads(started.len()).spawn_handler(giving(started)).build().ok()
 }
 
-/// Does some work with threads of its own; without any, in the calling thread.
+/// Runs work in a private pool, or in the calling thread without one.
 pub fn install<R: Send>(asked: Option<usize>, work: impl FnOnce() -> R + Send) -> R {
     match pool(asked) {
         Some(pool) => pool.install(work),
@@ -53,14 +53,13 @@ pub fn install<R: Send>(asked: Option<usize>, work: impl FnOnce() -> R + Send) -
     }
 }
 
-/// Starts the threads that all work shares that has none of its own. Programs call it when they
-/// begin; where it is not called, they are started when they are needed first, and a system that
-/// gives none is an error of the program.
+/// Starts the threads of the global pool. Programs call it when they begin; otherwise the threads
+/// start on first use, and a system that allows none makes the program fail.
 pub fn prepare() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let started = started(None);
-        // An error means that there are some already.
+        // An error means that the global pool exists already.
         let _ = match started.is_empty() {
             true => ThreadPoolBuilder::new().num_threads(1).use_current_thread().build_global(),
             false => {

@@ -1,4 +1,4 @@
-//! Builds a scene in code: a mesh that stands in two places, a floor, a lamp with extent.
+//! Builds a scene in code: a mesh with two instances, a floor and an area light.
 
 use durer::prelude::*;
 
@@ -13,7 +13,7 @@ pub(crate) fn main() -> Result<(), Error> {
         specular_roughness: 0.2,
         ..Default::default()
     });
-    // A surface shines by its material, in cd/m^2.
+    // A surface emits light through its material, in cd/m^2.
     let lamp = scene.material(PrincipledMaterial { emission_luminance: 40.0, ..Default::default() });
 
     // A pyramid: five corners; sides counter-clockwise seen from outside.
@@ -32,7 +32,7 @@ pub(crate) fn main() -> Result<(), Error> {
     println!("{} x {}, mean colour {mean}", picture.width(), picture.height());
     assert!(mean.min_element() > 0.0);
 
-    // Nothing invalid reaches a render.
+    // Invalid values are reported when the scene is built.
     scene.add(Sphere { radius: -1.0, ..Default::default() });
     let refused = scene.build().map_err(Error::from).unwrap_err();
     assert_eq!(refused.to_string(), "Sphere: radius -1 must be more than 0");

@@ -1,4 +1,4 @@
-//! Looks for what is odd about a scene: here a camera that looks away from everything.
+//! Checks a scene for likely mistakes: here a camera that looks away from everything.
 
 use durer::check::{Subject, check};
 use durer::prelude::*;

@@ -1,4 +1,4 @@
-//! Explains a pixel: the samples that it is the mean of, and the terms that each is the sum of.
+//! Explains a pixel: its samples, and the terms that add up to each.
 
 use durer::prelude::*;
 use durer::render::explain::explain;
@@ -19,7 +19,7 @@ pub(crate) fn main() -> Result<(), Error> {
     }
     assert_eq!(found.samples.len(), 1);
 
-    // It is the colour of the picture, bit for bit.
+    // The result equals the picture's colour bit for bit.
     let picture = Renderer::new(&world, options)?.finish()?;
     assert_eq!(picture.pixel(16, 12), Some(found.color));
     Ok(())

@@ -1,4 +1,4 @@
-//! Shows a picture while it is made, and stops when it is good enough.
+//! Shows a picture while it renders, and stops when it is good enough.
 
 use durer::prelude::*;
 use durer::render::RenderError;

@@ -1,4 +1,4 @@
-//! Asks a scene what rays hit, without a picture.
+//! Queries a scene with rays, without rendering a picture.
 
 use durer::prelude::*;
 
@@ -9,14 +9,14 @@ pub(crate) fn main() -> Result<(), Error> {
     scene.add(Cuboid { min: vec3(-1.0, -3.0, -6.0), max: vec3(1.0, -2.0, -4.0) });
     let world = scene.build()?.compile()?;
 
-    // The first hit: `t` counts in lengths of the direction.
+    // Closest hit; `t` is in units of the direction's length.
     let ray = Ray::new(Vec3::ZERO, vec3(0.0, 0.0, -2.0));
     let hit = world.intersect(&ray, &mut ());
     let found = hit.as_ref().map(|hit| (hit.hit.object, hit.hit.t, hit.surface.n_geo));
     println!("object, t, normal: {found:?}");
     assert_eq!(found, Some((0, 2.0, Vec3::Z)));
 
-    // Whether anything is hit before some distance.
+    // Occlusion test up to a maximum distance.
     let down = Ray { t_max: 3.0, ..Ray::new(vec3(0.0, 1.5, -5.0), Vec3::NEG_Y) };
     assert!(world.occluded(&down, &mut ()));
     let up = Ray { dir: Vec3::Y, ..down };

@@ -1,4 +1,4 @@
-//! Scenes ready to be rendered and asked.
+//! Compiled scenes, ready for rendering and ray queries.
 
 use crate::error::{Error, SceneError};
 use crate::job::{JobContext, RenderJob, View};
@@ -16,8 +16,7 @@ use std::ops::Deref;
 #[cfg(feature = "fs")]
 use std::path::Path;
 
-/// A scene and the world that it was compiled to. Rays are asked of the [`World`], to which it
-/// dereferences.
+/// A scene and its compiled world. Dereferences to [`World`] for ray queries.
 #[derive(Debug)]
 pub struct CompiledScene {
     scene: Scene,
@@ -38,37 +37,37 @@ impl Deref for CompiledScene {
 }
 
 impl CompiledScene {
-    /// The description.
+    /// Returns the scene's description.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The world.
+    /// Returns the compiled world.
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// The dialect whose meaning the words of its file have.
+    /// Returns the dialect of the scene's file.
     pub fn dialect(&self) -> Dialect {
         self.dialect
     }
 
-    /// Warnings and notes.
+    /// Returns warnings and notes.
     pub fn diagnostics(&self) -> &Diagnostics {
         &self.diagnostics
     }
 
-    /// The texts to which the spans of diagnostics belong.
+    /// Returns the texts that the spans of diagnostics refer to.
     pub fn files(&self) -> &Files {
         &self.files
     }
 
-    /// What a job's defaults follow from.
+    /// Returns the context from which a job's defaults follow.
     pub fn job_context(&self) -> JobContext<'_> {
         JobContext { scene: &self.scene, rules: &self.rules, emulates: self.emulates, timed: false }
     }
 
-    /// The job of some options, in colour, with the scene's defaults for what is not given.
+    /// Resolves options into a job for a picture in colour, with the scene's defaults.
     ///
     /// # Errors
     ///
@@ -81,8 +80,8 @@ impl CompiledScene {
 }
 
 impl RenderJob {
-    /// The job that a scene has by default: its size, integrator, depth and samples are given, and
-    /// may be changed.
+    /// Returns the default job of a scene, with size, integrator, depth and samples set explicitly.
+    /// Each may be changed.
     pub fn for_scene(scene: &CompiledScene) -> RenderJob {
         let context = scene.job_context();
         match RenderJob::default().resolve(&context, Some(&View::default())) {
@@ -98,7 +97,7 @@ impl RenderJob {
 
 /// Compiles scenes that are built in code.
 pub trait CompileScene {
-    /// Compiles the scene by the rules of Dürer's own language. All its meshes and pictures are in
+    /// Compiles the scene by the rules of Dürer's own language. All meshes and pictures must be in
     /// memory.
     ///
     /// # Errors
@@ -106,7 +105,7 @@ pub trait CompileScene {
     /// [`Error::Scene`]: a value is invalid, or the scene names a file.
     fn compile(self) -> Result<CompiledScene, Error>;
 
-    /// Compiles the scene, with files that it names from a source.
+    /// Compiles the scene, and loads the files that it names from `source`.
     ///
     /// # Errors
     ///
@@ -132,7 +131,7 @@ impl CompileScene for Scene {
     }
 }
 
-/// Reads and compiles the scene in a file, of any format: the format and dialect are found out.
+/// Reads and compiles a scene file of any format. Detects the format and the dialect.
 ///
 /// # Errors
 ///

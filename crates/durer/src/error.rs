@@ -1,4 +1,4 @@
-//! The one error of this crate's own functions.
+//! The error type of this crate.
 
 use durer_diag::{Diagnostics, Files, Severity};
 use durer_image::ImageError;
@@ -7,17 +7,17 @@ use durer_image::SaveError;
 use durer_render::render::RenderError;
 use durer_scene::source::SourceError;
 
-/// Why there is no scene, no picture, or no file of it.
+/// An error while loading, rendering or saving.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// The scene has errors.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// Options of a job contradict each other or the scene, or have no such value.
+    /// Options of a job are invalid, or contradict each other or the scene.
     #[error("{0}")]
     Options(String),
-    /// The picture was not made.
+    /// The render failed or was cancelled.
     #[error(transparent)]
     Render(#[from] RenderError),
     /// The picture does not fit into the format of the file.
@@ -32,7 +32,7 @@ pub enum Error {
     Source(#[from] SourceError),
 }
 
-/// What is wrong with a scene, and the texts in which it is.
+/// Errors of a scene, with the texts that they refer to.
 #[derive(Debug)]
 pub struct SceneError {
     diagnostics: Diagnostics,
@@ -44,12 +44,12 @@ impl SceneError {
         SceneError { diagnostics, files }
     }
 
-    /// What is wrong, and what else was found.
+    /// Returns the errors, and all other diagnostics.
     pub fn diagnostics(&self) -> &Diagnostics {
         &self.diagnostics
     }
 
-    /// The texts to which the spans of the diagnostics belong.
+    /// Returns the texts that the spans of diagnostics refer to.
     pub fn files(&self) -> &Files {
         &self.files
     }
@@ -58,7 +58,7 @@ impl SceneError {
 impl std::error::Error for SceneError {}
 
 impl std::fmt::Display for SceneError {
-    /// One line an error: `file:line:column: message`.
+    /// Writes one line for each error: `file:line:column: message`.
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         let errors = self.diagnostics.iter().filter(|found| found.severity == Severity::Error);
         for (i, error) in errors.enumerate() {

@@ -1,8 +1,8 @@
-//! What must hold of any bytes: no panic, no more memory than the bytes justify, and no answer that
-//! contradicts itself.
+//! Properties that must hold for arbitrary input: no panic, memory in proportion to the input, and
+//! consistent results.
 //!
-//! The targets of `fuzz/` call these functions with random bytes; a test does with the seeds, among
-//! which are the bytes that once broke something.
+//! The targets of `fuzz/` call these functions with random bytes. A test calls them with the seeds,
+//! which include inputs of past failures.
 
 use crate::LoadOptions;
 use durer_diag::{Diagnostics, Files, Span};
@@ -24,12 +24,12 @@ use std::cell::RefCell;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
-/// Pictures may take so much memory.
+/// Memory limit for pictures, in bytes.
 const MEMORY: u64 = 64 << 20;
-/// Pictures of parts are made up to so many pixels.
+/// Number of pixels up to which a partial render's pictures are made.
 const PIXELS: u64 = 1 << 16;
 
-/// Bytes as a scene file: what is read is written, and read again as the same.
+/// Reads a scene file; writing and reading it again gives the same scene.
 pub fn scene(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("scene.txt", data.into());
@@ -50,7 +50,7 @@ pub fn scene(data: &[u8]) {
     }
 }
 
-/// Bytes as a scene in JSON: what is read is written, and read again as the same.
+/// Reads a JSON scene; writing and reading it again gives the same scene.
 pub fn json(data: &[u8]) {
     let read = |data: &[u8]| {
         let mut diagnostics = Diagnostics::default();
@@ -68,7 +68,7 @@ pub fn json(data: &[u8]) {
     }
 }
 
-/// Bytes as a mesh file.
+/// Reads a mesh file.
 pub fn mesh(data: &[u8], name: &str) {
     let mut files = Files::default();
     let file = files.add(name, data.into());
@@ -80,7 +80,7 @@ pub fn mesh(data: &[u8], name: &str) {
     }
 }
 
-/// Bytes as a file of measured light: what is read shines with finite light everywhere.
+/// Reads a photometric file; its intensity is finite in every direction.
 pub fn profile(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.ies", data.into());
@@ -94,7 +94,7 @@ pub fn profile(data: &[u8]) {
     }
 }
 
-/// Bytes as a spectrum: what is read ascends, and is a lamp or black.
+/// Reads a spectrum; its wavelengths ascend, and it works as an illuminant or is black.
 pub fn curve(data: &[u8]) {
     let mut files = Files::default();
     let file = files.add("x.csv", data.into());
@@ -108,7 +108,7 @@ pub fn curve(data: &[u8]) {
     }
 }
 
-/// Bytes as a model: what is read of it has sound meshes and a camera.
+/// Reads a model; its meshes are valid and it has a camera.
 pub fn model(data: &[u8], name: &str) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes = data.into();
@@ -128,8 +128,7 @@ pub fn model(data: &[u8], name: &str) {
     }
 }
 
-/// Bytes as a picture file: the head says what decoding finds, and how much memory it takes at
-/// most.
+/// Reads a picture file; its header predicts the decoded size and an upper bound for the memory.
 pub fn picture(data: &[u8], name: &str) {
     let Ok(encoded) = Encoded::open(data, name) else { return };
     let (width, height) = encoded.size();
@@ -145,7 +144,7 @@ pub fn picture(data: &[u8], name: &str) {
     }
 }
 
-/// Bytes as saved work: what is read is written as the same bytes, and shows finite colours.
+/// Reads a partial render; writing it gives the same bytes, and its colours are finite.
 pub fn part(data: &[u8]) {
     let mut bytes = data.to_vec();
     bytes.extend(Digest::of(data).0);
@@ -166,7 +165,7 @@ pub fn part(data: &[u8]) {
     }
 }
 
-/// A folder with the files that scenes name.
+/// Returns a folder with the files that the scenes name.
 fn folder() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
@@ -181,14 +180,14 @@ fn folder() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// A scene that bytes choose: its text is read as itself, and its picture is the same by tree, grid
-/// and brute force.
+/// Builds a random scene from bytes; its text reads back as the same scene, and its picture is the
+/// same with BVH, grid and brute force.
 pub fn ways(data: &[u8]) {
     let scene = Random::tame(data).scene(Dialect::Durer);
     let text = write(&scene, Dialect::Durer);
     let path = folder().join("scene.txt");
     let settings = Settings { bounces: 2, ..Job::default().settings };
-    // The scenes that paths are made for are made by them.
+    // Use path tracing for physical scenes.
     let method = if scene.is_physical() { Method::PATH } else { Method::WHITTED };
     let job = Job { width: 12, height: 9, settings, method, ..Job::default() };
     let hash = |accel| {
@@ -213,7 +212,7 @@ pub fn ways(data: &[u8]) {
     };
     let Some(plain) = hash(AccelKind::None) else { return };
     for accel in [AccelKind::Bvh, AccelKind::Grid(None)] {
-        // A grid of too many entries is refused.
+        // A grid with too many entries fails to build.
         if let Some(other) = hash(accel) {
             assert_eq!(other, plain, "{accel:?}\n{text}");
         }
@@ -224,7 +223,7 @@ pub fn ways(data: &[u8]) {
 #[test]
 fn seeds_hold() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz");
-    // A package that was published has no seeds.
+    // A published package has no seeds.
     let entries = |path: PathBuf| std::fs::read_dir(path).into_iter().flatten().map(|entry| entry.unwrap().path());
     for target in entries(root.join("seeds")) {
         let name = target.file_name().unwrap().to_string_lossy().into_owned();

@@ -1,8 +1,8 @@
-//! What a picture is: one statement of its options, and what decides where none is given.
+//! Options of a picture, stated once, and their defaults.
 //!
-//! [`RenderJob`] holds the options that are given. The command line, the text that repeats a job
+//! [`RenderJob`] holds the options that are set. The command line, the text that reproduces a job
 //! ([`RenderJob::spelled`]), JSON and Python's arguments walk [`RenderJob::OPTIONS`].
-//! [`RenderJob::resolve`] makes a [`Job`] of them, with defaults from the scene.
+//! [`RenderJob::resolve`] turns them into a [`Job`], with defaults from the scene.
 
 use durer_diag::did_you_mean;
 use durer_render::film::Filter;
@@ -17,30 +17,30 @@ use durer_scene::dialect::{Dialect, Rules};
 use durer_scene::sampler::Sampler;
 use durer_scene::scene::Scene;
 
-/// Samples a pixel at most where a noise threshold decides.
+/// Maximum samples a pixel with a noise threshold.
 const MAX_FOR_NOISE: u32 = 4096;
-/// Least throughput of a ray that is followed.
+/// Minimum throughput of a ray.
 const MIN_THROUGHPUT: f32 = 1.0 / 256.0;
 
-/// How often a path is scattered after its first hit, unless the scene or an option says otherwise.
+/// Default number of scattering events after a path's first hit.
 pub const PATH_BOUNCES: u32 = 16;
 
-/// What stands after an option.
+/// Form of an option's value.
 #[derive(Clone, Copy, Debug)]
 pub enum OptionForm {
-    /// Nothing.
+    /// No value.
     Flag,
-    /// `on`, `off`, or nothing for `on`.
+    /// `on`, `off`, or empty for `on`.
     Switch,
     /// A whole number in a range, both ends included.
     Whole(u32, u32),
     /// A number, or several joined by a letter; the name of the value.
     Value(&'static str),
-    /// A number of which the test is true; the name of the value, the test, and what to say else.
+    /// A number that passes a test: name of the value, test, and message if it fails.
     Number(&'static str, fn(f32) -> bool, &'static str),
-    /// Two numbers, parted by a blank; their names.
+    /// Two numbers separated by a blank: their names.
     Two(&'static str, &'static str),
-    /// One of some words.
+    /// One of several words.
     Words(fn() -> Vec<&'static str>),
 }
 
@@ -51,11 +51,11 @@ pub struct JobOption {
     pub name: &'static str,
     /// Meaning, unit and default.
     pub doc: &'static str,
-    /// What stands after it.
+    /// Form of the value.
     pub form: OptionForm,
 }
 
-/// A type that an option can have, as text.
+/// A type of an option's value that can be parsed and printed.
 trait OptionValue: Sized {
     fn parse(text: &str) -> Result<Self, String>;
     fn shown(&self) -> String;
@@ -89,7 +89,7 @@ macro_rules! numbers {
 
 numbers!(u32: "a whole number", u64: "a whole number", f32: "a number", String: "a word");
 
-/// Columns and rows.
+/// Width and height in pixels.
 impl OptionValue for (u32, u32) {
     fn parse(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
@@ -130,7 +130,7 @@ macro_rules! options {
         }
 
         impl $name {
-            /// All options but those of integrators, which state their own: see [`Method`].
+            /// Every option except those of integrators, which state their own: see [`Method`].
             pub const OPTIONS: &'static [JobOption] =
                 &[$(JobOption { name: $word, doc: concat!($($fdoc, "\n"),+), form: $form },)*];
 
@@ -141,12 +141,12 @@ macro_rules! options {
                 self
             })*
 
-            /// Sets an option by its name on the command line, from the text after it: nothing for a
-            /// flag.
+            /// Sets an option by its name on the command line from the text after it, which is
+            /// empty for a flag.
             ///
             /// # Errors
             ///
-            /// A sentence, if there is no such option, or the text is no value of it.
+            /// A sentence, for an unknown option or a text that is not a value of it.
             pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
                 let option = RenderJob::OPTIONS.iter().find(|option| option.name == name);
                 match option.map(|option| option.form) {
@@ -172,7 +172,7 @@ macro_rules! options {
                 Ok(())
             }
 
-            /// The text after an option; `None` where it is not given.
+            /// Returns an option's value as text; `None` if it is not set.
             pub fn get(&self, name: &str) -> Option<String> {
                 match name {
                     $($word => self.$field.as_ref().map(OptionValue::shown),)*
@@ -245,39 +245,39 @@ options! {
     }
 }
 
-/// The integrator that a scene needs: paths for layered materials, environments, fog and surfaces
-/// that shine, else Whitted's.
+/// Returns the default integrator of a scene: path tracing for layered materials, environments, fog
+/// and emissive surfaces, otherwise Whitted's.
 pub fn usual_method(scene: &Scene) -> Method {
     if scene.is_physical() { Method::PATH } else { Method::WHITTED }
 }
 
-/// Name of an integrator's option on the command line.
+/// Returns the name of an integrator's option on the command line.
 pub fn option_name(field: &Field) -> &'static str {
     field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// Index of an integrator's option of some name.
+/// Returns the index of an integrator's option by name.
 pub fn option_index(method: &Method, option: &str) -> Option<usize> {
     method.fields().iter().position(|field| option_name(field) == option)
 }
 
-/// What a job's defaults follow from.
+/// Facts from which a job's defaults follow.
 #[derive(Clone, Copy, Debug)]
 pub struct JobContext<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// What its words mean.
+    /// Rules of the scene's dialect.
     pub rules: &'a Rules,
-    /// Whether an old program is followed in all: its dialect was asked for.
+    /// True if a dialect was requested, so that all quirks of its program apply.
     pub emulates: bool,
-    /// Whether a time limit decides when there are enough samples.
+    /// True if a time limit ends the sampling.
     pub timed: bool,
 }
 
-/// Which pictures are made.
+/// Selection of output pictures.
 #[derive(Clone, Debug)]
 pub struct View {
-    /// The part of the picture: left, top, width, height; `None`: the one that the scene asks for.
+    /// Crop of the picture: left, top, width, height; `None` for the scene's own crop.
     pub crop: Option<(u32, u32, u32, u32)>,
     /// Names of pictures: `color`, and those of [`durer_render::film::aov::AOVS`].
     pub show: Vec<String>,
@@ -297,11 +297,11 @@ impl RenderJob {
         self
     }
 
-    /// Sets an option that an integrator states.
+    /// Sets an option of an integrator.
     ///
     /// # Errors
     ///
-    /// A sentence, if no integrator has it.
+    /// A sentence, if no integrator has this option.
     pub fn set_integrator_option(&mut self, name: &str, value: Value) -> Result<(), String> {
         let kinds = Method::kinds();
         let fields = kinds.iter().flat_map(|kind| kind.fields());
@@ -335,15 +335,16 @@ impl RenderJob {
         }
     }
 
-    /// The integrator that is asked for, with its options; without any, the usual one.
+    /// Returns the requested integrator with its options; `usual` if none is requested.
     ///
     /// # Errors
     ///
-    /// A sentence, if there is no such integrator, or an option is not one of it or out of range.
+    /// A sentence, for an unknown integrator, or an option that does not belong to it or is out of
+    /// range.
     pub fn resolved_method(&self, usual: Method) -> Result<Method, String> {
         let has = |kind: &Method, (option, _): &(&str, Value)| option_index(kind, option).is_some();
         let mut methods = std::iter::once(usual).chain(Method::kinds());
-        // The one that has all the options, or at least the last.
+        // Find an integrator with all options, or at least with the last one.
         let fitting = methods.clone().find(|kind| self.method_options.iter().all(|option| has(kind, option)));
         let last = self.method_options.last();
         let found = match &self.method {
@@ -366,13 +367,13 @@ impl RenderJob {
         Ok(method)
     }
 
-    /// The size of the picture that is asked for.
+    /// Returns the picture's size, if it is set.
     pub fn given_size(&self) -> Option<(u32, u32)> {
         self.size
     }
 
-    /// Makes a job of what is given and, where nothing is, of what the scene and its rules have as
-    /// defaults. Without a view, the whole picture in colour.
+    /// Resolves the options into a job. Options that are not set follow from the scene and its
+    /// rules. Without a view, the job renders the whole picture in colour.
     ///
     /// # Errors
     ///
@@ -384,7 +385,7 @@ impl RenderJob {
         let natural = || Raster::natural_size(camera.and_then(|camera| camera.proportions()), rules.size);
         let (width, height) = self.size.or(wishes.size).unwrap_or_else(natural);
         let method = self.resolved_method(usual_method(scene))?;
-        // A blur needs more samples than an edge.
+        // Blur needs more samples than an edge.
         let plenty = if camera.is_some_and(|camera| camera.has_aperture()) || method.is_random() { 64 } else { 16 };
         let plenty = wishes.samples.unwrap_or(plenty);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
@@ -410,7 +411,7 @@ impl RenderJob {
             }
             None => None,
         };
-        // The part that the scene asks for belongs to the size that it asks for.
+        // The scene's crop only applies to the scene's own size.
         let wished = wishes.crop.filter(|_| wishes.size == Some((width, height)));
         let crop = view.and_then(|view| view.crop.or(wished));
         let shown = view.map_or(&[][..], |view| &view.show);
@@ -439,7 +440,7 @@ impl RenderJob {
         })
     }
 
-    /// Refuses options that contradict each other.
+    /// Reports options that contradict each other.
     fn check_combination(&self) -> Result<(), String> {
         let is = |flag: Option<bool>| flag.unwrap_or(false);
         let wrong = if (is(self.jitter) || is(self.blur))
@@ -502,8 +503,8 @@ impl RenderJob {
         Ok(Sampling::Course2004 { sampler, samples, filter })
     }
 
-    /// The options that make a job of a scene, but for its size and view: those whose values are not
-    /// the scene's defaults. The inverse of [`RenderJob::resolve`].
+    /// Returns the options whose values differ from the scene's defaults, without size and view.
+    /// The inverse of [`RenderJob::resolve`].
     pub fn of(job: &Job, context: &JobContext) -> RenderJob {
         let JobContext { scene, rules, emulates, .. } = *context;
         let settings = &job.settings;
@@ -558,7 +559,7 @@ impl RenderJob {
         options
     }
 
-    /// The options that are given, as words of a command line.
+    /// Returns the options that are set as words of a command line.
     pub fn spelled(&self) -> Vec<String> {
         let mut words: Vec<String> = self.method.iter().map(|name| format!("--integrator {name}")).collect();
         words.extend(self.method_options.iter().filter_map(|(name, value)| match value {
@@ -580,7 +581,7 @@ impl RenderJob {
     }
 }
 
-/// How often light is scattered, or reflected, after the first time, unless asked otherwise.
+/// Returns the default number of bounces.
 fn usual_bounces(method: Method, context: &JobContext) -> u32 {
     match method.transport() {
         Some(_) => context.scene.wishes.bounces.unwrap_or(PATH_BOUNCES),

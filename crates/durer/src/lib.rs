@@ -31,9 +31,9 @@
 //! }
 //! ```
 //!
-//! This crate is the face of the others: it loads files ([`open`], [`load()`]), has the defaults of
-//! pictures ([`job`]), gives answers as JSON ([`report`]) and passes on the modules of the crates that do the
-//! work.
+//! This crate is the entry point to the others: it loads files ([`open`], [`load()`]), has the
+//! defaults of pictures ([`job`]), returns reports as JSON ([`report`]), and re-exports the modules
+//! of the crates that do the work.
 
 pub mod compiled;
 pub mod error;

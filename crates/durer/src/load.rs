@@ -1,4 +1,4 @@
-//! From a file's path to a world: format, dialect, rules, files.
+//! Loads scenes from files: format, dialect, rules, assets.
 
 use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
@@ -19,60 +19,59 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// How a scene file is to be understood.
+/// Options of loading a scene file.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// Its dialect, with the bugs of that year's program. `None`: it is guessed, and sane rules
-    /// hold.
+    /// Dialect, with the bugs of that year's program. `None`: detected, without the bugs.
     pub dialect: Option<Dialect>,
-    /// Whether a guessed dialect is taken with its bugs, and files are also read below the current
-    /// directory: what the course's command line does.
+    /// Apply the bugs of a detected dialect too, and also look for files below the current
+    /// directory, as the course's command line does.
     pub course: bool,
-    /// What else is known of the dialect.
+    /// Other hints for detecting the dialect.
     pub hints: Vec<Hint>,
-    /// Compatibilities to turn on or off.
+    /// Quirks to turn on or off.
     pub compat: Vec<(Compat, bool)>,
-    /// Whether only the words of the dialect are allowed.
+    /// Reject words of other dialects.
     pub strict: bool,
-    /// Whether files may lie anywhere.
+    /// Allow files outside the scene's folder.
     pub allow_outside: bool,
-    /// Folders in which missing files are looked for.
+    /// Folders to search for missing files.
     pub assets: Vec<PathBuf>,
-    /// Files that are in no folder, by the names that the scene gives them.
+    /// Contents of files by the names that the scene uses.
     pub given: Vec<(String, Arc<[u8]>)>,
-    /// How a model that is no scene becomes one.
+    /// Camera, light and ground for a model that has none.
     pub staging: Staging,
-    /// The structure that finds objects.
+    /// Acceleration structure over the objects.
     pub accel: AccelKind,
-    /// Threads that build the world; `None`: as many as the machine has.
+    /// Number of threads that build the world; `None`: one for each processor.
     pub threads: Option<usize>,
-    /// Bytes that the world may take; `None`: any number.
+    /// Memory limit of the world in bytes; `None`: unlimited.
     pub memory: Option<u64>,
-    /// About how many camera rays the world is for; `None`: many. Trees are built faster for few.
+    /// Expected number of camera rays; `None`: many. Few rays get a faster BVH build.
     pub rays: Option<u64>,
-    /// Meshes and pictures of the same scene as it was before: what did not change is neither read
-    /// nor built again.
+    /// Meshes and pictures of the previous version of the scene. Unchanged ones are not read or
+    /// built again.
     pub kept: Option<Arc<Kept>>,
 }
 
 /// A scene that was read.
 #[derive(Debug)]
 pub struct Loaded {
-    /// The description.
+    /// The scene's description.
     pub scene: Scene,
-    /// What its words mean.
+    /// Rules of the dialect.
     pub rules: Rules,
-    /// Its dialect.
+    /// Dialect of the file.
     pub dialect: Dialect,
-    /// How the dialect was found, where it was not asked for.
+    /// The reasons for the dialect, if it was detected.
     pub guess: Option<Guess>,
-    /// Where its files are.
+    /// Source of the scene's files.
     source: FolderSource,
-    /// Bytes that one of its pictures may take while it is decoded.
+    /// Memory limit for decoding a picture, in bytes.
     memory: u64,
 }
 
-/// Reads a scene file. What is wrong with it goes into `diagnostics`, and the text into `files`.
+/// Reads a scene file. Adds diagnostics to `diagnostics`, and the text to `files`.
 ///
 /// # Errors
 ///
@@ -88,7 +87,7 @@ pub fn load(
     Ok(load_text(path, bytes, options, files, diagnostics))
 }
 
-/// The folder in which a file lies.
+/// Returns the folder of a file.
 fn folder_of(path: &Path) -> PathBuf {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder.to_path_buf(),
@@ -96,7 +95,7 @@ fn folder_of(path: &Path) -> PathBuf {
     }
 }
 
-/// The same for a text that is, or is to be, in the file of a path. `None` after errors.
+/// Reads a scene from text as if it were in the file at `path`. Returns `None` after errors.
 pub fn load_text(
     path: &Path,
     bytes: Arc<[u8]>,
@@ -114,7 +113,7 @@ pub fn load_text(
     for (name, bytes) in &options.given {
         source = source.give(name, bytes.clone());
     }
-    // Where the scene lies does not matter for what it is.
+    // The scene's digest does not depend on its path.
     source.record().add("", &bytes);
     let mut name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut bytes = bytes;
@@ -152,7 +151,7 @@ pub fn load_text(
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = match &json {
-            // Nobody asked for it; the scene says it.
+            // The JSON document states its dialect.
             Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new() },
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
@@ -162,7 +161,7 @@ pub fn load_text(
     if options.dialect.is_none() && !options.course {
         rules = rules.sane();
     }
-    // The two versions of one program: neither had both quirks.
+    // No version of the program has both quirks.
     if options.compat.contains(&(Compat::ExitR0, true)) {
         rules.compat &= !Compat::ShadowFronts.bit();
     }
@@ -189,19 +188,19 @@ pub fn load_text(
         diagnostics.extend(portability(&bytes, file, dialect, diagnostics));
     }
     if let (None, Some(guess)) = (&scene, &guess) {
-        // What is wrong in one dialect may be right in another.
+        // An error in one dialect may be valid in another.
         diagnostics.push(guess.note());
     }
     scene.map(|scene| Loaded { scene, rules, dialect, guess, source, memory })
 }
 
-/// Bytes that may be read.
+/// Returns the number of bytes that may be read.
 fn budget(options: &LoadOptions) -> u64 {
     FolderSource::DEFAULT_BUDGET.min(options.memory.unwrap_or(u64::MAX))
 }
 
-/// What the year's own program would refuse in a file that is read here: the first of it, as a
-/// note, unless it was said.
+/// Returns a note about the first construct that the year's own program would reject, unless it was
+/// already reported.
 fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) -> Diagnostics {
     let (mut strict, mut notes) = (Diagnostics::default(), Diagnostics::default());
     if dialect != Dialect::Durer {
@@ -219,22 +218,22 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
 }
 
 impl Loaded {
-    /// What the defaults of a job follow from. `timed`: a time limit decides when there are enough samples.
+    /// Returns the context of a job's defaults. `timed`: a time limit ends the sampling.
     pub fn job_context(&self, timed: bool) -> JobContext<'_> {
-        // Our own dialect is one to ask for, but not an old program.
+        // Our own dialect emulates no program.
         let emulates = self.guess.is_none() && self.dialect != Dialect::Durer;
         JobContext { scene: &self.scene, rules: &self.rules, emulates, timed }
     }
 
-    /// Where the files are that were read for it, the scene's own not among them. All are known
-    /// when it is compiled.
+    /// Returns the paths of the files that were read, except the scene's own. Complete after
+    /// compilation.
     pub fn files(&self) -> Vec<PathBuf> {
         self.source.paths()
     }
 
-    /// The files that it names, as far as they are there, whether they were read or not.
+    /// Returns the paths of the existing files that the scene names, including those not read yet.
     pub fn named_files(&self) -> Vec<PathBuf> {
-        // In JSON names stand in quotes, and nothing else there is a file.
+        // In JSON all names are quoted, and nothing else there is a file.
         let text = json::write(&self.scene, self.dialect);
         let quoted: BTreeSet<&str> = text.split('"').collect();
         // `picture.png:g` is a channel of a file.
@@ -244,20 +243,20 @@ impl Loaded {
         found
     }
 
-    /// Writes the scene as a model in another format, if that format is written; what it has no
-    /// words for is warned of.
+    /// Writes the scene as a model in another format, if the format supports writing. Warns of
+    /// everything that the format cannot express.
     pub fn write(&self, name: &str, diagnostics: &mut Diagnostics) -> Option<Vec<u8>> {
         let write = scene_format_for(name)?.write?;
         let output = Output { name, source: &self.source, normals: self.rules.mesh_normals, memory: self.memory };
         Some(write(&self.scene, &output, diagnostics))
     }
 
-    /// The same scene with all that is in no file of its own in files of a folder beside it.
+    /// Returns a copy of the scene in which embedded data are files of a folder beside it.
     pub fn put_beside(&self, folder: &str) -> (Scene, Vec<Beside>) {
         put_beside(&self.scene, folder, &self.source)
     }
 
-    /// Compiles the scene. `None` after errors, which are in `diagnostics`.
+    /// Compiles the scene. Returns `None` after errors, which are in `diagnostics`.
     pub fn compile(&self, options: &LoadOptions, files: &mut Files, diagnostics: &mut Diagnostics) -> Option<World> {
         let memory = options.memory.unwrap_or(u64::MAX);
         let resources = Resources {

@@ -1,4 +1,4 @@
-//! What most programs that render need: `use durer::prelude::*`.
+//! Common imports for programs that render: `use durer::prelude::*`.
 
 pub use crate::compiled::{CompileScene, CompiledScene};
 pub use crate::error::{Error, SceneError};
@@ -16,12 +16,12 @@ pub use durer_scene::shape::{
     Cone, Cuboid, Cylinder, Disc, Ellipsoid, MeshData, Plane, Quadric, Rectangle, Sphere, Torus, Triangle,
 };
 
-/// A colour of linear light, sRGB primaries.
+/// Creates a colour from linear sRGB components.
 pub fn rgb(red: f32, green: f32, blue: f32) -> Color {
     Color::new(red, green, blue)
 }
 
-/// A point or vector.
+/// Creates a point or vector.
 pub fn vec3(x: f32, y: f32, z: f32) -> Vec3 {
     Vec3::new(x, y, z)
 }

@@ -1,4 +1,4 @@
-//! Rendering a scene pass by pass, and the picture of it.
+//! Progressive rendering of a scene, and its picture.
 
 use crate::compiled::CompiledScene;
 use crate::error::Error;
@@ -13,36 +13,36 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Renders a scene pass by pass: see the example of [this crate](crate). It is an iterator over
-/// [`Progress`] too.
+/// Renders a scene pass by pass: see the example of [this crate](crate). Also an iterator over
+/// [`Progress`].
 #[derive(Debug)]
 pub struct Renderer<'w> {
     render: ProgressiveRender<'w>,
     control: Arc<Control>,
 }
 
-/// Stops a [`Renderer`], from any thread.
+/// Handle that cancels a [`Renderer`] from any thread.
 #[derive(Clone, Debug)]
 pub struct Canceller(Arc<Control>);
 
 impl Canceller {
-    /// Stops the render; its next pass is [`RenderError::Cancelled`].
+    /// Cancels the render; its next pass returns [`RenderError::Cancelled`].
     pub fn cancel(&self) {
         self.0.cancel.store(true, Relaxed);
     }
 }
 
 impl<'w> Renderer<'w> {
-    /// Begins a picture, by as many threads as the machine has.
+    /// Starts a render on all processors.
     ///
     /// # Errors
     ///
-    /// [`Error::Options`] and [`Error::Render`]: no picture can have these options.
+    /// [`Error::Options`] and [`Error::Render`]: the options are invalid.
     pub fn new(scene: &'w CompiledScene, options: RenderJob) -> Result<Self, Error> {
         Renderer::with_control(scene, options, Control::default())
     }
 
-    /// Begins a picture that is made in some way: threads, memory and so on.
+    /// Starts a render with execution options: threads, memory and so on.
     ///
     /// # Errors
     ///
@@ -52,17 +52,17 @@ impl<'w> Renderer<'w> {
         Ok(Renderer { render: ProgressiveRender::new(scene.world(), &job)?, control: Arc::new(control) })
     }
 
-    /// Makes the next pass over all pixels; `None` once the picture is finished. Passes double the
-    /// samples at first, and short ones are joined.
+    /// Renders the next pass over all pixels; `None` once the picture is finished. Passes double
+    /// the samples at first, and short ones are joined.
     ///
     /// # Errors
     ///
-    /// [`Error::Render`], among others if it was cancelled. What was made before is kept.
+    /// [`Error::Render`], for example if the render was cancelled. Earlier passes are kept.
     pub fn next_pass(&mut self) -> Result<Option<Progress>, Error> {
         Ok(self.render.next_pass(&self.control)?)
     }
 
-    /// Makes all passes that are left, and returns the picture.
+    /// Renders the remaining passes, and returns the picture.
     ///
     /// # Errors
     ///
@@ -72,16 +72,16 @@ impl<'w> Renderer<'w> {
         self.image()
     }
 
-    /// What stops this render from another thread.
+    /// Returns a handle that cancels this render from another thread.
     pub fn canceller(&self) -> Canceller {
         Canceller(Arc::clone(&self.control))
     }
 
-    /// The picture so far; black where nothing is made.
+    /// Returns the picture so far; black where no pass has finished.
     ///
     /// # Errors
     ///
-    /// [`Error::Render`]: it does not fit into memory.
+    /// [`Error::Render`]: the picture does not fit into memory.
     pub fn image(&self) -> Result<Picture, Error> {
         let mut rendered = self.render.part().pictures()?;
         match rendered.layers.is_empty() {
@@ -99,7 +99,7 @@ impl Iterator for Renderer<'_> {
     }
 }
 
-/// A picture in linear light, sRGB primaries; 1 is white where nothing else is said.
+/// A picture in linear light with sRGB primaries; by default 1 is white.
 #[derive(Clone, Debug)]
 pub struct Picture {
     layer: Layer,
@@ -108,38 +108,38 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Columns.
+    /// Returns the width in pixels.
     pub fn width(&self) -> u32 {
         self.layer.image.width
     }
 
-    /// Rows.
+    /// Returns the height in pixels.
     pub fn height(&self) -> u32 {
         self.layer.image.height
     }
 
-    /// Colours, row by row from the top, each from the left.
+    /// Returns the colours, row by row from the top, each row from the left.
     pub fn pixels(&self) -> &[Color] {
         &self.layer.image.pixels
     }
 
-    /// The colour of a pixel, counted from 0 from the upper left; `None` outside.
+    /// Returns the colour of a pixel, counted from 0 from the upper left; `None` outside.
     pub fn pixel(&self, x: u32, y: u32) -> Option<Color> {
         self.layer.image.get(x, y)
     }
 
-    /// The picture without what is told beside it.
+    /// Returns the image without its attributes.
     pub fn image(&self) -> &Image {
         &self.layer.image
     }
 
-    /// Writes it into a file, whole or not at all. The name's ending says the format: `.exr`, `.hdr`
-    /// and `.pfm` keep linear light, others eight bits a channel by sRGB's curve.
+    /// Writes the picture into a file atomically. The extension selects the format: `.exr`, `.hdr`
+    /// and `.pfm` keep linear light, others have eight bits a channel with the sRGB curve.
     ///
     /// # Errors
     ///
-    /// [`Error::Image`]: there is no such format, or it cannot have such pictures. [`Error::Save`]:
-    /// the file cannot be written.
+    /// [`Error::Image`]: the format is unknown, or cannot store such pictures.
+    /// [`Error::Save`]: the file cannot be written.
     #[cfg(feature = "fs")]
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), Error> {
         let path = path.as_ref();

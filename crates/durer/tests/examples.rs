@@ -1,4 +1,4 @@
-//! The examples do what they say: each asserts it.
+//! Runs the examples, which assert their results.
 
 macro_rules! examples {
     ($($name:ident: $file:literal)*) => {$(

@@ -1,4 +1,4 @@
-//! What the face promises beyond its examples.
+//! Tests of the public API beyond its examples.
 
 use durer::prelude::*;
 use durer::render::{RenderError, render};

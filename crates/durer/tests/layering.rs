@@ -1,12 +1,12 @@
-//! The structure of the sources: crates name only crates below them, modules name each other in no
-//! circle, and files stay small.
+//! Tests of the structure of the sources: crates name only crates below them, modules of a folder
+//! have no cyclic dependencies, and files stay small.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use syn::{Item, UseTree};
 
-/// The crates by layer, as ARCHITECTURE.md draws them. A crate may name crates of lower layers only.
+/// Crates by layer, as ARCHITECTURE.md draws them. A crate may name crates of lower layers only.
 const LAYERS: [&[&str]; 8] = [
     &["durer-bvh", "durer-diag", "durer-photo"],
     &["durer-image"],
@@ -18,7 +18,7 @@ const LAYERS: [&[&str]; 8] = [
     &["xtask"],
 ];
 
-/// The one arrow that Cargo.toml has and a program has not: texts of scenes for tests.
+/// The only dependency that exists for tests alone: scene texts.
 const FOR_TESTS: (&str, &str) = ("durer-render", "durer-formats");
 
 fn root() -> PathBuf {
@@ -33,7 +33,7 @@ fn layer(name: &str) -> Option<usize> {
     LAYERS.iter().position(|crates| crates.contains(&name))
 }
 
-/// Crates of ours in the `[dependencies]` of a Cargo.toml, without those for tests.
+/// Returns our crates in the `[dependencies]` of a Cargo.toml, without dev-dependencies.
 fn dependencies(manifest: &str) -> Vec<String> {
     let mut section = "";
     let mut found = Vec::new();
@@ -75,7 +75,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 type Module = Vec<String>;
 
-/// The modules of a crate that have files of their own, by path from its root. Tests are left out.
+/// Returns the modules of a crate that have their own files, by path from its root, without tests.
 fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     let mut all = Vec::new();
     files(source, &mut all);
@@ -91,7 +91,7 @@ fn modules(source: &Path) -> BTreeMap<Module, PathBuf> {
     all.into_iter().map(module).filter(|(module, _)| !is_test(module)).collect()
 }
 
-/// Paths of a `use`, each as its segments.
+/// Flattens a `use` tree into paths of segments.
 fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
     match tree {
         UseTree::Path(path) => {
@@ -106,7 +106,7 @@ fn paths(tree: &UseTree, before: &mut Module, found: &mut Vec<Module>) {
     }
 }
 
-/// The module of ours that a path of a `use` in `own` leads into; `None` for other crates.
+/// Returns our module that a `use` path in `own` refers to; `None` for other crates.
 fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) -> Option<Module> {
     let (mut at, rest) = match path[0].as_str() {
         "crate" => (Vec::new(), &path[1..]),
@@ -128,8 +128,8 @@ fn target(path: &[String], own: &Module, modules: &BTreeMap<Module, PathBuf>) ->
     Some(at)
 }
 
-/// Which of the modules in one folder name which, by the folder. The head of a folder declares its
-/// files and is named by them, so arrows to and from it do not count.
+/// Returns for each folder the dependencies between its modules. The folder's own `mod.rs` declares
+/// its files and is used by them, so it does not count.
 fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> {
     let modules = modules(source);
     let mut arrows: BTreeMap<Module, BTreeMap<String, BTreeSet<String>>> = BTreeMap::new();
@@ -153,7 +153,7 @@ fn arrows(source: &Path) -> BTreeMap<Module, BTreeMap<String, BTreeSet<String>>>
     arrows
 }
 
-/// Modules of one folder that lead back to themselves.
+/// Returns the modules of a folder that depend on themselves through others.
 fn in_circles(arrows: &BTreeMap<String, BTreeSet<String>>) -> Vec<&String> {
     let reaches_itself = |start: &String| {
         let mut seen = BTreeSet::new();

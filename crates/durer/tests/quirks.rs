@@ -1,5 +1,4 @@
-//! Quirks of the course's programs, one test each: what they do, and what is done where nobody
-//! asked for them.
+//! Quirks of the course's programs, one test each: behaviour with the quirk, and without it.
 
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Compat, Dialect};
@@ -9,13 +8,13 @@ use durer::world::World;
 use durer::{LoadOptions, load_text};
 use std::path::Path;
 
-/// A world of a dialect, with its quirks or under sane rules; files are in a folder.
+/// Compiles a world in a dialect, with its quirks or without; files are in `folder`.
 fn world_in(folder: &Path, text: &str, dialect: Dialect, official: bool) -> World {
     let compat = if official { Vec::new() } else { off(dialect.rules()) };
     world_with(folder, text, dialect, compat, official)
 }
 
-/// The same with some quirks on or off by name.
+/// Compiles a world with some quirks turned on or off by name.
 fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Compat, bool)>, official: bool) -> World {
     let options = LoadOptions { dialect: Some(dialect), compat, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -29,7 +28,7 @@ fn world_with(folder: &Path, text: &str, dialect: Dialect, compat: Vec<(Compat, 
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// All quirks turned off by name.
+/// Returns all quirks of the rules, turned off.
 fn off(rules: &durer::dialect::Rules) -> Vec<(Compat, bool)> {
     Compat::ALL.iter().filter(|row| rules.has(row.0)).map(|row| (row.0, false)).collect()
 }
@@ -74,22 +73,22 @@ fn a_transform_of_2023_drops_shear_and_nested_ones_keep_it() {
     let sheared = "Transform { scale 2 1 1 z_rotate 45 }";
     let bounds = |text: &str, official| world(text, Dialect::F23, official).bounds().max;
     let root = |x: f32| x.sqrt();
-    // The first axis of the product is (2, 1) / √2; what is left of the second is (-2, 4) √2 / 5
-    // across it.
+    // The first axis of the product is (2, 1) / √2; the rest of the second, perpendicular to it, is
+    // (-2, 4) √2 / 5.
     let image = bounds(&node(sheared, ball), true);
     let [a, b] = [[2.0 / root(2.0), 1.0 / root(2.0)], [-0.4 * root(2.0), 0.8 * root(2.0)]];
     let extent = |i: usize| (a[i] * a[i] + b[i] * b[i]).sqrt();
-    // A box around the image of a box is larger than that: by the sums of the axes, here.
+    // The bounds of a transformed box are larger than that: here by the sums of the axes.
     close(image, [a[0] + b[0].abs(), a[1] + b[1].abs(), 1.0]);
     assert!(extent(0) < image.x);
     close(bounds(&node(sheared, ball), false), [4.0 / root(2.0), 2.0 / root(2.0), 1.0]);
     // The same two matrices in nested nodes.
     let nested = node("Transform { scale 2 1 1 }", &format!("Node {{ Transform {{ z_rotate 45 }} {ball} }}"));
     close(bounds(&nested, true), [4.0 / root(2.0), 2.0 / root(2.0), 1.0]);
-    // A mirror image is no shear.
+    // A reflection is not a shear.
     let mirrored = node("Transform { translate 1 2 3 scale -2 1 3 }", ball);
     assert_eq!(bounds(&mirrored, true), bounds(&mirrored, false));
-    // Lights go with the nodes that they are in.
+    // Lights move with their nodes.
     let place = |official| match &world(&node(sheared, lamp), Dialect::F23, official).lights()[0] {
         durer::light::Light::Point(light) => light.position,
         light => panic!("{light:?}"),
@@ -116,8 +115,8 @@ fn normals_of_planes_count_with_their_length() {
         close(seen(&world(&moved, dialect, true), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
         close(seen(&world(&long, dialect, false), [0.0, 5.0, 0.0], DOWN), [0.25; 3]);
     }
-    // Mirrors: d - 2 (d·n) n with the normal as it is, here (0, 1, 1) of length √2, sends a ray
-    // down to (0, 1, 2) / √5.
+    // Mirrors: d - 2 (d·n) n with the normal as written, here (0, 1, 1) of length √2, reflects a
+    // downward ray into (0, 1, 2) / √5.
     let mirror = "Background { color 0 0 0 ambientLight 0 0 0 }
          Lights { numLights 1 DirectionalLight { direction 0 1 2 color 1 1 1 } }
          Materials { numMaterials 2 Material { diffuseColor 0 0 0 specularColor 1 1 1 shininess 1000 } Material { } }
@@ -171,7 +170,7 @@ fn a_scene_of_2023_without_lights_is_as_bright_as_is_written() {
     for official in [true, false] {
         let world = world(text, Dialect::F23, official);
         close(seen(&world, [0.0, 0.0, 9.0], [0.0, 0.0, -1.0]), [0.25, 0.25, 0.0]);
-        // Where no diffuse colour is written, the program of 2023 has none for ambient light.
+        // Without a diffuse colour, the program of 2023 uses none for ambient light.
         let bare = if official { [0.0; 3] } else { [0.25, 0.5, 0.0] };
         close(seen(&world, [3.0, 0.0, 9.0], [0.0, 0.0, -1.0]), bare);
     }
@@ -194,8 +193,8 @@ fn a_camera_of_2012_inside_glass_is_in_air() {
          Group {{ numObjects 2 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }}
            MaterialIndex 1 Sphere {{ center 3 0 -4 radius 0.05 }} }}"
     );
-    // From (0, 0, 0.5) straight on; Snell's law bends the ray away, by far more than the target's
-    // size.
+    // A straight line from (0, 0, 0.5) hits the target; Snell's law bends the ray away by far more
+    // than the target's size.
     let (origin, to_target) = ([0.0, 0.0, 0.5], [3.0, 0.0, -4.5]);
     let color = |official| seen(&world(&text, Dialect::F12a5, official), origin, to_target).x;
     assert!(color(true) > 0.1 && color(false) < 0.01, "{} {}", color(true), color(false));
@@ -211,8 +210,8 @@ fn r0_is_zero_for_rays_that_leave_whatever_the_index() {
                Material {{ diffuseColor 0 0 0 specularColor 1 1 1 refractionIndex {index} }} }}
              Group {{ numObjects 1 MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}"
         );
-        // Straight through the middle, with a black sky behind mirrored rays: two passages are left
-        // of what is white.
+        // Straight through the centre, with a black background for reflected rays: a white
+        // background is attenuated by two passages.
         let mut world = world(&text, Dialect::F12a5, true);
         let settings = Settings {
             bounces: 4,
@@ -273,8 +272,8 @@ fn meshes_are_read_as_each_program_read_them() {
         assert_eq!(triangles("square.obj", dialect, true), 1, "{dialect:?}");
         assert_eq!(triangles("square.obj", dialect, false), 2, "{dialect:?}");
     }
-    // Normals by the numbers of vertices point along z, those that the faces name up, and there the
-    // light comes from.
+    // Normals by vertex index point along z, those that the faces name point up, where the light
+    // is.
     let light = |official| {
         let world = world_in(folder.path(), &nodes("tilted.obj"), F23, official);
         seen(&world, [0.5, 5.0, -0.3], DOWN).x
@@ -302,6 +301,6 @@ fn a_board_of_solids_has_its_cells_swapped_where_that_is_asked_for() {
     let (plain, swapped) = (at("2", false), at("2", true));
     assert_ne!(plain, swapped);
     close(plain + swapped, [1.0, 1.0, 0.0]);
-    // A board of which one material is none stays as it is.
+    // A board with a missing material stays as it is.
     assert_eq!(at("0", false), at("0", true));
 }

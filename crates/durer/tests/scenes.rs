@@ -1,5 +1,5 @@
-//! Every scene of the repository: read without a finding, rendered the same in every way, shown and
-//! told of.
+//! Tests of every scene of the repository: read without diagnostics, rendered identically by every
+//! accelerator, listed in the README and the pictures.
 
 use durer::compile::AccelKind;
 use durer::diag::{Diagnostics, Files};
@@ -13,12 +13,12 @@ use durer::{LoadOptions, Loaded, load, load_text};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The repository.
+/// Returns the repository's root.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Names of the files in a folder that end so, without the ending, in order.
+/// Returns the names of the files in a folder with this ending, without the ending, sorted.
 fn names(folder: &str, ending: &str) -> Vec<String> {
     let files = fs::read_dir(root().join(folder)).unwrap().map(|file| file.unwrap().file_name().into_string().unwrap());
     let mut names: Vec<String> = files.filter_map(|name| Some(name.strip_suffix(ending)?.to_string())).collect();
@@ -32,7 +32,7 @@ fn scenes() -> Vec<String> {
     scenes
 }
 
-/// Reads and compiles a scene; every finding is a failure.
+/// Reads and compiles a scene; fails on any diagnostic.
 fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
     let options = LoadOptions { accel, ..LoadOptions::default() };
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -44,12 +44,12 @@ fn opened(name: &str, accel: AccelKind) -> (Loaded, World) {
     (loaded.unwrap(), world.unwrap())
 }
 
-/// What makes a scene's picture.
+/// Returns the integrator of a scene.
 fn method(loaded: &Loaded) -> Method {
     if loaded.scene.is_physical() { Method::PATH } else { Method::WHITTED }
 }
 
-/// The colours of a small picture, with one ray through each pixel's centre.
+/// Renders a small picture with one ray through each pixel's centre.
 fn pixels(name: &str, accel: AccelKind, threads: usize) -> Vec<Vec3> {
     let (loaded, world) = opened(name, accel);
     let job = Job {
@@ -94,7 +94,7 @@ fn scenes_have_the_same_bits_for_all_numbers_of_threads_and_structures() {
         assert!(picture.iter().any(|p| *p != picture[0]), "{name} is of one colour");
         for (accel, threads) in [(AccelKind::Bvh, 2), (AccelKind::Grid(None), 1), (AccelKind::Grid(None), 2)] {
             let other = pixels(&name, accel, threads);
-            // No whole pictures in the message.
+            // Do not print whole pictures in the message.
             assert!(bits(&other) == bits(&picture), "{name}: {accel:?} on {threads} threads differs");
         }
     }
@@ -125,7 +125,7 @@ fn scenes_are_the_same_as_json_and_in_the_words_that_come_of_it() {
         let (mut files, mut found) = (Files::default(), Diagnostics::default());
         let (path, bytes) = (root().join("scenes/scene.json"), text.as_bytes().into());
         let again = load_text(&path, bytes, &LoadOptions::default(), &mut files, &mut found).unwrap();
-        // To the bit: equality takes 0 and -0 for one.
+        // Compare bits: `==` treats 0 and -0 as equal.
         let bits = |loaded: &Loaded| serde_json::to_string(&loaded.scene).unwrap();
         assert!(again.scene == loaded.scene && bits(&again) == bits(&loaded), "{name}");
         assert!(again.rules == loaded.rules && found.iter().count() == 0, "{name}");

@@ -1,4 +1,4 @@
-//! A light at a point that does not fade.
+//! A point light without attenuation.
 
 use super::{Emitter, Illumination};
 use crate::describe::{FileName, Rule, described};

@@ -1,4 +1,4 @@
-//! How high things lie.
+//! Height of the hit point.
 
 use super::{Aov, Value};
 use durer_scene::math::Vec3;

@@ -1,4 +1,4 @@
-//! White where anything near enough is hit, black elsewhere.
+//! White for hits within a distance, black elsewhere.
 
 use super::{Integrate, Parameters, Setup, TraceListener};
 use durer_scene::describe::{Rule, described};

@@ -1,10 +1,10 @@
-//! Light that goes back whence it came, as from a cat's eye.
+//! Retroreflection, as from a cat's eye.
 
 use super::{LobeKind, Scatter, Scattered};
 use crate::math::{Vec2, Vec3};
 use crate::spectrum::Spectrum;
 
-/// A perfect retroreflector; what it reflects is its weight.
+/// A perfect retroreflector; its weight is its reflectance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Retro;
 

@@ -1,4 +1,4 @@
-//! Stripes of two materials in turn.
+//! Alternating stripes of two materials.
 
 use super::Pattern;
 use crate::describe::{Rule, described};

@@ -1,4 +1,4 @@
-//! The words of the language as classes of `durer` for Python.
+//! The keywords of the language as Python classes of `durer`.
 
 use super::GENERATED;
 use durer::describe::Kind;
@@ -6,7 +6,7 @@ use durer::dialect::{Dialect, DialectSet};
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, entries};
 use std::fmt::Write;
 
-/// The class that a chapter's words are of.
+/// Returns the base class of a chapter's keywords.
 fn base(chapter: Chapter) -> Option<&'static str> {
     match chapter {
         Chapter::Structure => Some("Thing"),
@@ -18,13 +18,13 @@ fn base(chapter: Chapter) -> Option<&'static str> {
     }
 }
 
-/// The module `durer.words`.
+/// Returns the module `durer.words`.
 pub fn words() -> String {
     let mut classes = String::new();
     let mut names = Vec::new();
     for entry in entries() {
         let Some(base) = base(entry.chapter) else { continue };
-        // A grid has balls in it, and noise that is no solid stands within another material.
+        // A grid contains spheres, and colour noise is part of another material.
         let nested = entry.name() == "Grid" || entry.doc.contains("instead of the diffuse");
         if entry.fields.is_empty() || nested {
             continue;
@@ -43,7 +43,7 @@ pub fn words() -> String {
     )
 }
 
-/// The word of our own dialect.
+/// Returns the keyword in our own dialect.
 fn spelled(words: &[(&'static str, DialectSet)]) -> Option<&'static str> {
     words.iter().find(|word| Dialect::Durer.is_in(word.1)).map(|word| word.0)
 }
@@ -52,7 +52,7 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     let fields: Vec<(&FieldEntry, &str)> =
         entry.fields.iter().filter_map(|field| Some((field, spelled(&field.words)?))).collect();
     let (mut out, mut rows, mut given) = (String::new(), String::new(), String::new());
-    // What must be given first; writing to a String cannot fail.
+    // Required fields come first. Writing to a String cannot fail.
     for (field, spelling) in &fields {
         let name = name(field);
         let kind = kind(field.kind);
@@ -78,7 +78,7 @@ fn class(entry: &Entry, word: &str, base: &str) -> String {
     out
 }
 
-/// A field's name, which must not be a word of Python.
+/// Returns a field's name, avoiding Python keywords.
 fn name(field: &FieldEntry) -> String {
     match field.name {
         name @ ("from" | "in" | "is" | "as" | "not" | "with") => format!("{name}_"),

@@ -1,4 +1,4 @@
-//! Broken scenes for `durer check`, of a file in which they stand as changes of sound ones.
+//! Broken scenes for `durer check`, stored as changes of correct scenes.
 
 use anyhow::{Context, Result, bail};
 use std::path::Path;
@@ -6,8 +6,8 @@ use std::process::Command;
 
 const SCENES: &str = include_str!("broken.txt");
 
-/// A scene, the options that go with it, and the codes of which one names its cause; none where it
-/// is sound.
+/// A scene, its options, and the codes of which one identifies the cause; empty if the scene is
+/// correct.
 struct Case {
     name: String,
     codes: Vec<String>,
@@ -56,14 +56,14 @@ fn cases() -> Result<Vec<Case>> {
     Ok(cases)
 }
 
-/// Judges `check`; whether the goals are met.
+/// Tests `check`; returns true if the goals are met.
 pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
     meshes(folder)?;
     let (mut first, mut second, mut later, mut missed, mut alarms) = (0, 0, 0, 0, 0);
     let cases = cases()?;
     for case in cases.iter().filter(|case| wanted(&case.name)) {
         std::fs::write(folder.join("broken.txt"), &case.text)?;
-        // The last of two options that are given twice is meant.
+        // The last of two equal options wins.
         let mut options = case.options.clone();
         for name in ["--dialect", "--bounces"] {
             let places: Vec<usize> = (0..options.len()).filter(|&i| options[i] == name).collect();
@@ -115,13 +115,13 @@ pub fn judge(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resu
     Ok(first * 10 >= all * 9 && (first + second) * 100 >= all * 97 && alarms == 0)
 }
 
-/// What a program prints, whatever its exit code.
+/// Returns a program's output, whatever its exit code.
 fn output_of_any(command: &mut Command) -> Result<String> {
     let output = command.stdin(std::process::Stdio::null()).output()?;
     Ok(String::from_utf8_lossy(&output.stdout).into_owned())
 }
 
-/// Meshes of a box, in all states.
+/// Writes meshes of a box with all kinds of faults.
 fn meshes(folder: &Path) -> Result<()> {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let quads = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];

@@ -1,5 +1,5 @@
-//! Is the teacher right? Wrong pictures for `durer compare` and broken scenes for `durer check`,
-//! made by a judge that shares nothing with the library but the scene language.
+//! Tests the teaching tools: wrong pictures for `durer compare` and broken scenes for `durer
+//! check`, made by a judge that shares nothing with the library but the scene language.
 
 mod broken;
 #[allow(clippy::disallowed_methods, reason = "the judge shares no arithmetic with the library")]
@@ -14,16 +14,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use tracer::{Picture, Tracer};
 
-/// What came of a wrong picture.
+/// Outcome of a wrong picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Told {
-    /// Named, or named beside others that make the same picture.
+    /// Named correctly, alone or with others that make the same picture.
     Right,
-    /// That it cannot be told.
+    /// Reported as unknown.
     Nothing,
     /// Something else was named.
     Wrong,
-    /// The picture is the reference: the mistake is not seen.
+    /// The picture equals the reference: the mistake is invisible.
     Unseen,
 }
 
@@ -48,7 +48,7 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
     Ok(if good { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
-/// Judges `compare`; whether the goals are met.
+/// Tests `compare`; returns true if the goals are met.
 fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Result<bool> {
     let scenes = wrong::scenes();
     for scene in &scenes {
@@ -107,7 +107,7 @@ fn pictures(durer: &Path, folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Resul
     Ok(wrong == 0 && right * 10 >= seen * 9)
 }
 
-/// What the program's JSON says of the mistakes that were made. The judge reads only the names.
+/// Judges the program's JSON against the actual mistakes. Reads only the names.
 fn judged(json: &str, made: &[&str]) -> (Told, String) {
     let verdict = |name: &str| json.contains(&format!("\"verdict\": \"{name}\""));
     if verdict("identical") || verdict("same") {
@@ -123,7 +123,7 @@ fn judged(json: &str, made: &[&str]) -> (Told, String) {
         .skip(1)
         .map(|set| set.split("\"name\": \"").skip(1).filter_map(|rest| rest.split('"').next()).collect())
         .collect();
-    // Of what is in no table nothing can be named rightly.
+    // A mistake that is in no table cannot be named.
     if made.iter().any(|made| made.starts_with("x-")) && sets.is_empty() {
         return (Told::Right, "not told".into());
     }
@@ -142,7 +142,7 @@ fn ppm((width, height): (usize, usize), picture: &Picture) -> Vec<u8> {
     bytes
 }
 
-/// What a program prints; exit codes above 1 are failures.
+/// Returns a program's output; exit codes above 1 are failures.
 fn output(command: &mut Command) -> Result<String> {
     let output = command.stdin(Stdio::null()).output().context("the program does not start")?;
     if output.status.code().is_none_or(|code| code > 1) {

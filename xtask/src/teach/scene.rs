@@ -26,7 +26,7 @@ pub enum Shape {
     Sphere(V, f64),
     Plane(V, f64),
     Triangle([V; 3]),
-    /// Corners, and triangles of them; smooth or flat as the year has it.
+    /// Corners and triangles; smooth or flat as in that year.
     Mesh(&'static str, Vec<V>, Vec<[usize; 3]>),
 }
 
@@ -96,7 +96,7 @@ fn v(V(x, y, z): V) -> String {
 }
 
 impl Scene {
-    /// Its text.
+    /// Returns the scene's text.
     pub fn text(&self) -> String {
         let mut t = String::new();
         let camera = if self.angle > 0.0 { "PerspectiveCamera" } else { "OrthographicCamera" };
@@ -166,7 +166,7 @@ impl Scene {
         t + "}\n"
     }
 
-    /// The mesh files that it names.
+    /// Returns the mesh files that the scene refers to.
     pub fn files(&self) -> Vec<(&'static str, String)> {
         let mut files = Vec::new();
         for thing in &self.things {
@@ -180,7 +180,7 @@ impl Scene {
         files
     }
 
-    /// The options of `durer` for its picture.
+    /// Returns the options of `durer` for its picture.
     pub fn options(&self) -> Vec<String> {
         let dialect = match self.year {
             Year::F04 => "f04",

@@ -1,5 +1,4 @@
-//! The judge's own tracer. It knows nothing of the library, and makes any of the usual mistakes
-//! that it is told by name.
+//! The judge's own tracer. It is independent of the library, and can make common mistakes by name.
 
 use super::scene::{Lamp, Scene, Shape, Stuff, Thing, Year};
 use super::vector::{Matrix, V};
@@ -10,13 +9,13 @@ pub type Picture = Vec<[u8; 3]>;
 pub struct Tracer<'s> {
     scene: &'s Scene,
     mistakes: &'s [&'static str],
-    /// To the world and back, for each thing.
+    /// Object-to-world matrix and its inverse, for each object.
     places: Vec<(Matrix, Matrix)>,
 }
 
 struct Hit {
     t: f64,
-    /// In the world.
+    /// Shading normal in world space.
     n: V,
     geo: V,
     thing: usize,
@@ -50,7 +49,7 @@ impl<'s> Tracer<'s> {
         (m, m.inverse())
     }
 
-    /// All roots of a thing along a ray in its own space, each with its normals.
+    /// Returns all roots of an object along a ray in object space, each with its normals.
     fn roots(&self, thing: &Thing, o: V, d: V) -> Vec<(f64, V, V)> {
         let triangle = |p: [V; 3]| {
             let n = (p[1] - p[0]).cross(p[2] - p[0]);
@@ -89,7 +88,7 @@ impl<'s> Tracer<'s> {
                 for face in faces {
                     let Some((t, n, w)) = triangle(face.map(|i| corners[i])) else { continue };
                     let mixed = if smooth {
-                        // Weighted by area: sums of cross products.
+                        // Area-weighted: sums of cross products.
                         let at = |corner: usize| {
                             let around = faces.iter().filter(|f| f.contains(&corner));
                             around
@@ -170,11 +169,11 @@ impl<'s> Tracer<'s> {
             return false;
         }
         let most = if self.is("shadows-endless") { f64::INFINITY } else { distance };
-        // In single precision, as pupils have it: that is where acne comes from.
+        // Single precision, as in student programs, which causes acne.
         let single = |v: V| v.map(|x| f64::from(x as f32));
         let p = if self.is("epsilon-0") { single(p) } else { p };
         match self.hit(p, l, self.epsilon(true), most) {
-            // The second program of 2012 looks at the nearest thing's front.
+            // The second program of 2012 only counts front faces of the nearest object.
             Some(hit) if self.scene.year == Year::F12a5 => hit.n.dot(l) <= 0.0,
             hit => hit.is_some(),
         }
@@ -395,7 +394,7 @@ impl<'s> Tracer<'s> {
         }
     }
 
-    /// The ray of a pixel; rows from the top.
+    /// Returns the ray of a pixel; rows from the top.
     fn ray(&self, i: usize, j: usize) -> (V, V) {
         let scene = self.scene;
         let (w, h) = (scene.size.0 as f64, scene.size.1 as f64);
@@ -437,7 +436,7 @@ impl<'s> Tracer<'s> {
         (eye, (w * (1.0 / half) + u * x + v * y).unit())
     }
 
-    /// The picture.
+    /// Renders the picture.
     pub fn picture(&self) -> Picture {
         let (w, h) = self.scene.size;
         let bounces = match () {

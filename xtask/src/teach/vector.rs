@@ -1,5 +1,5 @@
-//! Vectors and matrices of the judge's own tracer: in double precision, and nothing of the
-//! library's.
+//! Vectors and matrices of the judge's own tracer, in double precision and independent of the
+//! library.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -34,7 +34,7 @@ impl Mul<f64> for V {
     }
 }
 
-/// Channel by channel.
+/// Componentwise product.
 impl Mul for V {
     type Output = V;
     fn mul(self, o: V) -> V {
@@ -94,7 +94,7 @@ impl Matrix {
         Matrix { rows: [V(a.0, b.0, c.0), V(a.1, b.1, c.1), V(a.2, b.2, c.2)], by: V::ZERO }
     }
 
-    /// This after another.
+    /// Returns the product: `o` first, then `self`.
     pub fn times(&self, o: &Matrix) -> Matrix {
         let columns = o.transposed().rows;
         let row = |r: V| V(r.dot(columns[0]), r.dot(columns[1]), r.dot(columns[2]));

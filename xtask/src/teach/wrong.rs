@@ -3,7 +3,7 @@
 use super::scene::{Lamp, Op, Scene, Shape, Stuff, Thing, Year};
 use super::vector::V;
 
-/// A wrong picture: which scene, which mistakes, and the names by which they may be told.
+/// A wrong picture: index of the scene, and mistakes.
 pub struct Case {
     pub scene: usize,
     pub made: Vec<&'static str>,
@@ -35,20 +35,21 @@ fn moved(thing: Thing, ops: Vec<Op>) -> Thing {
     Thing { ops, ..thing }
 }
 
-/// Eight triangles with corners on the axes.
+/// Returns eight triangles with corners on the axes.
 fn octahedron(name: &'static str, r: f64) -> Shape {
     let corners = vec![V(r, 0., 0.), V(-r, 0., 0.), V(0., r, 0.), V(0., -r, 0.), V(0., 0., r), V(0., 0., -r)];
     let faces = vec![[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]];
     Shape::Mesh(name, corners, faces)
 }
 
-/// A mesh, turned and stretched, beside a ball on a floor.
+/// Returns a rotated and stretched mesh, beside a sphere on a floor.
 fn beside_a_ball(mesh: Shape) -> Vec<Thing> {
     let ops = vec![Op::Translate(V(1.2, 0.5, 0.5)), Op::Y(30.0), Op::Scale(V(1.0, 1.5, 1.0))];
     vec![sphere(V(-1.4, 0.6, 0.0), 1.0, 0), Thing { shape: mesh, ops, material: 1 }, floor(-0.8, 2)]
 }
 
-/// The scenes, in the course's manner: small, of few things, of every year with the old grammar.
+/// Returns the scenes, in the course's style: small, with few objects, for every year with the old
+/// grammar.
 pub fn scenes() -> Vec<Scene> {
     let old = Scene {
         name: "lamps",
@@ -176,7 +177,7 @@ pub fn scenes() -> Vec<Scene> {
     vec![old, mirrors, glass, turned, flat, phong, falling, fresnel, ours, wide, facets, cubes]
 }
 
-/// Which mistakes are made in which scenes, alone.
+/// Single mistakes for each scene.
 const ALONE: [&[&str]; 12] = [
     &[
         "no-ambient",
@@ -363,8 +364,8 @@ const ALONE: [&[&str]; 12] = [
     &["normals-smooth", "normals-local", "no-falloff"],
 ];
 
-/// Mistakes that were in no table when the judge was written, made in these scenes: their own name
-/// may be told, or none.
+/// Mistakes that were in no table when the judge was written, made in these scenes: valid answers
+/// are their own name, or none.
 const UNKNOWN: [&str; 7] = [
     "x-ambient-brighter",
     "x-kd-squared",
@@ -375,7 +376,7 @@ const UNKNOWN: [&str; 7] = [
     "x-second-light-unshadowed",
 ];
 
-/// Two mistakes at once.
+/// Pairs of mistakes.
 const TOGETHER: &[(usize, [&str; 2])] = &[
     (0, ["no-ambient", "no-highlights"]),
     (0, ["no-shadows", "exponent-doubled"]),
@@ -393,7 +394,7 @@ const TOGETHER: &[(usize, [&str; 2])] = &[
     (8, ["no-shadows", "no-highlights"]),
 ];
 
-/// All wrong pictures.
+/// Returns all wrong pictures.
 pub fn cases() -> Vec<Case> {
     let alone = ALONE.iter().enumerate();
     let mut cases: Vec<Case> =
@@ -405,12 +406,12 @@ pub fn cases() -> Vec<Case> {
     cases
 }
 
-/// The name that the table has for a mistake of the judge's tracer.
+/// Returns the table's name for a mistake of the judge's tracer.
 pub fn told(made: &str) -> &str {
     match made {
         "exponent-doubled" | "exponent-halved" | "exponent-3" => "exponent",
         "size-doubled" => "size",
-        // These have come into the table since.
+        // Added to the table since.
         "x-ambient-brighter" => "ambient-factor",
         "x-materials-swapped" => "other-material",
         "x-second-light-unshadowed" => "shadows-of-one-light",

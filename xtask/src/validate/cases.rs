@@ -4,11 +4,11 @@ use durer::math::{Vec3, fp};
 use durer::texture::CieSky;
 use std::f64::consts::PI;
 
-/// A case whose answer is known.
+/// A case with a known answer.
 pub struct Case {
     pub name: &'static str,
     pub formula: &'static str,
-    /// Words of the background.
+    /// Fields of the background.
     pub background: String,
     pub materials: String,
     pub lights: String,
@@ -18,13 +18,13 @@ pub struct Case {
     pub answer: f64,
 }
 
-/// What is measured.
+/// Quantity to measure.
 pub enum What {
     /// At a point, on the side of a normal.
     Illuminance(Vec3, Vec3),
     /// From a point in a direction.
     Luminance(Vec3, Vec3),
-    /// On parallelograms (corner, edges), on the side of the edges' cross product.
+    /// Through parallelograms (corner, edges), on the side of the edges' cross product.
     Flux(Vec<[Vec3; 3]>),
 }
 
@@ -44,20 +44,20 @@ const LAMP: &str = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissi
 const GLASS: &str = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 }";
 /// A light's colour is illuminance over pi.
 const CANDELAS_100: &str = "color 31.830989 31.830989 31.830989 attenuation 0 0 1";
-/// 1000 lux from straight above.
+/// 1000 lux from the zenith.
 const SUN: &str = "DirectionalLight { direction 0 -1 0 color 318.30989 318.30989 318.30989 }";
-/// A sky of the same brightness everywhere, also below the horizon.
+/// A sky of uniform luminance, also below the horizon.
 const EVEN: &str = "color 1000 1000 1000";
 
-/// The share of a floor element's view that a parallel rectangle takes with a corner over it; its
-/// sides over its distance.
+/// Form factor from a floor element to a parallel rectangle with a corner above it; arguments are
+/// its sides over its distance.
 fn parallel(x: f64, y: f64) -> f64 {
     let (p, q) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
     (x / p * fp::atan_f64(y / p) + y / q * fp::atan_f64(x / q)) / (2.0 * PI)
 }
 
-/// The same of a rectangle at right angles to the element: the element is over a corner of it, its
-/// normal along the sides of length `a`; `b` is the other side and `c` the distance.
+/// Form factor to a perpendicular rectangle: the element is opposite a corner, and its normal is
+/// along the sides of length `a`; `b` is the other side and `c` the distance.
 fn upright(a: f64, b: f64, c: f64) -> f64 {
     let far = (a * a + c * c).sqrt();
     (fp::atan_f64(b / c) - c / far * fp::atan_f64(b / far)) / (2.0 * PI)
@@ -67,8 +67,8 @@ fn cos3(h: f64, x: f64) -> f64 {
     h / ((h * h + x * x) * (h * h + x * x).sqrt())
 }
 
-/// The shares that a boundary reflects of light along the plane of incidence and across it, by
-/// Fresnel's equations.
+/// Returns the reflectance of a boundary for light polarised in the plane of incidence and
+/// perpendicular to it, by Fresnel's equations.
 fn polarised(cosine: f64, eta: f64) -> [f64; 2] {
     let behind = (1.0 - (1.0 - cosine * cosine) / (eta * eta)).sqrt();
     let parallel = (eta * cosine - behind) / (eta * cosine + behind);
@@ -76,31 +76,31 @@ fn polarised(cosine: f64, eta: f64) -> [f64; 2] {
     [parallel * parallel, across * across]
 }
 
-/// The same of unpolarised light.
+/// Returns the reflectance for unpolarised light.
 fn fresnel(cosine: f64, eta: f64) -> f64 {
     let [parallel, across] = polarised(cosine, eta);
     0.5 * (parallel + across)
 }
 
-/// What goes through two faces that reflect a share `r`: all ways to and fro, each of which loses a
-/// share `1 - kept`.
+/// Returns the transmittance of two faces of reflectance `r` with all inter-reflections, each pass
+/// of which keeps the share `kept`.
 fn through_faces(r: f64, kept: f64) -> f64 {
     (1.0 - r) * (1.0 - r) * kept / (1.0 - r * r * kept * kept)
 }
 
-/// What a pane lets through at a cosine, of light that is unpolarised at each face.
+/// Returns the transmittance of a pane at a cosine, for light that is unpolarised at each face.
 fn pane(cosine: f64, kept: f64) -> f64 {
     through_faces(fresnel(cosine, 1.5), kept)
 }
 
-/// The same of light that stays as it was polarised.
+/// Returns the transmittance of a pane for light that keeps its polarisation.
 fn polarised_pane(cosine: f64, kept: f64) -> f64 {
     let [along, across] = polarised(cosine, 1.5).map(|r| through_faces(r, kept));
     0.5 * (along + across)
 }
 
-/// The illuminance at the origin, on the side of `n`, of a sky seen through an opening, by the
-/// midpoint rule over 2000 x 2000 pieces.
+/// Returns the illuminance at the origin, on the side of `n`, from a sky seen through an opening,
+/// by the midpoint rule with 2000 x 2000 cells.
 fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     const STEPS: u32 = 2_000;
     let [corner, a, b] = opening.map(|v| v.as_dvec3());
@@ -115,8 +115,8 @@ fn through(opening: [Vec3; 3], n: Vec3, sky: impl Fn(Vec3) -> f64) -> f64 {
     sum / f64::from(STEPS * STEPS)
 }
 
-/// A plate of which a rectangle is open, written as four rectangles: in the plane of two axes
-/// through a point.
+/// Returns a plate with a rectangular opening, written as four rectangles in the plane of the
+/// opening.
 fn around(opening: [Vec3; 3]) -> String {
     let [corner, a, b] = opening;
     const FAR: f32 = 999.0;
@@ -142,7 +142,7 @@ fn floor() -> What {
     What::Illuminance(Vec3::ZERO, Vec3::Y)
 }
 
-/// The six inner sides of a cube of 4 m about the origin, with normals inwards.
+/// Returns the six inner sides of a cube of 4 m around the origin, with normals inwards.
 fn inside_of_cube() -> Vec<[Vec3; 3]> {
     let side = |n: Vec3| {
         let u = n.any_orthonormal_vector().abs().round();
@@ -214,12 +214,12 @@ fn lamps() -> Vec<Case> {
 
 fn skies() -> Vec<Case> {
     let roof = [Vec3::new(0.0, 2.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 1.0)];
-    // A window on the side of x, its sill 1 m over the point.
+    // A window on the +x side; its sill is 1 m above the point.
     let window = [Vec3::new(2.0, 1.0, -0.8), Vec3::new(0.0, 1.2, 0.0), Vec3::new(0.0, 0.0, 1.6)];
     let open =
         |name, formula, sky: &str, answer| Case { background: sky.into(), ..case(name, formula, floor(), answer) };
     let behind = |name, formula, sky: &str, opening: [Vec3; 3], answer| {
-        // A lid over what is behind a window.
+        // A lid covers what is behind a window.
         let lid = match opening[0] == window[0] {
             true => "Rectangle { corner -999 2.5 -999 edge0 1001 0 0 edge1 0 0 1998 }",
             false => "",
@@ -284,8 +284,8 @@ fn skies() -> Vec<Case> {
         let answer = through(window, Vec3::Y, |dir| f64::from(known.luminance(dir)));
         all.push(behind(name, "E = ∫ L cosθ dω, by quadrature", sky, window, answer));
     }
-    // What juts out over the window hides what is seen above the line over its edge; a screen
-    // before it what is below.
+    // A canopy over the window hides the sky above the line to its edge; a screen in front hides
+    // what is below.
     let hidden = |low: f32, high: f32| {
         let part = [Vec3::new(2.0, low, -0.8), Vec3::new(0.0, high - low, 0.0), Vec3::new(0.0, 0.0, 1.6)];
         let known = CieSky::new(16, Vec3::Y, 10_000.0, 0.2);
@@ -299,13 +299,13 @@ fn skies() -> Vec<Case> {
     all.push(masked(
         "[5.13] The window under a canopy that juts out 1 m, overcast",
         "Rectangle { corner 2.001 2.4 -999 edge0 0.999 0 0 edge1 0 0 1998 }",
-        // The canopy's edge is seen at y = 2.4 at x = 3: at 1.6 in the window.
+        // The canopy's edge at y = 2.4, x = 3 appears at 1.6 in the window.
         hidden(1.0, 1.6),
     ));
     all.push(masked(
         "[5.14] The window before a dark wall 4 m away and 3.2 m high, overcast",
         "Rectangle { corner 4 0 -999 edge0 0 3.2 0 edge1 0 0 1998 }",
-        // The top is seen at y = 3.2 at x = 4: at 1.6 in the window.
+        // The top at y = 3.2, x = 4 appears at 1.6 in the window.
         hidden(1.6, 2.2),
     ));
     all
@@ -322,7 +322,7 @@ fn reflections() -> Vec<Case> {
     let lamp = |position: &str| format!("PointLight {{ position {position} {CANDELAS_100} }}");
     let patch = "Rectangle { corner 0 0 0 edge0 0 0 1.5 edge1 2 0 0 }";
     let flux = 400.0 * PI;
-    // A dark box with an opening in its ceiling: what comes in arrives.
+    // A black box with an opening in its ceiling: all flux that enters arrives.
     let (a, b) = (Vec3::new(4.0, 0.0, 0.0), Vec3::new(0.0, 0.0, 4.0));
     let up = Vec3::new(0.0, 3.0, 0.0);
     let (low, far) = (Vec3::new(-2.0, 0.001, -2.0), Vec3::new(2.0, 0.001, 2.0));
@@ -411,7 +411,7 @@ fn panes() -> Vec<Case> {
             PI * 1000.0,
         )
     }];
-    // A lamp far beyond a pane, black elsewhere.
+    // An area light far behind a pane, black elsewhere.
     let lamp = |sine: f64, cosine: f64, pane: &str| {
         let (x, y) = (20.0 * sine, 20.0 * cosine);
         let (nx, ny) = (-sine, -cosine);

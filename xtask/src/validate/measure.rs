@@ -1,4 +1,4 @@
-//! What the path tracer measures, beside what is right.
+//! Compares measurements of the path tracer with known answers.
 
 use super::Table;
 use super::cases::{Case, What, cases};
@@ -9,7 +9,7 @@ use durer::render::Job;
 use durer::sampler::{SampleId, random_2d};
 use durer::world::World;
 
-/// A world of a scene in the words of ours.
+/// Compiles a scene from text in our language.
 pub fn world(name: &str, background: &str, materials: &str, lights: &str, group: &str) -> Result<World> {
     let text = format!(
         "PerspectiveCamera {{ center 0 1 9 direction 0 0 -1 up 0 1 0 angle 30 }}\nBackground {{ color 0 0 0 {background} }}\n\
@@ -18,14 +18,14 @@ pub fn world(name: &str, background: &str, materials: &str, lights: &str, group:
     crate::world(name, &text)
 }
 
-/// One sample of what a case asks for.
+/// Returns one sample of a case's quantity.
 fn one(path: &Path, what: &What, sample: u32) -> f64 {
     let id = SampleId::new(0, (0, 0), sample);
     match what {
         What::Illuminance(point, normal) => f64::from(path.irradiance(point.as_dvec3(), *normal, id, &mut ()).y),
         What::Luminance(origin, dir) => f64::from(path.radiance(&Ray::new(*origin, dir.normalize()), id, &mut ()).y),
         What::Flux(patches) => {
-            // A place that is even over all of them.
+            // A uniform point on all patches.
             let area = |patch: &[durer::math::Vec3; 3]| f64::from(patch[1].cross(patch[2]).length());
             let all: f64 = patches.iter().map(area).sum();
             let u = random_2d(99, 0, 0, sample, 0);
@@ -42,7 +42,7 @@ fn one(path: &Path, what: &What, sample: u32) -> f64 {
     }
 }
 
-/// The mean of many samples, and its standard error.
+/// Returns the mean of many samples, and its standard error.
 fn measured(case: &Case, samples: u32) -> Result<(f64, f64)> {
     let world = world(case.name, &case.background, &case.materials, &case.lights, &case.group)?;
     let settings = Settings { bounces: case.bounces, ..Job::default().settings };

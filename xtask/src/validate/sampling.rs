@@ -37,9 +37,9 @@ pub fn furnaces(table: &mut Table) {
     }
 }
 
-/// Lamps seen from the origin. Cylinders are not among them: at their silhouette the density has no
-/// bound, and the sums over cells are not near enough; tests hold them against what is found by
-/// chance.
+/// Area lights seen from the origin. Cylinders are excluded: their density is unbounded at the
+/// silhouette, so the sums over cells are too inaccurate; unit tests compare them with random
+/// sampling.
 const LAMPS: [(&str, &str); 6] = [
     ("sphere", "Sphere { center 0.5 2 1 radius 0.7 }"),
     ("disc", "Disc { center 0 2 0.5 normal 0.3 -1 0 radius 1.5 }"),
@@ -68,7 +68,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
         rows.push((format!("Henyey-Greenstein, mean cosine {anisotropy}"), verdict));
     }
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 walls thin }";
-    // The density of a lamp ends at its edge: cells there are looked at more closely.
+    // The density of an area light ends at its edge; integrate cells there more finely.
     let finely = Cells { fine: 40, ..CELLS };
     for (name, group) in LAMPS {
         let world = world(name, "", lamp, "", &format!("MaterialIndex 0 {group}"))?;
@@ -81,7 +81,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
             rows.push((name.into(), finely.compare(14, sample, |wi| environment.pdf(back(wi)))));
         }
     }
-    // Sidak's correction: 1 - 0.99^(1/n), which is -ln 0.99 / n but for its square.
+    // Sidak's correction: 1 - 0.99^(1/n), which is -ln 0.99 / n up to second order.
     let most = deviate_of(0.010_050_3 / rows.len() as f64);
     table.head(
         "Directions that are chosen against their density",
@@ -98,7 +98,7 @@ pub fn densities(table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// Cells run around z, skies around y.
+/// Cells are around z, skies around y.
 fn turned(v: Vec3) -> Vec3 {
     Vec3::new(v.x, -v.z, v.y)
 }
@@ -118,7 +118,7 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
         let dir = back(wi);
         let mut ray = Ray64::new(point, dir, 0.0, f32::INFINITY);
         let (mut sum, mut met) = (0.0, Vec::new());
-        // Lamps behind others are chosen too, but never their own far sides.
+        // Occluded emitters are sampled too, but never their own far sides.
         for _ in 0..16 {
             let Some(hit) = world.closest(&ray, &mut ()) else { break };
             if !met.contains(&hit.object) {
@@ -132,9 +132,9 @@ fn of_lights(world: &World, cells: Cells) -> Verdict {
     cells.compare(13, sample, pdf)
 }
 
-/// The deviate of the normal distribution that is passed with a probability.
+/// Returns the normal deviate with a given upper tail probability.
 fn deviate_of(probability: f64) -> f64 {
-    // The upper tail by Simpson's rule out to 10.
+    // Upper tail by Simpson's rule up to 10.
     let tail = |from: f64| {
         const STEPS: u32 = 2_000;
         let h = (10.0 - from) / f64::from(STEPS);

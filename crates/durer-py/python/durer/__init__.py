@@ -1,4 +1,5 @@
-"""Dürer for Python: ray queries that lose no ray, and pictures that are exact, explainable and the same everywhere.
+"""Dürer for Python: watertight ray queries, and pictures that are exact, explainable and
+reproducible.
 
     import durer
 
@@ -28,7 +29,7 @@ __all__ = [
     "kinds", "load", "options", "read", *words.__all__,
 ]  # fmt: skip
 
-#: Rooms that need other packages, or that not everybody needs: imported when they are first asked for.
+#: Modules that need other packages or are rarely used; imported on first access.
 _LATER = ("embreex", "farm", "open3d", "trimesh", "vision", "widget")
 
 

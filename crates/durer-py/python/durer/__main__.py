@@ -1,4 +1,5 @@
-"""The command `durer`, which comes with the package: `python -m durer render scene.txt -o picture.png`."""
+"""The command `durer`, which comes with the package: `python -m durer render scene.txt -o
+picture.png`."""
 
 import sys
 
@@ -6,7 +7,7 @@ from ._durer import command
 
 
 def main() -> int:
-    """Does what the command line says; gives the exit code."""
+    """Runs the command line and returns the exit code."""
     return command(["durer", *sys.argv[1:]])
 
 

@@ -1,4 +1,5 @@
-"""Anything that numpy can see, as arrays of the shape and type that is wanted. Copied only where it has another type or layout."""
+"""Converts anything that numpy can read into arrays of the required shape and type. Copies only
+if type or layout differ."""
 
 from __future__ import annotations
 
@@ -11,14 +12,15 @@ Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Ints: TypeAlias = npt.NDArray[np.int32]
 Bools: TypeAlias = npt.NDArray[np.bool_]
-#: Points in space: single precision, or double where that is too little.
+#: Points in space: single or double precision.
 Places: TypeAlias = Union[Floats, Doubles]
 
 _WORDS = {"f": "numbers", "i": "whole numbers", "u": "whole numbers", "b": "numbers"}
 
 
 def seen(name: str, value: Any) -> npt.NDArray[Any]:
-    """The array that something is: an array, a list, or whatever speaks DLPack (torch, jax, cupy on the host)."""
+    """Converts a value to an array: an array, a list, or any object with DLPack (torch, jax,
+    cupy on the host)."""
     if not isinstance(value, np.ndarray) and hasattr(value, "__dlpack__") and not hasattr(value, "__array__"):
         value = np.from_dlpack(value)
     try:
@@ -31,7 +33,7 @@ def seen(name: str, value: Any) -> npt.NDArray[Any]:
 
 
 def vectors(name: str, value: Any, width: int = 3) -> Floats:
-    """Rows of so many float32: shape (..., width)."""
+    """Converts to rows of `width` float32: shape (..., width)."""
     array = seen(name, value)
     if array.ndim == 0 or array.shape[-1] != width:
         raise ValueError(f"{name} must have the shape (..., {width}), but has {array.shape}")
@@ -40,7 +42,7 @@ def vectors(name: str, value: Any, width: int = 3) -> Floats:
 
 
 def places(name: str, value: Any) -> Places:
-    """Points: shape (..., 3); float32 where they are that, else float64."""
+    """Converts points: shape (..., 3); float32 stays float32, everything else becomes float64."""
     array = seen(name, value)
     if array.ndim == 0 or array.shape[-1] != 3:
         raise ValueError(f"{name} must have the shape (..., 3), but has {array.shape}")
@@ -48,12 +50,12 @@ def places(name: str, value: Any) -> Places:
 
 
 def rows(array: npt.NDArray[Any], width: int) -> npt.NDArray[Any]:
-    """The same as a list of rows, one after the other in memory."""
+    """Returns an array as a contiguous list of rows."""
     return np.ascontiguousarray(array.reshape(-1, width))
 
 
 def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
-    """Rows of so many whole numbers, 0 or more: shape (n, width). A copy."""
+    """Converts to rows of `width` non-negative integers: shape (n, width). A copy."""
     array = seen(name, value)
     if array.ndim != 2 or array.shape[1] != width:
         raise ValueError(f"{name} must have the shape (n, {width}), but has {array.shape}")
@@ -65,7 +67,7 @@ def indices(name: str, value: Any, width: int = 3) -> npt.NDArray[np.uint32]:
 
 
 def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
-    """One float32, or one for each of a shape."""
+    """Converts to one float32, or to one for each element of a shape."""
     if type(value) is float:
         return np.array([value], np.float32)
     array = seen(name, value)
@@ -77,7 +79,8 @@ def scalars(name: str, value: Any, shape: tuple[int, ...]) -> Floats:
 
 
 def matrix(name: str, value: Any) -> Doubles:
-    """An affine map as three rows of four numbers; given so, or as 4 x 4 with 0 0 0 1 below."""
+    """Converts an affine map, given as 3 x 4 or as 4 x 4 with the last row 0 0 0 1, to three
+    rows of four numbers."""
     array = np.asarray(seen(name, value), dtype=np.float64)
     if array.shape not in ((3, 4), (4, 4)):
         raise ValueError(f"{name} must be 3 x 4, or 4 x 4 with the last row 0 0 0 1, but has the shape {array.shape}")
@@ -90,6 +93,6 @@ def matrix(name: str, value: Any) -> Doubles:
 
 
 def finite(array: npt.NDArray[Any]) -> Bools:
-    """Which rows are finite."""
+    """Returns a mask of the finite rows."""
     answer: Bools = np.logical_and.reduce(np.isfinite(array), axis=-1)
     return answer

@@ -1,4 +1,4 @@
-"""What is wrong with a scene, as an exception; and messages about options in the words of Python."""
+"""The exception for errors in a scene, and messages about options in Python's spelling."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ T = TypeVar("T")
 
 
 class SceneError(_durer.SceneError):
-    """A scene of which no picture can be made. Reads as the command's message; `file`, `line` and `column` are those of the first
-    error that has a place, else None; `findings` all that was found, as `durer check --json` lists it."""
+    """A scene that cannot be rendered. The text is the command's message. `file`, `line` and
+    `column` are those of the first error with a place, else None; `findings` lists all
+    diagnostics, as `durer check --json` does."""
 
     def __init__(self, message: str, findings: str = "[]") -> None:
         super().__init__(message, findings)
@@ -32,14 +33,14 @@ SceneError.__module__ = "durer"
 
 
 def spoken(work: Callable[[], T]) -> T:
-    """Does something; options in what is said of it are spelled as keywords."""
+    """Calls `work`; spells options in its errors as keywords."""
     try:
         return work()
     except _durer.SceneError as error:
         said: ValueError = SceneError(*error.args)
     except ValueError as error:
         said = ValueError(_python(str(error)))
-    # Here, for the native exception is nobody's context: that could not be pickled.
+    # Raised outside of `except`: the native exception as context could not be pickled.
     raise said
 
 

@@ -7,13 +7,15 @@ import numpy.typing as npt
 
 from ._arrays import Bools, Doubles, Floats, Places, finite
 
-#: A mesh that is so many times its extent away is kept as it is seen from its own middle: five bits of the 24 of single precision.
+#: Distance from the origin, in extents of the mesh, beyond which vertices are stored relative to
+#: the mesh's centre: it costs five of the 24 bits of single precision.
 FAR = 32
 
 
 def _center(vertices: Places) -> Doubles:
-    """The middle of the box around vertices, a number of single precision, along the axes along which it is far away; 0 along
-    others. Single coordinates less such a middle are single again, exactly."""
+    """Returns the centre of the vertices' bounds, in single precision, along the axes along
+    which it is far away, and 0 along the others. Differences of single-precision coordinates and
+    this centre are exact in single precision."""
     if not np.isfinite(vertices).all():
         vertices = vertices[finite(vertices)]
     if not len(vertices):
@@ -26,7 +28,7 @@ def _center(vertices: Places) -> Doubles:
 
 
 def centered(given: Places) -> tuple[Floats, Doubles]:
-    """Vertices as they are seen from a middle, in single precision and a copy; and the middle."""
+    """Returns a copy of the vertices relative to a centre, in single precision; and the centre."""
     center = _center(given)
     with np.errstate(over="ignore", invalid="ignore"):
         own = np.array(given - center if center.any() else given, np.float32, order="C")
@@ -38,14 +40,14 @@ def centered(given: Places) -> tuple[Floats, Doubles]:
 
 
 def _is_even(corners: npt.NDArray[np.int64]) -> Bools:
-    """Whether the corners of triangles are in the order of their numbers, or turned from that."""
+    """Returns a mask of triangles whose corner indices are in ascending order up to rotation."""
     a, b, c = corners.T
     is_even: Bools = (a < b) == ((b < c) == (a < c))
     return is_even
 
 
 def open_edges(vertices: Floats, triangles: npt.NDArray[np.uint32]) -> int:
-    """How many edges are open: see `Mesh.open_edges`."""
+    """Returns the number of open edges: see `Mesh.open_edges`."""
     is_finite = finite(vertices)
     _, place = np.unique(np.where(is_finite[:, None], vertices + np.float32(0), 0), axis=0, return_inverse=True)
     faces = triangles.astype(np.int64)
@@ -53,7 +55,8 @@ def open_edges(vertices: Floats, triangles: npt.NDArray[np.uint32]) -> int:
     pairs = np.sort(np.stack([corners, np.roll(corners, -1, 1)], -1), -1)
     edges, first, times = np.unique(pairs.reshape(-1, 2), axis=0, return_inverse=True, return_counts=True)
     is_open = times % 2 == 1
-    # Of triangles with the same corners those to opposite sides are a sheet without thickness; what is left more than once.
+    # Triangles with the same corners and opposite orientation cancel to a sheet without thickness;
+    # any excess is open.
     ways = np.where(_is_even(corners), 1, -1)
     _, which = np.unique(np.sort(corners, 1), axis=0, return_inverse=True)
     which = which.reshape(-1)

@@ -1,4 +1,5 @@
-"""Options of a render, from keywords or from a command line to the pairs of name and text that the library takes."""
+"""Converts options of a render from keywords or a command line to pairs of name and text for the
+library."""
 
 from __future__ import annotations
 
@@ -11,20 +12,20 @@ import numpy as np
 
 from . import _durer
 
-#: Options in the library's own form: name without dashes, and text, which is empty for a flag.
+#: Options in the library's form: name without dashes, and text, which is empty for a flag.
 Pairs = list[tuple[str, str]]
 
 
 @dataclass(frozen=True)
 class Statement:
-    """What the library states of an option."""
+    """The library's statement of an option."""
 
     help: str
     #: Name of its value; None for a flag.
     value: Optional[str]
-    #: The words that its value may be, where only some are allowed.
+    #: Allowed words, if only some are allowed.
     words: Sequence[str]
-    #: What it concerns: "reading", "picture" or "work".
+    #: Subject: "reading", "picture" or "work".
     group: str
 
 
@@ -32,33 +33,35 @@ STATEMENTS = {name: Statement(*rest) for name, *rest in _durer.options()}
 
 #: Old names of options.
 _ALIASES = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
-#: Options of several whole numbers: what they are, and how many.
+#: Options of several integers: their meaning and number.
 _NUMBERS = {"size": ("width and height", 2), "crop": ("left, top, width and height", 4), "shard": ("number and count", 2)}
-#: What joins the parts of a value.
+#: Separators between the parts of a value.
 _JOINED = {"show": ",", "compat": ",", "shard": "/", "depth-range": " ", "light-range": " "}
 
 
 def option_name(keyword: str) -> str:
-    """The library's name of a keyword."""
+    """Returns the library's name of a keyword."""
     name = keyword.replace("_", "-")
     return _ALIASES.get(name, name)
 
 
 def is_reading(keyword: str) -> bool:
-    """Whether a keyword concerns how a scene is read."""
+    """Returns True if a keyword concerns reading a scene."""
     stated = STATEMENTS.get(option_name(keyword))
     return stated is not None and stated.group == "reading"
 
 
 def is_work(keyword: str) -> bool:
-    """Whether a keyword changes no bit of a finished picture, as the number of threads does; shards have pictures of their own."""
+    """Returns True if a keyword changes no bit of a finished picture, such as the number of
+    threads. Shards have different pictures."""
     name = option_name(keyword)
     return name in STATEMENTS and STATEMENTS[name].group == "work" and not name.startswith("shard")
 
 
 def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
-    """Keywords as pairs: `size=(640, 480)` is `("size", "640x480")`. With `reading`, those about reading a scene, and `size`, which the
-    framing of a model depends on; else all others."""
+    """Converts keywords to pairs: `size=(640, 480)` becomes `("size", "640x480")`. With
+    `reading`, those about reading a scene, and `size`, which the framing of a model depends on;
+    otherwise all others."""
     found: Pairs = []
     for keyword, value in options.items():
         name = option_name(keyword)
@@ -72,7 +75,7 @@ def pairs(options: Mapping[str, Any], reading: bool) -> Pairs:
 
 
 def parsed(words: Optional[Sequence[str]]) -> Pairs:
-    """Options as they follow `durer render SCENE` as pairs."""
+    """Converts options as they follow `durer render SCENE` to pairs."""
     found: Pairs = []
     rest = iter(words or [])
     for word in rest:
@@ -91,7 +94,8 @@ def parsed(words: Optional[Sequence[str]]) -> Pairs:
 
 
 def _texts(keyword: str, name: str, value: Any) -> list[str]:
-    """The texts of a keyword's value: none where it is left out, several where an option is given several times."""
+    """Returns the texts of a keyword's value: none if it is left out, several if an option is
+    repeated."""
     takes = STATEMENTS[name].value
     if name == "studio" and value in (None, False, True):
         return [] if value else ["none"]

@@ -10,12 +10,13 @@ Watch: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = Union[None, bool, Watch]
 
 
-#: So much is done before anybody could look.
+#: Number of items below which work finishes before a user could notice.
 _LITTLE = 1 << 14
 
 
 def watch(progress: Progress, count: int = _LITTLE) -> Optional[Watch]:
-    """What is told how much is done of how much: the given function; without one, a line on a terminal, unless there are few things."""
+    """Returns the progress callback: the given function, or a line on a terminal unless there
+    are few items."""
     if callable(progress):
         return progress
     if progress is False or progress is None and count < _LITTLE or progress is None and not sys.stderr.isatty():

@@ -1,5 +1,5 @@
-"""The calls of `embreex`, answered by Dürer: `EmbreeDevice`, `EmbreeScene`, `TriangleMesh`, `ElementMesh`, `scene.run`. Normals, `Ng`, have length 1
-here."""
+"""The interface of `embreex`, implemented by Dürer: `EmbreeDevice`, `EmbreeScene`,
+`TriangleMesh`, `ElementMesh`, `scene.run`. Normals, `Ng`, are unit length here."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from .rays import Mesh, Scene, _Rays
 
 
 class EmbreeDevice:
-    """What Embree needs; here it does nothing."""
+    """Accepted for compatibility; does nothing."""
 
 
 class EmbreeScene:
-    """Meshes that `TriangleMesh` puts into it. The tree is built when it is asked first. `device` and `robust` are taken and not
-    needed."""
+    """Meshes that `TriangleMesh` adds. The tree is built by the first query. `device` and
+    `robust` are ignored."""
 
     def __init__(self, device: Optional[EmbreeDevice] = None, robust: bool = False) -> None:
         self.meshes: list[Mesh] = []
@@ -31,9 +31,10 @@ class EmbreeScene:
         query: str = "INTERSECT",
         output: Any = None,
     ) -> Any:
-        """`INTERSECT` gives the triangle of each ray, -1 where there is none; `OCCLUDED` 0 where something is met, else -1;
-        `DISTANCE` how far it is, and where nothing is the ray's end. `dists` are the ends of rays, 1e37 by default; with `output` a
-        dictionary tells all: zeros where nothing is met."""
+        """Runs a query. `INTERSECT` returns the triangle of each ray, or -1; `OCCLUDED` 0 for a
+        hit, else -1; `DISTANCE` the distance, or the end of the ray if nothing is hit. `dists`
+        are the ends of rays, 1e37 by default. With `output`, returns a dictionary of everything,
+        with zeros where nothing is hit."""
         if self._built is None:
             self._built = self.meshes[0] if len(self.meshes) == 1 else Scene(self.meshes)
         far: npt.ArrayLike = np.float32(1e37) if dists is None else dists
@@ -51,7 +52,7 @@ class EmbreeScene:
 
 
 class TriangleMesh:
-    """Puts a mesh into a scene: vertices and triangles, or the corners of triangles, of shape (n, 3, 3)."""
+    """Adds a mesh to a scene: vertices and triangles, or triangle corners of shape (n, 3, 3)."""
 
     def __init__(self, scene: EmbreeScene, vertices: npt.ArrayLike, indices: Optional[npt.ArrayLike] = None) -> None:
         places = np.asarray(vertices)
@@ -60,8 +61,9 @@ class TriangleMesh:
         scene._built = None
 
 
-# The faces of elements, their corners as they are seen from outside, counterclockwise; those of hexahedra in two triangles. Corners of
-# hexahedra are numbered as in T. Tautges, "Canonical numbering systems for finite-element codes", 2010.
+# The faces of elements, counterclockwise from outside; those of hexahedra as two triangles. Corners
+# of hexahedra are numbered as in T. Tautges, "Canonical numbering systems for finite-element
+# codes", 2010.
 _TETRAHEDRON = ((0, 1, 3), (2, 3, 1), (0, 3, 2), (0, 2, 1))
 _HEXAHEDRON = (
     (0, 2, 1), (0, 3, 2), (4, 5, 6), (4, 6, 7), (0, 1, 5), (0, 5, 4),
@@ -70,7 +72,8 @@ _HEXAHEDRON = (
 
 
 class ElementMesh:
-    """Puts the faces of tetrahedra (indices of shape (n, 4)) or hexahedra ((n, 8)) into a scene: 4 or 12 triangles for each."""
+    """Adds the faces of tetrahedra (indices of shape (n, 4)) or hexahedra ((n, 8)) to a scene: 4
+    or 12 triangles each."""
 
     def __init__(self, scene: EmbreeScene, vertices: npt.ArrayLike, indices: npt.ArrayLike) -> None:
         elements = np.asarray(indices)

@@ -1,4 +1,5 @@
-// The page's side of `durer.widget.Explorer`: shows its picture, and tells it of drags, turns of the wheel, keys and clicks.
+// The browser side of `durer.widget.Explorer`: shows its picture, and sends drags, wheel, keys and
+// clicks.
 const element = (name, inside, text) => {
   const made = document.createElement(name);
   if (text !== undefined) made.textContent = text;
@@ -6,7 +7,7 @@ const element = (name, inside, text) => {
   return made;
 };
 
-// A node of the explanation: its colour as a screen shows it, what it is, and its terms below.
+// A node of the explanation: its display colour, its description, and its terms below.
 const branch = (node, inside, open) => {
   const leaf = !node.terms.length;
   const box = element(leaf ? "div" : "details", inside), head = leaf ? box : element("summary", box);
@@ -34,7 +35,7 @@ function render({ model, el }) {
     word.textContent = model.get("word");
     if (told.terms) branch(told, tree, true);
   };
-  // One wish is under way at a time; what comes meanwhile is added up.
+  // Only one request is sent at a time; further input is accumulated meanwhile.
   let busy = false, turn = [0, 0], nearer = 1, ask = null;
   const send = () => {
     if (busy || (!turn[0] && !turn[1] && nearer === 1 && !ask)) return;

@@ -1,4 +1,4 @@
-"""Pictures on a Dask cluster: shards as tasks, merged bit for bit to what one machine would have made."""
+"""Renders on a Dask cluster: shards as tasks, merged to the same bits as on one machine."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .world import Part, PathLike, Pictures, World, load
 
 
 def _files(world: World) -> dict[str, bytes]:
-    """All files of a scene, by their names below its folder; the scene's own first."""
+    """Returns all files of a scene, by their names below its folder; the scene's own file first."""
     files, folder = world.files, world.path.parent.resolve()
     for source in world._world.sources():
         path = Path(source).resolve()
@@ -31,7 +31,7 @@ def _files(world: World) -> dict[str, bytes]:
 
 @functools.lru_cache(maxsize=4)
 def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...]) -> _durer.World:
-    """A scene from its files: opened once in each worker."""
+    """Opens a scene from its files, once in each worker."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files:
             path = Path(folder) / name
@@ -41,7 +41,7 @@ def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str]
 
 
 def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
-    """One shard, as the bytes of a part: what workers do."""
+    """Renders one shard in a worker, and returns the bytes of its part."""
     world = _opened(files, reading)
     own = [*options, ("threads", "1"), ("shard", f"{index}/{count}")]
     part = world.part(own)
@@ -50,12 +50,12 @@ def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], 
 
 
 def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
-    """The same of files whose contents were sent one by one."""
+    """Renders one shard from files whose contents were sent one by one."""
     return shard(tuple(zip(names, contents)), reading, options, index, count)
 
 
 def _given(content: bytes) -> bytes:
-    """A file, as a task."""
+    """Returns a file's contents, as a task."""
     return content
 
 
@@ -65,18 +65,19 @@ class _Frame:
     def __init__(
         self, world: World, client: Any, shards: int, asked: Pairs, sent: dict[bytes, Any]
     ) -> None:
-        # What is wrong with the options is better known before anything is sent.
+        # Check the options before anything is sent.
         world._world.part([*asked, ("shard", f"1/{shards}")])
         files = _files(world)
-        # Files are tasks that give them, not scattered data: of these Dask keeps one copy, and it is lost with the worker that has it.
-        # They are held until the end: who dies with shards that were done already leaves them to others, who need the files.
+        # Files are tasks that return them, not scattered data: Dask keeps one copy of those, which
+        # is lost with its worker. They are held until the end: other workers need them when a
+        # worker dies with finished shards.
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", "Sending large graph")
             for content in files.values():
                 if content not in sent:
                     sent[content] = client.submit(_given, content, key=f"durer-file-{uuid.uuid4().hex}")
         self.contents = contents = [sent[content] for content in files.values()]
-        # Names are this run's own: what an earlier one, of other shards perhaps, has under way or is about to forget is none of it.
+        # Task names are unique to this run, so that tasks of earlier runs do not interfere.
         name = f"durer-{world.digest[:12]}-{uuid.uuid4().hex[:12]}"
         self.client = client
         self.futures = [
@@ -104,11 +105,13 @@ def render(
     progress: Progress = None,
     **options: Any,
 ) -> Pictures:
-    """Renders a scene with the workers of a `distributed.Client`, and merges: the same bits and hash as one machine.
+    """Renders a scene with the workers of a `distributed.Client`, and merges the shards: the same
+    bits and hash as on one machine.
 
-    The scene's files are sent once to each worker. A worker that dies costs its shards only, which others make again; workers that come
-    meanwhile take part. Options are those of `World.render`, or `words` as on the command line, for a scene's file those of reading it
-    too. A worker with another version of durer is refused by the merge.
+    The scene's files are sent once to each worker. A worker that dies costs only its shards,
+    which others render again; workers that join meanwhile take part. Options are those of
+    `World.render`, or `words` as on the command line, for a scene's file those of reading it
+    too. The merge refuses a worker with another version of durer.
     """
     from distributed import as_completed
 
@@ -131,9 +134,10 @@ def render(
 def frames(
     scenes: Iterable[Union[World, PathLike]], *, client: Any, shards: int = 4, ahead: int = 8, **options: Any
 ) -> Iterator[Pictures]:
-    """Renders scenes one after the other, as the frames of an animation whose camera or things move, and gives their pictures in
-    order. Each is made in shards as `render` makes it; up to `ahead` of them are under way at once, and files that frames have in
-    common are sent once."""
+    """Renders scenes one after the other, such as the frames of an animation whose camera or
+    objects move, and yields their pictures in order. Each is rendered in shards, as `render`
+    does; up to `ahead` of them are in progress at once, and files that frames share are sent
+    once."""
     waiting: deque[_Frame] = deque()
     sent: dict[bytes, Any] = {}
     try:

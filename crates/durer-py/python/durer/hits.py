@@ -1,4 +1,4 @@
-"""What rays meet: where, of what, and where they go on."""
+"""Results of ray queries: points, normals, and starts of secondary rays."""
 
 from __future__ import annotations
 
@@ -12,22 +12,22 @@ import numpy.typing as npt
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, Places, rows, vectors
 
-#: What `ray` gives for each ray.
+#: Type of the elements that `ray` returns.
 RECORD = np.dtype(
     [("t", "f4"), ("triangle", "i4"), ("object", "i4"), ("uv", "f4", 2), ("normal", "f4", 3), ("point", "f4", 3)]
 )
 
 
 class _Source(Protocol):
-    """What was asked: a mesh, or a scene."""
+    """The target of a query: a mesh or a scene."""
 
     _tree: _durer.Tree
-    #: Whether it is so far from the origin that points in single precision say too little.
+    #: True if it is so far from the origin that points in single precision are too coarse.
     _far: bool
 
 
 class _Met:
-    """What is known of the places where rays met a surface."""
+    """Attributes of the points where rays hit a surface."""
 
     triangle: Ints
     uv: Floats
@@ -35,30 +35,31 @@ class _Met:
     _threads: Optional[int]
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
-        """Objects, if there are any, triangles, and u and v, as if the hits had such a shape."""
+        """Returns objects, if any, triangles, and u and v, as if the hits had this shape."""
         raise NotImplementedError
 
     @cached_property
     def point(self) -> Places:
-        """Where rays meet the surface, by the triangle's corners; not a number where nothing is met. Float32, or float64 where the mesh
-        or scene is far from the origin. A ray that goes on from there starts at `leave`."""
+        """Hit points from the triangles' corners; NaN for misses. Float32, or float64 if the
+        mesh or scene is far from the origin. Use `leave` for the start of secondary rays."""
         shape, source = self.triangle.shape, self._source
         return _durer.met_points(source._tree, self._flat(shape), source._far, self._threads).reshape(*shape, 3)
 
     @cached_property
     def normal(self) -> Floats:
-        """The triangle's normal, of length 1, to the side from which its corners go round counterclockwise in its mesh, outwards say,
-        also where that is mirrored; 0 where nothing is met."""
+        """Unit normals of the triangles, on the side from which the corners are counterclockwise
+        in the mesh (outwards), also for mirrored instances; 0 for misses."""
         shape = self.triangle.shape
         return _durer.met_normals(self._source._tree, self._flat(shape), self._threads).reshape(*shape, 3)
 
     def leave(self, directions: npt.ArrayLike) -> Doubles:
-        """Where rays start that go on from here in such directions: off the surface, on the side to which each goes, by no more than
-        what is rounded. So no ray meets the surface that it leaves, and no distance has to be chosen.
+        """Returns origins for secondary rays in the given directions: off the surface, on the side
+        of each direction, by no more than the rounding error. So no ray hits the surface that it
+        leaves, and no epsilon has to be chosen.
 
-        Directions, of shape (..., 3), are broadcast against the hits: `hits[:, None].leave(directions)` takes several for each. Not
-        numbers where nothing is met: rays from there meet nothing. Float64: far from the origin, and in scenes, single precision is
-        too little.
+        Directions, of shape (..., 3), are broadcast against the hits: `hits[:,
+        None].leave(directions)` takes several for each. NaN for misses; rays from there hit
+        nothing. Float64: far from the origin, and in scenes, single precision is not enough.
         """
         ways = vectors("directions", directions)
         try:
@@ -77,12 +78,13 @@ def _row(array: Any, shape: tuple[int, ...]) -> Any:
 
 @dataclass(frozen=True, eq=False)
 class Hits(_Met):
-    """What rays meet first. All arrays have the shape of the rays, (n,) say, with the components of vectors behind it. Hits can be
-    indexed as arrays of that shape: `hits[hits.hit]`, `hits[:, None]`."""
+    """First hits of rays. All arrays have the shape of the rays, for example (n,), followed by
+    the components of vectors. Hits can be indexed like arrays of that shape: `hits[hits.hit]`,
+    `hits[:, None]`."""
 
-    #: Position along the ray, in units of its direction's length; infinite where nothing is met.
+    #: Distance along the ray, in units of its direction's length; infinite for misses.
     t: Floats
-    #: Number of the triangle in its mesh; -1 where nothing is met.
+    #: Index of the triangle in its mesh; -1 for misses.
     triangle: Ints
     #: Second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
     uv: Floats
@@ -92,12 +94,12 @@ class Hits(_Met):
 
     @property
     def hit(self) -> Bools:
-        """Where something is met."""
+        """Mask of the rays that hit something."""
         return self.triangle >= 0
 
     @cached_property
     def object(self) -> Ints:
-        """Number of the object in its scene, 0 in a mesh; -1 where nothing is met."""
+        """Index of the object in its scene, 0 in a mesh; -1 for misses."""
         return np.minimum(self.triangle, 0) if self._objects is None else self._objects
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -105,7 +107,7 @@ class Hits(_Met):
         return objects, _row(self.triangle, shape), _row(self.uv, (*shape, 2)).reshape(-1, 2)
 
     def record(self) -> npt.NDArray[np.void]:
-        """All of it as one structured array, of type `RECORD`."""
+        """Returns all attributes as one structured array of type `RECORD`."""
         record = np.zeros(self.t.shape, RECORD)
         for name in RECORD.names or ():
             record[name] = getattr(self, name)
@@ -127,11 +129,11 @@ class Hits(_Met):
 
 @dataclass(frozen=True, eq=False)
 class AllHits(_Met):
-    """All that rays meet, ray by ray, each from near to far."""
+    """All hits of rays, ray by ray, sorted by distance."""
 
-    #: Number of the ray of each hit, in the order of the rays.
+    #: Index of the ray of each hit, in the order of the rays.
     ray: npt.NDArray[np.int64]
-    #: How many hits each ray has, in the shape of the rays.
+    #: Number of hits of each ray, in the shape of the rays.
     count: npt.NDArray[np.int64]
     #: As in `Hits`, one row for each hit.
     t: Floats
@@ -143,7 +145,7 @@ class AllHits(_Met):
 
     @property
     def offsets(self) -> npt.NDArray[np.int64]:
-        """Where the hits of each ray begin; with one number more, where the last ones end."""
+        """Offsets of the first hit of each ray, followed by the number of all hits."""
         return np.concatenate([np.zeros(1, np.int64), np.cumsum(self.count.reshape(-1))])
 
     def _flat(self, shape: tuple[int, ...]) -> tuple[Optional[Ints], Ints, Floats]:
@@ -158,15 +160,15 @@ class AllHits(_Met):
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The points of a surface that are nearest to some points."""
+    """The nearest surface points of query points."""
 
-    #: How far it is, 0 or more; infinite where none is near enough.
+    #: Distance, 0 or more; infinite if none is within the limit.
     distance: Doubles
-    #: Where it is; not a number where none is near enough.
+    #: Nearest point; NaN if none is within the limit.
     point: Doubles
-    #: Number of the triangle, -1 where none is near enough.
+    #: Index of the triangle; -1 if none is within the limit.
     triangle: Ints
-    #: Number of the object in its scene, 0 in a mesh.
+    #: Index of the object in its scene, 0 in a mesh.
     object: Ints
     #: Second and third barycentric coordinate.
     uv: Doubles

@@ -1,4 +1,5 @@
-"""The calls of Open3D's `RaycastingScene`, answered by Dürer with numpy arrays in the place of tensors."""
+"""The interface of Open3D's `RaycastingScene`, implemented by Dürer with numpy arrays instead of
+tensors."""
 
 from __future__ import annotations
 
@@ -16,8 +17,9 @@ _Answers = dict[str, npt.NDArray[Any]]
 
 
 class RaycastingScene:
-    """Triangles with rays of six numbers: origin and direction. Numbers of things are uint32, `INVALID_ID` where there is none. Inside is
-    what an odd number of meshes hold, as there."""
+    """A ray caster for triangles; rays have six numbers, origin and direction. Indices are
+    uint32, `INVALID_ID` if there is none. As in Open3D, a point is inside if an odd number of
+    meshes contain it."""
 
     INVALID_ID = 0xFFFF_FFFF
 
@@ -27,7 +29,7 @@ class RaycastingScene:
         self._scene: Optional[_Rays] = None
 
     def add_triangles(self, vertex_positions: Any, triangle_indices: Optional[npt.ArrayLike] = None) -> int:
-        """Adds a mesh, which may be one of Open3D's own, and gives its number."""
+        """Adds a mesh, which may be one of Open3D's own, and returns its index."""
         faces: Any = triangle_indices
         if faces is None:
             vertex_positions, faces = (
@@ -45,11 +47,11 @@ class RaycastingScene:
 
     @staticmethod
     def _ids(numbers: npt.NDArray[Any]) -> npt.NDArray[np.uint32]:
-        # -1 is 2^32 - 1 then.
+        # -1 becomes 2^32 - 1.
         return numbers.astype(np.int32, copy=False).view(np.uint32)
 
     def cast_rays(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
-        """The first hit of each ray."""
+        """Returns the first hit of each ray."""
         hits: Hits = self._asked().closest(*rays_of(rays), threads=nthreads or self._threads)
         return {
             "t_hit": hits.t,
@@ -62,15 +64,15 @@ class RaycastingScene:
     def test_occlusions(
         self, rays: npt.ArrayLike, tnear: float = 0.0, tfar: float = np.inf, nthreads: int = 0
     ) -> npt.NDArray[np.bool_]:
-        """Whether rays meet anything."""
+        """Returns True for each ray that hits anything."""
         return self._asked().occluded(*rays_of(rays), tnear, tfar, threads=nthreads or self._threads)
 
     def count_intersections(self, rays: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.int32]:
-        """How many triangles rays cross."""
+        """Returns the number of triangles that each ray crosses."""
         return self._asked().count(*rays_of(rays), threads=nthreads or self._threads)
 
     def list_intersections(self, rays: npt.ArrayLike, nthreads: int = 0) -> _Answers:
-        """All hits of all rays."""
+        """Returns all hits of all rays."""
         hits = self._asked().all_hits(*rays_of(rays), threads=nthreads or self._threads)
         return {
             "ray_splits": hits.offsets,
@@ -82,7 +84,7 @@ class RaycastingScene:
         }
 
     def compute_closest_points(self, query_points: npt.ArrayLike, nthreads: int = 0) -> _Answers:
-        """The nearest points of the surface."""
+        """Returns the nearest points of the surface."""
         scene = self._asked()
         near = scene.nearest(query_points, threads=nthreads or self._threads)
         met = (near.object.reshape(-1), near.triangle.reshape(-1), rows(near.uv.astype(np.float32), 2))
@@ -96,24 +98,26 @@ class RaycastingScene:
         }
 
     def compute_distance(self, query_points: npt.ArrayLike, nthreads: int = 0) -> npt.NDArray[np.float32]:
-        """How far points are from the surface."""
+        """Returns the distances of points from the surface."""
         return self._asked().distance(query_points, threads=nthreads or self._threads).astype(np.float32)
 
     def compute_signed_distance(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
-        """The same, negative inside. `nsamples` is taken and not needed: one ray is exact."""
+        """Returns the distances of points from the surface, negative inside. `nsamples` is
+        ignored: one ray is exact."""
         distance = self.compute_distance(query_points, nthreads)
         return np.where(self._inside(query_points, nthreads), -distance, distance)
 
     def compute_occupancy(
         self, query_points: npt.ArrayLike, nthreads: int = 0, nsamples: int = 1
     ) -> npt.NDArray[np.float32]:
-        """1 inside, 0 outside."""
+        """Returns 1 inside, 0 outside."""
         return self._inside(query_points, nthreads).astype(np.float32)
 
     def _inside(self, query_points: npt.ArrayLike, nthreads: int) -> npt.NDArray[np.bool_]:
-        """By the parity of all crossings, as Open3D has it: what lies in two meshes lies outside."""
+        """Returns containment by the parity of all crossings, as in Open3D: a point in two
+        meshes is outside."""
         points, threads = places("query_points", query_points), nthreads or self._threads
         inside = np.zeros(points.shape[:-1], np.bool_)
         for mesh in self._meshes:
@@ -124,7 +128,8 @@ class RaycastingScene:
     def create_rays_pinhole(
         intrinsic_matrix: npt.ArrayLike, extrinsic_matrix: npt.ArrayLike, width_px: int, height_px: int
     ) -> npt.NDArray[np.float32]:
-        """Rays through the middles of pixels, of shape (height, width, 6); pixel (0, 0) has its middle at 0.5, 0.5."""
+        """Returns rays through the pixel centres, of shape (height, width, 6); pixel (0, 0) has
+        its centre at 0.5, 0.5."""
         inner = np.linalg.inv(np.asarray(intrinsic_matrix, np.float64))
         outer = np.asarray(extrinsic_matrix, np.float64)
         x, y = np.meshgrid(np.arange(width_px) + 0.5, np.arange(height_px) + 0.5)

@@ -16,8 +16,9 @@ from .world import PathLike, Pictures
 
 
 def read(path: PathLike) -> tuple[Floats, bool]:
-    """The values of a picture's file, of shape (height, width, 3), as they stand in it; and whether they are values for a screen,
-    from 0 to 1, instead of linear light. Reads all formats that the command writes."""
+    """Returns the values of a picture file, of shape (height, width, 3), without conversion; and
+    True if they are display values from 0 to 1 instead of linear light. Reads all formats that
+    the command writes."""
     values, width, height, display = _durer.decode(Path(path).read_bytes(), os.fspath(path))
     return values.reshape(height, width, 3), display
 
@@ -29,11 +30,13 @@ def compare(
     tolerance: float = 1 / 255,
     allowed: float = 0.0,
 ) -> dict[str, Any]:
-    """How a picture differs from a reference: RMSE, PSNR, SSIM, FLIP, the worst regions and what explains the difference, as
-    `durer compare --json` tells it, and `flip_map`, the error of each pixel.
+    """Compares a picture with a reference: RMSE, PSNR, SSIM, FLIP, the worst regions and
+    explanations of the difference, as in `durer compare --json`, and `flip_map`, the error of each
+    pixel.
 
-    Pictures are files, what `render` gives, or arrays of shape (height, width, 3): uint8 for a screen, floating point for linear
-    light. `allowed` is the share of pixels that may differ by more than the tolerance.
+    Pictures are files, results of `render`, or arrays of shape (height, width, 3): uint8 for
+    display values, floating point for linear light. `allowed` is the share of pixels that may
+    differ by more than the tolerance.
     """
     a, b = _scaled("reference", reference), _scaled("picture", picture)
     text, flip = _durer.compare(a, b, tolerance, allowed)

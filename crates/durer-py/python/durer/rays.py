@@ -1,4 +1,4 @@
-"""Rays without pictures: meshes, meshes in places, and what rays meet there."""
+"""Ray queries without pictures: meshes and instanced meshes."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from .hits import AllHits, Hits, Nearest
 
 Preset: TypeAlias = Literal["fast", "balanced", "best"]
 
-#: How many rays, origins, directions, t_min and t_max.
+#: Number of rays, origins, directions, t_min and t_max.
 Asked: TypeAlias = tuple[int, Places, Floats, Floats, Floats]
 
 
 def asked(origins: Any, directions: Any, t_min: Any, t_max: Any) -> tuple[tuple[int, ...], Asked]:
-    """The shape of rays, and their arrays: checked, and broadcast against each other."""
+    """Checks rays, and broadcasts their arrays; returns their shape and the arrays."""
     starts, ways = places("origins", origins), vectors("directions", directions)
     shape = starts.shape[:-1]
     if starts.shape != ways.shape:
@@ -43,21 +43,24 @@ def _spread(array: Any, shape: tuple[int, ...]) -> Any:
 
 
 class _Rays:
-    """The questions that a mesh and a scene answer alike.
+    """Queries that meshes and scenes share.
 
-    Origins and directions have the shape (..., 3) and are broadcast against each other: one origin for all directions, say.
-    Directions need not have length 1: `t` is in units of it. Hits lie in the open interval from `t_min` to `t_max`, each of
-    which is one number or has the shape of the rays. Rays that are not finite, or have no direction, hit nothing. Computed in
-    single precision with exact edges: a ray through an edge or vertex crosses exactly one of the triangles around it. Origins and
-    points in double precision keep it until they are seen from the mesh, from the middle of its box where that is far away. Rays
-    that are neighbours in the array are fastest if they are neighbours in space.
+    Origins and directions have the shape (..., 3) and are broadcast against each other, for example
+    one origin for all directions. Directions need not be unit length: `t` is in units of their
+    length. Hits lie in the open interval from `t_min` to `t_max`, each of which is one number or
+    has the shape of the rays. Rays that are not finite, or have no direction, hit nothing. Computed
+    in single precision with exact edges: a ray through an edge or vertex crosses exactly one of the
+    triangles around it. Origins and points in double precision keep it until they are made relative
+    to the mesh, or to the centre of its bounds if that is far away. Queries are fastest if
+    neighbours in the array are neighbours in space.
 
-    `threads` says how many may work, None all of the machine; answers have the same bits with any number. `progress` is called
-    with how much is done of how much; without one, long work shows a line on a terminal. Ctrl-C stops it.
+    `threads` limits the number of threads, None uses all of the machine; results have the same
+    bits with any number. `progress` is called with the work done and the total; without it, long
+    work shows a line on a terminal. Ctrl-C stops it.
     """
 
     _tree: _durer.Tree
-    #: Whether it is so far from the origin that points in single precision say too little.
+    #: True if it is so far from the origin that points in single precision are too coarse.
     _far: bool
 
     def closest(
@@ -70,14 +73,15 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Hits:
-        """What each ray meets first."""
+        """Returns the first hit of each ray."""
         shape, rays = asked(origins, directions, t_min, t_max)
         t, triangle, objects, uv = self._tree.closest(rays, threads_asked(threads), watch(progress, rays[0]))
         objects = None if objects is None else objects.reshape(shape)
         return Hits(t.reshape(shape), triangle.reshape(shape), uv.reshape(*shape, 2), objects, self, threads)
 
     def ray(self, origins: npt.ArrayLike, directions: npt.ArrayLike, **options: Any) -> npt.NDArray[np.void]:
-        """As `closest`, as one structured array with the fields t, triangle, object, uv, normal and point."""
+        """Like `closest`, as one structured array with the fields t, triangle, object, uv,
+        normal and point."""
         return self.closest(origins, directions, **options).record()
 
     def occluded(
@@ -90,8 +94,8 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Bools:
-        """Whether each ray meets anything: faster than `closest`. With directions from point to point and `t_max` 1: whether
-        they do not see each other."""
+        """Returns True for each ray that hits anything: faster than `closest`. With directions
+        from point to point and `t_max` 1: True if the points do not see each other."""
         shape, rays = asked(origins, directions, t_min, t_max)
         return self._tree.occluded(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -105,7 +109,8 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Ints:
-        """How many triangles each ray crosses: exact, also through edges and vertices."""
+        """Returns the number of triangles that each ray crosses: exact, also through edges and
+        vertices."""
         shape, rays = asked(origins, directions, t_min, t_max)
         return self._tree.count(rays, threads_asked(threads), watch(progress, rays[0])).reshape(shape)
 
@@ -119,7 +124,7 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> AllHits:
-        """All that each ray meets, from near to far."""
+        """Returns all hits of each ray, sorted by distance."""
         shape, rays = asked(origins, directions, t_min, t_max)
         count, (t, triangle, object, uv) = self._tree.all_hits(rays, threads_asked(threads), watch(progress, rays[0]))
         ray = np.repeat(np.arange(len(count)), count)
@@ -128,8 +133,8 @@ class _Rays:
     def contains(
         self, points: npt.ArrayLike, *, threads: Optional[int] = None, progress: Progress = None
     ) -> Bools:
-        """Whether points, of shape (..., 3), lie inside: by the parity of crossings, which is exact for closed meshes. In a
-        scene, inside any of its objects."""
+        """Returns True for points, of shape (..., 3), that are inside, by the parity of
+        crossings, which is exact for closed meshes. In a scene: inside any of its objects."""
         at = places("points", points)
         answer = self._tree.contains(rows(at, 3), threads_asked(threads), watch(progress))
         return answer.reshape(at.shape[:-1])
@@ -142,13 +147,15 @@ class _Rays:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Nearest:
-        """The nearest point of the surface for each point, of shape (..., 3), unless it is further away than `within`."""
+        """Returns the nearest surface point of each point, of shape (..., 3), within the
+        distance `within`."""
         raise NotImplementedError
 
     def distance(
         self, points: npt.ArrayLike, *, signed: bool = False, threads: Optional[int] = None, progress: Progress = None
     ) -> Doubles:
-        """How far points are from the surface; if `signed`, negative inside, for closed meshes."""
+        """Returns the distances of points from the surface; if `signed`, negative inside, for
+        closed meshes."""
         distance = self.nearest(points, threads=threads, progress=progress).distance
         if signed:
             distance[self.contains(points, threads=threads)] *= -1
@@ -156,13 +163,13 @@ class _Rays:
 
     @property
     def bounds(self) -> Places:
-        """Least and greatest corner of a box around everything: shape (2, 3). That of a scene is the box around the boxes of its meshes
-        where these are placed, which may be larger than need be."""
+        """Least and greatest corner of the bounds: shape (2, 3). For a scene, the bounds of the
+        transformed bounds of its meshes, which may be larger than necessary."""
         return np.array(self._tree.bounds(), np.float32)
 
     @property
     def nbytes(self) -> int:
-        """Bytes that the tree takes."""
+        """Size of the tree in bytes."""
         return self._tree.bytes()
 
 
@@ -174,12 +181,14 @@ def threads_asked(threads: Optional[int]) -> Optional[int]:
 
 class Mesh(_Rays):
     __doc__ = (_Rays.__doc__ or "").replace(
-        "The questions that a mesh and a scene answer alike.",
-        """Triangles, ready for rays.
+        "Queries that meshes and scenes share.",
+        """A triangle mesh, ready for ray queries.
 
-    `vertices` has the shape (n, 3) and `faces` (m, 3): numbers of vertices. Both are copied, and do not change. Vertices are kept in
-    single precision; where they lie far from the origin for their extent, as they are seen from the middle of their box, so that
-    nothing is lost. Triangles with a corner that is not finite are not there. `preset` says how long the tree is built for: "fast", "balanced" or "best", for many rays.
+    `vertices` has the shape (n, 3) and `faces` (m, 3): indices of vertices. Both are copied and
+    immutable. Vertices are stored in single precision; if they are far from the origin compared
+    with their extent, relative to the centre of their bounds, so that no precision is lost.
+    Triangles with a corner that is not finite are ignored. `preset` is the effort of the build:
+    "fast", "balanced" or "best", for many rays.
     """,
     )
 
@@ -225,14 +234,15 @@ class Mesh(_Rays):
         return f"<Mesh of {len(self.faces)} triangles>"
 
     def refit(self, vertices: npt.ArrayLike) -> Mesh:
-        """The mesh with vertices that have moved, as many as before. Its tree is that of this one, made to fit: much faster than
-        building, but the farther vertices have moved, the slower rays become. Answers are those of a new mesh."""
+        """Returns the mesh with moved vertices, as many as before. Its tree is this one's tree,
+        refitted: much faster than a build, but the farther vertices move, the slower rays
+        become. Results are those of a new mesh."""
         given = places("vertices", vertices)
         if given.shape != self._own.shape:
             raise ValueError(f"vertices must have the shape {self._own.shape}, but has {given.shape}")
         own, center = centered(given)
         mesh = Mesh.__new__(Mesh)
-        # A tree has no place for a triangle that was not there when it was built.
+        # A tree has no place for a triangle that was not finite when it was built.
         if not (np.isfinite(own).all() and np.isfinite(self._own).all()):
             mesh._build(own, center, self.faces, self._preset)
             return mesh
@@ -242,7 +252,8 @@ class Mesh(_Rays):
 
     @cached_property
     def vertices(self) -> Places:
-        """Corners, of shape (n, 3), as they are traced: float32, or float64 where they lie far from the origin."""
+        """Vertices, of shape (n, 3), as they are traced: float32, or float64 if they are far
+        from the origin."""
         if not self._far:
             return self._own
         vertices = self._own + self._center
@@ -275,8 +286,9 @@ class Mesh(_Rays):
     nearest.__doc__ = _Rays.nearest.__doc__
 
     def surface(self, triangle: npt.ArrayLike, uv: npt.ArrayLike) -> Hits:
-        """Places of the surface by triangle, of shape (...), and u and v, (..., 2): as if rays had met it there, with `t` 0. So they have
-        point, normal and `leave`; of nearest points, say, or of vertices."""
+        """Returns surface points by triangle, of shape (...), and u and v, (..., 2), as if rays
+        had hit them, with `t` 0. They have point, normal and `leave`. Use it for nearest points
+        or vertices, for example."""
         triangles, places = np.asarray(seen("triangle", triangle), np.int32), vectors("uv", uv, 2)
         if bool((triangles >= len(self.faces)).any()) or triangles.shape != places.shape[:-1]:
             raise ValueError(f"there are {len(self.faces)} triangles, and each place must have one of them with u and v")
@@ -284,19 +296,19 @@ class Mesh(_Rays):
 
     @cached_property
     def open_edges(self) -> int:
-        """How many edges belong to an odd number of triangles, corners being the same where they lie at the same place, or to several
-        that are one triangle to the same side. Triangles that are not finite are not there. 0 for a closed mesh, whose inside
-        `contains` knows."""
+        """Number of edges with an odd number of triangles, where corners at the same position
+        are the same, or with several copies of one triangle with the same orientation. Triangles
+        that are not finite are ignored. 0 for a closed mesh, for which `contains` works."""
         return open_edges(self._own, self.faces)
 
     @property
     def is_closed(self) -> bool:
-        """Whether it has an inside: no open edge."""
+        """True if the mesh has an inside: it has no open edge."""
         return self.open_edges == 0
 
     @property
     def normals(self) -> Floats:
-        """The normals of all triangles, of length 1; 0 for those without area."""
+        """Unit normals of all triangles; 0 for those without area."""
         count = len(self.faces)
         all = (None, np.arange(count, dtype=np.int32), np.zeros((count, 2), np.float32))
         return _durer.met_normals(self._tree, all, None).reshape(-1, 3)
@@ -307,11 +319,11 @@ Placed: TypeAlias = Union[Mesh, tuple[Mesh, npt.ArrayLike]]
 
 class Scene(_Rays):
     __doc__ = (_Rays.__doc__ or "").replace(
-        "The questions that a mesh and a scene answer alike.",
-        """Meshes in places, ready for rays. Each mesh is in memory once, however often it is placed.
+        "Queries that meshes and scenes share.",
+        """Instanced meshes, ready for ray queries. Each mesh is stored once, however often it is used.
 
-    `objects` are meshes, or pairs of a mesh and the matrix, 4 x 4 or 3 x 4, that takes its points to the world: any affine map that
-    can be inverted. Of hits at the same `t` that of the object with the least number counts.
+    `objects` are meshes, or pairs of a mesh and its matrix to the world, 4 x 4 or 3 x 4: any
+    invertible affine map. Of hits at the same `t`, the object with the least index wins.
     """,
     )
 
@@ -337,8 +349,8 @@ class Scene(_Rays):
         self._far = bool(self.meshes) and max(map(abs, [*least, *greatest])) > FAR * size >= 0
 
     def move(self, places: Mapping[int, npt.ArrayLike]) -> Scene:
-        """The scene with some objects at other places: matrices by the numbers of objects. Meshes and their trees are shared; what is
-        made anew is the tree over objects, which takes little."""
+        """Returns the scene with new matrices for some objects, by index. Meshes and their trees
+        are shared; only the small tree over the objects is rebuilt."""
         for i in places:
             if not 0 <= i < len(self.meshes):
                 raise ValueError(f"there is no object {i} among {len(self.meshes)}")
@@ -352,7 +364,7 @@ class Scene(_Rays):
 
     @cached_property
     def _joined(self) -> tuple[Mesh, npt.NDArray[np.int64]]:
-        """All objects as one mesh, and where the triangles of each begin."""
+        """Returns all objects as one mesh, and the index of each object's first triangle."""
         moved = [m.vertices @ a[:, :3].T + a[:, 3] for m, a in zip(self.meshes, self.matrices)]
         first = np.cumsum([0] + [len(mesh.vertices) for mesh in self.meshes])
         faces = [mesh.faces.astype(np.int64) + start for mesh, start in zip(self.meshes, first)]
@@ -374,11 +386,11 @@ class Scene(_Rays):
         triangle = np.where(near.triangle >= 0, near.triangle - starts[np.maximum(objects, 0)], -1).astype(np.int32)
         return Nearest(near.distance, near.point, triangle, objects.astype(np.int32), near.uv)
 
-    nearest.__doc__ = (_Rays.nearest.__doc__ or "") + " The first such question makes one mesh of all objects."
+    nearest.__doc__ = (_Rays.nearest.__doc__ or "") + " The first such query joins all objects into one mesh."
 
 
 def rays_of(value: Any) -> tuple[Floats, Floats]:
-    """Origins and directions of rays that are rows of six numbers, as Open3D has them."""
+    """Splits rays of six numbers into origins and directions, as Open3D has them."""
     array = seen("rays", value)
     if array.ndim == 0 or array.shape[-1] != 6:
         raise ValueError(f"rays must have the shape (..., 6), but has {array.shape}")

@@ -1,4 +1,4 @@
-"""What scenes in code are made of: things that write themselves in the scene language."""
+"""Building blocks of scenes in code, which write themselves in the scene language."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ Self = TypeVar("Self", bound="Object")
 
 
 def number(value: Any) -> str:
-    """A number as the reader takes it: the shortest that is the same in single precision."""
+    """Formats a number for the reader: the shortest text of the same single-precision value."""
     single = np.float32(value)
     if not np.isfinite(single):
         raise ValueError(f"{value} is not finite in single precision")
@@ -22,19 +22,19 @@ def number(value: Any) -> str:
 
 
 class Thing:
-    """A word of the scene language with its fields."""
+    """A keyword of the scene language with its fields."""
 
     def __init__(self, word: str, fields: Iterable[tuple[str, Any]]) -> None:
         self.word = word
-        # Two fields may be spelled alike, as the materials of a pattern are.
+        # Two fields may have the same name, such as the materials of a pattern.
         self.fields = [(name, value) for name, value in fields if value is not None]
 
     def materials(self) -> list[Material]:
-        """The materials that its fields name."""
+        """Returns the materials that the fields refer to."""
         return [value for _, value in self.fields if isinstance(value, Material)]
 
     def text(self, numbers: Optional[Mapping[int, int]] = None) -> str:
-        """How it is written; `numbers` are those of materials, by identity."""
+        """Returns the text; `numbers` are the indices of materials, by identity."""
         parts = [f"{name} {self._value(name, value, numbers or {})}" for name, value in self.fields]
         return f"{self.word} {{ {'  '.join(parts)} }}"
 
@@ -59,27 +59,27 @@ class Thing:
 
 
 class Camera(Thing):
-    """What sees."""
+    """A camera."""
 
 
 class Light(Thing):
-    """What shines."""
+    """A light source."""
 
 
 class Material(Thing):
-    """How a surface looks."""
+    """A surface material."""
 
     def materials(self) -> list[Material]:
         return [m for value in super().materials() for m in [*value.materials(), value]]
 
 
 class Object:
-    """Something in a scene: a shape, a mesh, several of them, or one of them moved."""
+    """An object of a scene: a shape, a mesh, a group, or one of them transformed."""
 
     material: Optional[Material] = None
 
     def of(self: Self, material: Material) -> Self:
-        """The same, made of a material; what is in it and has one of its own keeps that."""
+        """Returns the object with a material; parts that have their own keep it."""
         import copy
 
         other = copy.copy(self)
@@ -87,20 +87,20 @@ class Object:
         return other
 
     def at(self, place: npt.ArrayLike) -> Moved:
-        """The same at another place: moved by three numbers, or by a matrix of 3 x 4 or 4 x 4."""
+        """Returns the object moved by three numbers, or by a matrix of 3 x 4 or 4 x 4."""
         return Moved(self, place)
 
     def parts(self) -> Iterable[Object]:
-        """The objects in it."""
+        """Returns the objects in it."""
         return ()
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
-        """How it is written, where such a material holds around it."""
+        """Returns the text, given the material of its surroundings."""
         raise NotImplementedError
 
 
 class Writer:
-    """What is known while a scene is written."""
+    """State while a scene is written."""
 
     def __init__(self) -> None:
         self.order: list[Material] = []
@@ -108,7 +108,7 @@ class Writer:
         self.meshes: list[Mesh] = []
 
     def number(self, material: Material) -> int:
-        """The number of a material; those that it names come before it."""
+        """Returns the index of a material; materials that it refers to come before it."""
         for one in [*material.materials(), material]:
             if id(one) not in self.numbers:
                 self.numbers[id(one)] = len(self.order)
@@ -116,13 +116,13 @@ class Writer:
         return self.numbers[id(material)]
 
     def mesh(self, mesh: Mesh) -> str:
-        """The name of a mesh's file."""
+        """Returns the name of a mesh's file."""
         if not any(known is mesh for known in self.meshes):
             self.meshes.append(mesh)
         return f"mesh{next(i for i, known in enumerate(self.meshes) if known is mesh)}.ply"
 
     def object(self, item: Union[Object, Mesh], around: Optional[Material]) -> str:
-        """An object with its material before it."""
+        """Returns an object's text with its material before it."""
         item = Model(item) if isinstance(item, Mesh) else item
         if not isinstance(item, Object):
             raise TypeError(f"objects must be shapes, meshes, groups or solids, but this is {type(item).__name__}: {item!r}")
@@ -132,7 +132,7 @@ class Writer:
 
 
 class Shape(Thing, Object):
-    """What can be hit."""
+    """A shape with a surface."""
 
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         return self.text(writer.numbers)
@@ -152,7 +152,7 @@ class Model(Object):
 
 
 class Group(Object):
-    """Several objects."""
+    """A group of objects."""
 
     word = "Group"
 
@@ -165,37 +165,37 @@ class Group(Object):
 
 
 class Union_(Group):
-    """All that is in some part; surfaces inside other parts stay."""
+    """Union of parts; surfaces inside other parts stay."""
 
     word = "Union"
 
 
 class Merge(Group):
-    """All that is in some part, as one solid."""
+    """Union of parts as one solid."""
 
     word = "Merge"
 
 
 class Intersection(Group):
-    """What is in every part."""
+    """Intersection of all parts."""
 
     word = "Intersection"
 
 
 class Difference(Group):
-    """What is in the first part and in no other."""
+    """The first part without the others."""
 
     word = "Difference"
 
 
 class Xor(Group):
-    """What is in an odd number of parts."""
+    """Points in an odd number of parts."""
 
     word = "Xor"
 
 
 class Moved(Object):
-    """An object at another place."""
+    """An object with a transform."""
 
     def __init__(self, item: Union[Object, Mesh], place: npt.ArrayLike) -> None:
         array = seen("place", place)
@@ -207,16 +207,16 @@ class Moved(Object):
     def write(self, writer: Writer, material: Optional[Material]) -> str:
         rows = "  ".join(" ".join(number(x) for x in row) for row in self.matrix)
         inner = Model(self.item) if isinstance(self.item, Mesh) else self.item
-        # A transform holds one object, without a word about its material.
+        # A transform holds one object without a material keyword.
         return f"Transform {{ Matrix {{ {rows}  0 0 0 1 }} {inner.write(writer, material)} }}"
 
 
 def ply(mesh: Mesh) -> bytes:
-    """A mesh as a binary PLY file, as it is seen from the middle of what is far away."""
+    """Returns a mesh as a binary PLY file, relative to its centre if that is far away."""
     vertices, corners = mesh._own, mesh.faces
     is_finite = finite(vertices)
     if not is_finite.all():
-        # Such triangles are not there, but keep their numbers: they are points.
+        # Degenerate to points, so that the other triangles keep their indices.
         vertices = np.where(is_finite[:, None], vertices, np.float32(0))
         corners = np.where(is_finite[corners].all(axis=1, keepdims=True), corners, corners[:, :1])
     head = (

@@ -1,9 +1,10 @@
-"""The ray queries of `trimesh`, answered by Dürer.
+"""The ray queries of `trimesh`, implemented by Dürer.
 
     mesh.ray = durer.trimesh.RayMeshIntersector(mesh)
 
-Names, arguments and answers are those of `trimesh.ray.ray_pyembree.RayMeshIntersector`. What differs: no ray is lost at edges and
-vertices, hits are not stepped over by an offset, so none is found twice, and `contains_points` is exact.
+Names, arguments and results are those of `trimesh.ray.ray_pyembree.RayMeshIntersector`.
+Differences: no ray is lost at edges and vertices, no hit is skipped or found twice because of an
+offset, and `contains_points` is exact.
 """
 
 from __future__ import annotations
@@ -21,9 +22,11 @@ _Doubles = npt.NDArray[np.float64]
 
 
 class RayMeshIntersector:
-    """Rays against a `trimesh.Trimesh`, whose tree is built when it is asked first, and anew after the mesh was changed.
+    """Ray queries on a `trimesh.Trimesh`. Builds the tree on the first query, and again after the
+    mesh was changed.
 
-    The mesh is seen from the middle of its box, so its place costs no precision. `scale_to_box` is taken and not needed.
+    The mesh is traced relative to the centre of its bounds, so its position costs no precision.
+    `scale_to_box` is ignored.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True) -> None:
@@ -45,7 +48,7 @@ class RayMeshIntersector:
         if starts.shape != ways.shape:
             raise ValueError(f"ray origins and directions must have one shape, but have {starts.shape} and {ways.shape}")
         square = np.einsum("...i,...i->...", ways, ways)
-        # Directions that single precision would take for none, or for endless.
+        # Rescale directions that would underflow or overflow in single precision.
         if bool(((square < 1e-30) | (square > 1e30)).any()):
             largest = np.abs(ways).max(-1, keepdims=True)
             ways = np.divide(ways, largest, out=np.zeros_like(ways), where=largest > 0)
@@ -54,7 +57,7 @@ class RayMeshIntersector:
     def intersects_location(
         self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike, multiple_hits: bool = True
     ) -> tuple[_Doubles, _Ints, _Ints]:
-        """Places of hits, the ray of each, and its triangle."""
+        """Returns hit points, and the ray and triangle of each."""
         triangle, ray, places = self.intersects_id(ray_origins, ray_directions, multiple_hits, return_locations=True)
         return places, ray, triangle
 
@@ -66,7 +69,8 @@ class RayMeshIntersector:
         max_hits: int = 100,
         return_locations: bool = False,
     ) -> Any:
-        """Triangles of hits, the ray of each, and, if wanted, their places: first hits alone, or of each ray `max_hits` at most."""
+        """Returns the triangles of hits, the ray of each, and optionally the points: only first
+        hits, or at most `max_hits` for each ray."""
         tree, origins, ways = self._rays(ray_origins, ray_directions)
         if multiple_hits:
             hits = tree.all_hits(origins, ways)
@@ -85,17 +89,17 @@ class RayMeshIntersector:
         return triangle, ray, (1 - u - v) * a + u * b + v * c
 
     def intersects_first(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> _Ints:
-        """The first triangle of each ray, -1 where there is none."""
+        """Returns the first triangle of each ray, or -1."""
         tree, origins, ways = self._rays(ray_origins, ray_directions)
         return tree.closest(origins, ways).triangle.astype(np.int64)
 
     def intersects_any(self, ray_origins: npt.ArrayLike, ray_directions: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Whether each ray meets anything."""
+        """Returns True for each ray that hits anything."""
         tree, origins, ways = self._rays(ray_origins, ray_directions)
         return tree.occluded(origins, ways)
 
     def contains_points(self, points: npt.ArrayLike) -> npt.NDArray[np.bool_]:
-        """Whether points lie inside."""
+        """Returns True for points that are inside."""
         tree, middle = self._tree()
         return tree.contains(np.asarray(points, np.float64) - middle)
 

@@ -1,4 +1,5 @@
-"""Cameras as computer vision has them (OpenCV's convention), and what they see of scenes: depth, normals, masks, optical flow."""
+"""Cameras in OpenCV's convention, and what they see of scenes: depth, normals, masks, optical
+flow."""
 
 from __future__ import annotations
 
@@ -14,19 +15,19 @@ from .rays import Mesh, Scene
 
 @dataclass(frozen=True, eq=False)
 class View:
-    """What a camera sees, a number or vector for each pixel: shape (height, width) or (height, width, 3)."""
+    """Results for each pixel of a camera: shape (height, width) or (height, width, 3)."""
 
-    #: Depth along the camera's axis, z in its frame, in the unit of the scene: metres, say. Infinite where nothing is seen.
+    #: Depth along the camera's axis, z in its frame, in the unit of the scene; infinite for misses.
     depth: Floats
     #: Distance along the pixel's ray, in the same unit.
     distance: Floats
-    #: The surface's normal in the camera's frame, towards the camera; 0 where nothing is seen.
+    #: Surface normal in the camera's frame, towards the camera; 0 for misses.
     normals: Floats
-    #: Number of the object, -1 where nothing is seen: instance masks are `instances == i`.
+    #: Index of the object, -1 for misses; instance masks are `instances == i`.
     instances: Ints
-    #: Number of the triangle, -1 where nothing is seen.
+    #: Index of the triangle, -1 for misses.
     triangles: Ints
-    #: The place in the world; not a number where nothing is seen.
+    #: Point in world space; NaN for misses.
     points: Places
 
 
@@ -36,10 +37,12 @@ def _zeros() -> Doubles:
 
 @dataclass(frozen=True, eq=False)
 class Camera:
-    """A camera in OpenCV's convention: x to the right, y down, z forwards; the middle of the first pixel is (0, 0).
+    """A camera in OpenCV's convention: x to the right, y down, z forwards; the centre of the first
+    pixel is (0, 0).
 
-    A point X of the world is R X + t in the camera's frame, with `extrinsics` = [R | t], 3 x 4 or 4 x 4. Its x / z and y / z are
-    distorted by k1, k2, p1, p2[, k3[, k4, k5, k6]], as `cv2.calibrateCamera` gives them, and taken to pixels by `intrinsics`, 3 x 3.
+    A point X in the world is R X + t in the camera's frame, with `extrinsics` = [R | t], 3 x 4
+    or 4 x 4. Its x / z and y / z are distorted by k1, k2, p1, p2[, k3[, k4, k5, k6]], as
+    `cv2.calibrateCamera` returns them, and mapped to pixels by `intrinsics`, 3 x 3.
     """
 
     intrinsics: npt.ArrayLike
@@ -95,7 +98,8 @@ class Camera:
         )
 
     def project(self, points: npt.ArrayLike) -> Doubles:
-        """The pixels, x and y, of points of the world, of shape (..., 3); not a number for points behind the camera."""
+        """Returns the pixel coordinates x and y of world points, of shape (..., 3); NaN for
+        points behind the camera."""
         turn, shift = self._outer()
         local = np.asarray(seen("points", points), np.float64) @ turn.T + shift
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -105,8 +109,9 @@ class Camera:
         return np.stack([inner[0, 0] * x + inner[0, 1] * y + inner[0, 2], inner[1, 1] * y + inner[1, 2]], -1)
 
     def rays(self) -> tuple[Doubles, Doubles]:
-        """The eye, and for each pixel the direction of its ray in the world, of shape (height, width, 3): its z in the camera's
-        frame is 1, so `t` is depth. Where the lens has no ray, the direction is not a number."""
+        """Returns the eye, and for each pixel the direction of its ray in the world, of shape
+        (height, width, 3). Its z in the camera's frame is 1, so `t` is depth. Where the lens has
+        no ray, the direction is NaN."""
         inner, (turn, shift) = self._inner(), self._outer()
         u, v = np.meshgrid(np.arange(self.width, dtype=np.float64), np.arange(self.height, dtype=np.float64))
         yd = (v - inner[1, 2]) / inner[1, 1]
@@ -118,7 +123,7 @@ class Camera:
         return -turn.T @ shift, local @ turn
 
     def _undistorted(self, xd: Doubles, yd: Doubles) -> tuple[Doubles, Doubles]:
-        """The inverse of the distortion, by Newton's method with differences for derivatives."""
+        """Inverts the distortion by Newton's method with finite differences."""
         x, y, step = xd.copy(), yd.copy(), 1e-6
         with np.errstate(all="ignore"):
             for _ in range(30):
@@ -133,7 +138,7 @@ class Camera:
         return np.where(good, x, np.nan), np.where(good, y, np.nan)
 
     def view(self, scene: Union[Mesh, Scene]) -> View:
-        """What it sees of a scene."""
+        """Traces a scene."""
         eye, ways = self.rays()
         hits = scene.closest(eye, ways)
         length = np.linalg.norm(ways, axis=-1)
@@ -145,8 +150,9 @@ class Camera:
         return View(hits.t, distance, facing, hits.object, hits.triangle, hits.point)
 
     def flow(self, scene: Union[Mesh, Scene], other: Camera) -> tuple[Doubles, Bools]:
-        """Optical flow to another pose in a scene at rest: how many pixels each moves, of shape (height, width, 2), not a number
-        where nothing is seen; and whether the other camera sees the point too, within its picture and not hidden."""
+        """Returns the optical flow to another pose in a static scene: the motion of each pixel,
+        of shape (height, width, 2), NaN for misses; and True where the other camera sees the
+        point too, inside its picture and not occluded."""
         hits = scene.closest(*self.rays())
         points = hits.point.astype(np.float64)
         there = other.project(points)

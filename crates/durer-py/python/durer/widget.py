@@ -1,4 +1,4 @@
-"""A scene in a notebook: drag to go around it, click a pixel to learn why it has its colour.
+"""A scene in a notebook: drag to orbit, click a pixel to see why it has its colour.
 
     from durer.widget import Explorer
 
@@ -22,16 +22,17 @@ from .world import World
 
 _Vector = npt.NDArray[np.float64]
 
-#: A camera's block in the scene language: no such block has braces two deep in it. Comments go first, so that what is in them is none.
+#: A camera's block in the scene language; no such block nests braces more than once. Comments match
+#: first, so that cameras in them do not count.
 _CAMERA = re.compile(r"#[^\n]*|\b([A-Za-z]+Camera)\s*\{((?:[^{}#]|#[^\n]*|\{[^{}]*\})*)\}")
 #: A field of three numbers.
 _FIELD = r"\b{}((?:\s+[-+.\deE]+){{3}})"
-#: The nearest to straight up and down, in degrees.
+#: Limit of the elevation from the poles, in degrees.
 _STEEPEST = 3.0
 
 
 class _Camera:
-    """The camera of a scene in the scene language, and what it looks at."""
+    """The camera of a scene in the scene language, and its target."""
 
     def __init__(self, world: World) -> None:
         blocks = [found for found in _CAMERA.finditer(world.text) if found[1]]
@@ -42,7 +43,7 @@ class _Camera:
         self.eye, self.along, self.up = (self._field(name) for name in ("center", "direction", "up"))
         hit = world.closest(self.eye, self.along, progress=False)
         met = float(hit.t) * float(np.linalg.norm(self.along))
-        # Where it looks at nothing, what is as far as the origin will do.
+        # If it looks at nothing, orbit at the origin's distance.
         self.far = met if np.isfinite(met) and met > 0 else max(float(np.linalg.norm(self.eye)), 1.0)
         self.target = self.eye + self.far * _unit(self.along)
 
@@ -53,7 +54,7 @@ class _Camera:
         return np.array(found[1].split(), np.float64)
 
     def go(self, right: float, down: float, nearer: float) -> None:
-        """Turns about what is looked at, by shares of a half turn, and comes nearer."""
+        """Orbits around the target, by shares of a half turn, and zooms."""
         up, away = _unit(self.up), _unit(self.eye - self.target)
         height = np.degrees(np.arcsin(np.clip(away @ up, -1, 1)))
         height = np.clip(height + 180 * down, _STEEPEST - 90, 90 - _STEEPEST)
@@ -67,7 +68,7 @@ class _Camera:
         self.along = _unit(self.target - self.eye)
 
     def scene(self) -> str:
-        """The scene's text with the camera where it is now."""
+        """Returns the scene's text with the camera's current position."""
         block = self.block
         for name, value in (("center", self.eye), ("direction", self.along)):
             words = f"{name} {' '.join(np.format_float_positional(np.float32(x), trim='-') for x in value)}"
@@ -80,10 +81,11 @@ def _unit(vector: _Vector) -> _Vector:
 
 
 class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
-    """A world whose camera goes around what it looks at, and whose pixels explain themselves.
+    """A world with an orbiting camera, whose pixels can be explained.
 
-    The world is one of the scene language, from a file or built in code, with a camera that has `center`, `direction` and `up`.
-    Options are those of `World.render`. Drags, the wheel, arrow keys, plus and minus move the camera; a click explains a pixel.
+    The world is in the scene language, from a file or built in code, with a camera that has
+    `center`, `direction` and `up`. Options are those of `World.render`. Drags, the wheel, arrow
+    keys, plus and minus move the camera; a click explains a pixel.
     """
 
     _esm = Path(__file__).with_name("explorer.js")
@@ -94,18 +96,18 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
     """
     #: The picture as PNG.
     picture = traitlets.Bytes(b"").tag(sync=True)
-    #: One line: what is shown, or what is wrong.
+    #: Status line: what is shown, or an error.
     word = traitlets.Unicode("").tag(sync=True)
     #: The explanation as nodes: `text`, `color` for CSS, `value` and `terms`.
     told = traitlets.Dict({}).tag(sync=True)
-    #: How many wishes of the page were fulfilled.
+    #: Number of requests of the page that were handled.
     made = traitlets.Int(0).tag(sync=True)
 
     def __init__(self, world: World, *, size: tuple[int, int] = (480, 360), samples: int = 4, **options: Any) -> None:
         super().__init__()
         self._camera = _Camera(world)
         self._size, self._samples, self._options = size, samples, options
-        #: The world as it is seen now: `explorer.world.save(folder)` keeps it.
+        #: The current world: `explorer.world.save(folder)` saves it.
         self.world = world
         self._draw()
         self.on_msg(self._told_of)
@@ -120,7 +122,8 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
         self._hear(wish)
 
     def _hear(self, wish: dict[str, Any]) -> None:
-        """What the page wants: `turn` and `nearer` move the camera, `ask` explains the pixel at shares of width and height."""
+        """Handles a request of the page: `turn` and `nearer` move the camera, `ask` explains the
+        pixel at shares of width and height."""
         try:
             (right, down), nearer, ask = wish["turn"], wish["nearer"], wish["ask"]
             if right or down or nearer != 1:
@@ -136,7 +139,7 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
             self.made += 1
 
     def explain(self, x: int, y: int) -> dict[str, Any]:
-        """Explains a pixel by the ray through its middle, here and in the page."""
+        """Explains a pixel by the ray through its centre, here and in the page."""
         answer = self.world.explain(x, y, size=self._size, samples=1, **self._options)
         samples = [sample["light"] for sample in answer["pixel"]["samples"] if sample["light"] is not None]
         self.told = _told(samples[0], answer) if samples else {}
@@ -145,8 +148,8 @@ class Explorer(anywidget.AnyWidget):  # type: ignore[misc, unused-ignore]
 
 
 def _told(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
-    """A node of an explanation for the page."""
-    # Under wavelengths values have four numbers, which are no colour of a screen.
+    """Returns a node of an explanation for the page."""
+    # Spectral values have four numbers and no display colour.
     value = [float(x or 0) for x in node["value"]]
     screen = [255 * (1.055 * x ** (1 / 2.4) - 0.055 if x > 0.0031308 else 12.92 * x) for x in np.clip(value, 0, 1)]
     color = f"rgb({', '.join(str(round(x)) for x in screen)})" if len(value) == 3 else "transparent"
@@ -155,7 +158,7 @@ def _told(node: dict[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
 
 
 def _named(what: dict[str, Any], answer: dict[str, Any]) -> str:
-    """What a node is, in few words."""
+    """Describes a node in a few words."""
 
     def name(kind: str, number: Optional[Any]) -> str:
         return str(answer[kind].get(str(number), f"{kind[:-1]} {number}"))

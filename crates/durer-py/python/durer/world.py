@@ -1,4 +1,4 @@
-"""Scenes that are described: from files or in code; their pictures, and why those are as they are."""
+"""Described scenes, from files or built in code; their pictures and explanations."""
 
 from __future__ import annotations
 
@@ -24,17 +24,18 @@ from .words import Background, PhongMaterial
 
 PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 
-#: Kinds of picture whose three channels are one number.
+#: Pictures whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
 
 
 class Pictures(dict[str, Floats]):
-    """Pictures by name, float32, the top row first: `color` is linear light of shape (height, width, 3), `alpha` the share of each
-    pixel that the camera sees, where that is not all; depth and other single numbers have the shape (height, width)."""
+    """Pictures by name, float32, top row first: `color` is linear light of shape (height, width,
+    3), `alpha` the share of each pixel that the camera sees, if not everywhere 1; depth and
+    other single numbers have the shape (height, width)."""
 
     def __init__(self, part: Part) -> None:
         super().__init__()
-        #: What they are made of.
+        #: The part that the pictures are made from.
         self.part = part
         self._alpha: dict[str, Optional[npt.NDArray[np.float32]]] = {}
         for name, width, height, values, alpha in part._part.pictures(False):
@@ -49,11 +50,12 @@ class Pictures(dict[str, Floats]):
 
     @property
     def hash(self) -> str:
-        """The hash of the film, as `durer render --hash` prints it for the same job."""
+        """Hash of the film, as `durer render --hash` prints it for the same job."""
         return self.part.hash
 
     def file(self, name: str, transfer: str = "srgb") -> bytes:
-        """The bytes of a file, by the extension of `name`: in eight bits the first picture, as a screen shows it; in `.exr` all."""
+        """Returns the bytes of a file, by the extension of `name`: the first picture as display
+        values in eight-bit formats, all pictures in `.exr`."""
         eight = Path(name).suffix.lower() in (".png", ".tga", ".bmp", ".ppm")
         layers = []
         for layer, width, height, values, alpha in self.part._part.pictures(eight):
@@ -62,7 +64,7 @@ class Pictures(dict[str, Floats]):
         return _durer.encode(name, layers if name.lower().endswith(".exr") else layers[:1], transfer)
 
     def save(self, path: PathLike, transfer: str = "srgb") -> None:
-        """Writes them into a file: png, tga, bmp, ppm, pfm, hdr or exr."""
+        """Writes the pictures into a file: png, tga, bmp, ppm, pfm, hdr or exr."""
         _write(Path(path), self.file(os.fspath(path), transfer))
 
     def _repr_png_(self) -> bytes:
@@ -73,7 +75,7 @@ class Pictures(dict[str, Floats]):
 
 
 def _write(path: Path, content: bytes) -> None:
-    """Writes a file whole or not at all."""
+    """Writes a file atomically."""
     beside = path.with_name(f".{path.name}.{os.getpid()}")
     try:
         beside.write_bytes(content)
@@ -83,11 +85,11 @@ def _write(path: Path, content: bytes) -> None:
 
 
 class Part:
-    """What is made of a picture: a shard, a checkpoint, or all of it."""
+    """A partial render: a shard, a checkpoint, or the whole picture."""
 
     def __init__(self, part: _durer.Part) -> None:
         self._part = part
-        #: What it was asked for with, if that is known.
+        #: The options it was created with, if known.
         self._options: Optional[dict[str, Any]] = None
 
     def __reduce__(self) -> Any:
@@ -95,13 +97,14 @@ class Part:
 
     @classmethod
     def read(cls, source: Union[PathLike, bytes]) -> Part:
-        """From a file or its bytes. Raises RenderError for what is damaged or of another version."""
+        """Reads a part from a file or its bytes. Raises RenderError if it is damaged or of
+        another version."""
         return cls(_durer.Part.read(source if isinstance(source, bytes) else Path(source).read_bytes()))
 
     @classmethod
     def merge(cls, parts: Iterable[Union[Part, PathLike, bytes]]) -> Part:
-        """Puts parts together, bit for bit what one run would have made. Refuses those of other pictures, work that is in two
-        of them, and work that is in none."""
+        """Merges parts to the same bits as a single run. Refuses parts of different pictures,
+        and overlapping or missing work."""
         named = []
         for i, part in enumerate(parts, 1):
             if isinstance(part, Part):
@@ -113,46 +116,46 @@ class Part:
         return cls(_durer.merge(named))
 
     def bytes(self) -> bytes:
-        """As `durer render --shard` saves it."""
+        """Returns the bytes that `durer render --shard` saves."""
         return self._part.write()
 
     def save(self, path: PathLike) -> None:
-        """Writes it into a file."""
+        """Writes the part into a file."""
         _write(Path(path), self.bytes())
 
     def pictures(self) -> Pictures:
-        """The pictures as far as they are made; pixels of which nothing is made are black."""
+        """Returns the pictures so far; pixels without samples are black."""
         return Pictures(self)
 
     @property
     def hash(self) -> str:
-        """The hash of the film."""
+        """Hash of the film."""
         return self._part.hash()
 
     @property
     def identity(self) -> str:
-        """The hash of all that decides the picture: scene, job and version."""
+        """Hash of everything that determines the picture: scene, job and version."""
         return self._part.identity()
 
     @property
     def shard(self) -> str:
-        """Which shard it is of how many: `3/16`."""
+        """Index and number of shards: `3/16`."""
         return self._part.shard()
 
     @property
     def job(self) -> dict[str, Any]:
-        """What decides the picture beside the scene."""
+        """The job: everything that determines the picture beside the scene."""
         job: dict[str, Any] = json.loads(self._part.job())
         return job
 
     @property
     def is_finished(self) -> bool:
-        """Whether nothing of its work is left."""
+        """True if no work is left."""
         return self._part.is_finished()
 
     @property
     def statistics(self) -> dict[str, int]:
-        """What was counted: samples, rays, and samples that were left out for they were not finite."""
+        """Counts of samples, rays, and samples rejected because they were not finite."""
         return dict(zip(("samples", "rays", "rejected"), self._part.statistics()))
 
     def __repr__(self) -> str:
@@ -162,28 +165,30 @@ class Part:
 
 @dataclass(frozen=True, eq=False)
 class Surfaces:
-    """What rays meet first in a world. All arrays have the shape of the rays, with the components of vectors behind it."""
+    """First hits of rays in a world. All arrays have the shape of the rays, followed by the
+    components of vectors."""
 
-    #: Position along the ray, in units of its direction's length; infinite where nothing is met.
+    #: Distance along the ray, in units of its direction's length; infinite for misses.
     t: Floats
-    #: Number of the object, as the picture `object` shows it; -1 where nothing is met.
+    #: Index of the object, as in the picture `object`; -1 for misses.
     object: Ints
-    #: Number of the triangle in a mesh, else 0; -1 where nothing is met.
+    #: Index of the triangle in a mesh, else 0; -1 for misses.
     triangle: Ints
-    #: Number of the material; -1 where nothing is met.
+    #: Index of the material; -1 for misses.
     material: Ints
-    #: Where the surface is met; not a number where nothing is.
+    #: Hit point; NaN for misses.
     point: Floats
-    #: The true surface's normal, of length 1, outwards; not a number where nothing is met.
+    #: Geometric normal, unit length, outwards; NaN for misses.
     normal: Floats
-    #: The normal for shading: interpolated on smooth meshes.
+    #: Shading normal: interpolated on smooth meshes.
     shading_normal: Floats
-    #: The point in double precision, and how far off it a ray starts.
+    #: The point in double precision, and the offset at which a ray starts.
     _place: Doubles
 
     def leave(self, directions: npt.ArrayLike) -> Doubles:
-        """Where rays start that go on from here in such directions: see `Hits.leave`. What leaves a solid of several parts closer to an
-        edge than the point is known may start on the other side of that."""
+        """Returns origins for secondary rays in the given directions: see `Hits.leave`. A ray
+        that leaves a solid of several parts closer to an edge than the precision of the point
+        may start on the other side of that edge."""
         ways = vectors("directions", directions)
         try:
             ways = np.broadcast_to(ways, self.point.shape)
@@ -197,7 +202,7 @@ class Surfaces:
 
     @property
     def hit(self) -> Bools:
-        """Where something is met."""
+        """Mask of the rays that hit something."""
         return self.object >= 0
 
     def __repr__(self) -> str:
@@ -205,9 +210,11 @@ class Surfaces:
 
 
 class World:
-    """A scene that is described, ready for pictures. `durer.load` reads one from a file; here it is built in code.
+    """A described scene, ready for rendering. `durer.load` reads one from a file; the constructor
+    builds one in code.
 
-    `objects` are shapes, meshes, groups and solids; `lights` None means the same as a file without lights: ambient light alone.
+    `objects` are shapes, meshes, groups and solids; `lights` None means the same as a file
+    without lights: ambient light alone.
     """
 
     def __init__(
@@ -244,19 +251,20 @@ class World:
 
     @classmethod
     def load(cls, path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: Any) -> World:
-        """Reads any scene that the command reads; options are those of `durer render` about reading: dialect, compat, strict,
-        allow_outside, assets, memory, and of models up, view, studio, environment, view_file, camera, fit, at. A model gets lights and a
-        ground to stand on, which rays meet too, unless `studio` is False. What a model's own picture shows depends on its `size`, which is given here then,
-        and is that of `render` too. `words` are options as they stand
-        after `durer render SCENE`, those of renders among them, which hold for all that is made of the world. Raises SceneError with
-        file, line and column."""
+        """Reads any scene that the command reads. Options are those of `durer render` about
+        reading: dialect, compat, strict, allow_outside, assets, memory, and for models up, view,
+        studio, environment, view_file, camera, fit, at. A model gets lights and a ground, which
+        rays hit too, unless `studio` is False. The framing of a model depends on `size`, which
+        is given here then and also applies to `render`. `words` are options as they follow
+        `durer render SCENE`; those of rendering apply to all renders of the world. Raises
+        SceneError with file, line and column."""
         world = cls.__new__(cls)
         world._load(Path(path), None, [], reading, parsed(words))
         return world
 
     @classmethod
     def from_text(cls, text: str, folder: PathLike = ".", **reading: Any) -> World:
-        """A scene from a text in the scene language, which counts as a file in a folder."""
+        """Reads a scene from a text in the scene language, as if it were a file in `folder`."""
         world = cls.__new__(cls)
         world._load(Path(folder) / "scene.txt", text.encode(), [], reading)
         return world
@@ -271,22 +279,25 @@ class World:
         return world
 
     def rewritten(self, text: str) -> World:
-        """A world of another text in the place of this one's: in the same folder, with the same meshes, read in the same way."""
+        """Returns a world with another text: in the same folder, with the same meshes and
+        options."""
         return World._again(self.path, text.encode(), self._given, self._reading)
 
     @property
     def text(self) -> str:
-        """The scene as it is written."""
+        """The text of the scene."""
         return (self._text if self._text is not None else self.path.read_bytes()).decode(errors="replace")
 
     @property
     def files(self) -> dict[str, bytes]:
-        """The scene's own files: its text as `scene.txt`, and the meshes that were made in code."""
+        """The scene's own files: its text as `scene.txt`, and the meshes that were built in
+        code."""
         text = self._text if self._text is not None else self.path.read_bytes()
         return {"scene.txt" if self._text is not None else self.path.name: text, **dict(self._given)}
 
     def save(self, folder: PathLike) -> Path:
-        """Writes its files into a folder and gives the path of the scene, of which the command makes the same picture."""
+        """Writes the files into a folder and returns the path of the scene, which the command
+        renders identically."""
         Path(folder).mkdir(parents=True, exist_ok=True)
         for name, content in self.files.items():
             _write(Path(folder) / name, content)
@@ -294,27 +305,27 @@ class World:
 
     @property
     def digest(self) -> str:
-        """The hash of the scene and all its files."""
+        """Hash of the scene and all its files."""
         return self._world.digest()
 
     @property
     def dialect(self) -> str:
-        """The dialect of the scene language that it is written in."""
+        """Dialect of the scene language."""
         return self._world.dialect()
 
     @property
     def warnings(self) -> list[str]:
-        """What was found while it was read."""
+        """Warnings from reading the scene."""
         return self._world.warnings()
 
     @property
     def description(self) -> dict[str, Any]:
-        """The scene as data, as `durer convert` writes it as JSON."""
+        """The scene as data, as `durer convert` writes it to JSON."""
         scene: dict[str, Any] = json.loads(self._world.description())
         return scene
 
     def part(self, **options: Any) -> Part:
-        """A part of a picture of which nothing is made yet; with `shard=(3, 16)` a shard."""
+        """Returns an empty part of a picture; with `shard=(3, 16)` a shard."""
         given = self._all(options)
         part = Part(spoken(lambda: self._world.part(given)))
         part._options = {name: value for name, value in options.items() if not is_work(name)}
@@ -334,11 +345,12 @@ class World:
         every: float = 1.0,
         **options: Any,
     ) -> Pictures:
-        """Renders pictures. Options are those of `durer render` with the same meaning, defaults and bits: size, samples, show,
-        bounces, crop, noise_threshold, time_limit, threads, shard and all others that `durer.options()` lists.
+        """Renders pictures. Options are those of `durer render` with the same meaning, defaults and
+        bits: size, samples, show, bounces, crop, noise_threshold, time_limit, threads, shard and
+        all others that `durer.options()` lists.
 
-        `part` goes on with work that was begun; `callback` gets the pictures as far as they are, every so many seconds. Ctrl-C
-        and what a callback raises end it; what is made so far is in the part.
+        `part` continues earlier work; `callback` gets the pictures so far at regular intervals.
+        Ctrl-C and exceptions of a callback stop the render; the work so far is in the part.
         """
         if part is not None and options:
             self._same(part, options)
@@ -360,7 +372,7 @@ class World:
         return begun.pictures()
 
     def _same(self, part: Part, options: Mapping[str, Any]) -> None:
-        """Refuses options that ask for another picture than a part is of."""
+        """Refuses options that ask for another picture than the part's."""
 
         def differs(wanted: Mapping[str, Any]) -> bool:
             deciding = {name: value for name, value in wanted.items() if not is_work(name)}
@@ -374,7 +386,8 @@ class World:
             raise ValueError(f"the part is of another picture than {given} asks for: leave out what decides the picture")
 
     async def progressive(self, *, every: float = 1.0, **options: Any) -> AsyncIterator[Pictures]:
-        """Renders in a thread, and gives the pictures as far as they are every so many seconds, at last the finished ones."""
+        """Renders in a thread, and yields the pictures so far every `every` seconds, and finally
+        the finished ones."""
         part, stop = self.part(**options), False
 
         def look(done: int, total: int) -> None:
@@ -404,8 +417,8 @@ class World:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Surfaces:
-        """What each ray meets first among all objects: spheres, solids and meshes alike, as the pictures show them. Arrays are those
-        of `Mesh.closest`."""
+        """Returns the first hit of each ray among all objects, spheres, solids and meshes alike,
+        as in the pictures. Arguments are those of `Mesh.closest`."""
         shape, rays = asked(origins, directions, t_min, t_max)
         ids, values, places = self._world.closest(rays, threads_asked(threads), watch(progress))
         whole, other, place = ids.reshape(-1, 3), values.reshape(-1, 10), places.reshape(*shape, 4)
@@ -430,12 +443,13 @@ class World:
         threads: Optional[int] = None,
         progress: Progress = None,
     ) -> Bools:
-        """Whether each ray meets anything, glass too."""
+        """Returns True for each ray that hits anything, including glass."""
         shape, rays = asked(origins, directions, t_min, t_max)
         return self._world.occluded(rays, threads_asked(threads), watch(progress)).reshape(shape)
 
     def explain(self, x: int, y: int, **options: Any) -> dict[str, Any]:
-        """Why a pixel has its colour: a tree of terms that sums to it, as docs/explain.md tells. Give the options of the render."""
+        """Explains a pixel's colour as a tree of terms that sum to it; see docs/explain.md. Pass
+        the options of the render."""
         for name, value in (("x", x), ("y", y)):
             if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
                 raise ValueError(f"{name} must be the number of a pixel, 0 or more, but is {value!r}")
@@ -444,7 +458,8 @@ class World:
         return answer
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
-        """What is odd about it, in the order of cause, as `durer check --json` lists it."""
+        """Returns likely mistakes in the scene, causes first, as `durer check --json` lists
+        them."""
         given = self._all(options)
         found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(given)))
         return found
@@ -462,7 +477,8 @@ def load(path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: An
 
 
 def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
-    """What is wrong or odd with a scene file, also one that cannot be rendered: as `durer check --json` lists it."""
+    """Returns errors and likely mistakes of a scene file, even if it cannot be rendered, as
+    `durer check --json` lists them."""
     reading = {name: options.pop(name) for name in list(options) if is_reading(name)}
     try:
         return World.load(path, **reading).check(**options)
@@ -471,12 +487,12 @@ def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
 
 
 def options() -> dict[str, str]:
-    """The options of `World.render`, with what they do."""
+    """Returns the options of `World.render` with their help."""
     return {name.replace("-", "_"): stated.help for name, stated in STATEMENTS.items() if stated.group != "reading"}
 
 
 def kinds() -> dict[str, str]:
-    """The kinds of pictures that `show` takes beside color, with what they show."""
+    """Returns the kinds of pictures that `show` accepts beside color, with their descriptions."""
     return dict(_durer.Part.kinds())
 
 

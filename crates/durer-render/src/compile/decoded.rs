@@ -1,4 +1,4 @@
-//! Pictures from bytes to textures.
+//! Decoding of pictures to textures.
 
 use durer_diag::{Diagnostic, Diagnostics};
 use durer_image::{self as image, Encoded, ImageError, Raster};
@@ -6,17 +6,17 @@ use durer_scene::describe::FileName;
 use durer_scene::math::Vec3;
 use durer_scene::texture::Texture;
 
-/// What the eight bits of a picture mean.
+/// Meaning of a picture's eight-bit values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Encoding {
-    /// Colours, by sRGB's curve.
+    /// Colours with the sRGB curve.
     Srgb,
-    /// Other numbers, from 0 to 1.
+    /// Linear numbers from 0 to 1.
     Linear,
 }
 
-/// The texture of a picture, decoded within some bytes of memory: eight bits stay eight, finer ones
-/// become numbers.
+/// Decodes a picture into a texture within a memory limit. Eight-bit pictures stay eight-bit,
+/// others become floats.
 pub(super) fn decode(
     name: &FileName,
     path: &str,
@@ -49,7 +49,7 @@ pub(super) fn decode(
     }
 }
 
-/// What came of reading a picture; an error is said at the place that names it.
+/// Returns the picture, or reports the error where the scene names it.
 pub(super) fn used<T>(
     name: &FileName,
     path: &str,

@@ -1,4 +1,4 @@
-//! The files that a scene names: each is read and decoded once.
+//! Files that a scene names. Each is read and decoded once.
 
 use super::Resources;
 use super::decoded::{Encoding, decode, used};
@@ -22,33 +22,32 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What the tree and its building take for a while for each triangle.
+/// Temporary bytes a triangle for the tree and its construction.
 const TREE_BYTES: u64 = 200;
-/// What a height takes while normals are made: of its two triangles the normals at the corners, and
-/// these in the order of the crossings, three times four bytes each.
+/// Temporary bytes a height while normals are computed: the normals at the corners of its two
+/// triangles, also in crossing order, each three times four bytes.
 const HEIGHT_BYTES: u64 = 112;
 
-/// Columns of the picture of a sky.
+/// Width of a sky picture in pixels.
 const SKY_WIDTH: u32 = 512;
 
-/// A picture's name, and what its values mean.
+/// Name of a picture, and the meaning of its values.
 pub(super) type PictureKey = (String, Encoding);
 
 pub(super) struct Loader<'r> {
     pub(super) resources: Resources<'r>,
     rules: Rules,
     pub(super) assets: &'r Assets,
-    /// By path; `None` for files that could not be read, which are complained of once.
+    /// Meshes by path; `None` for unreadable files, which are reported once.
     meshes: HashMap<String, Option<Arc<MeshTree>>>,
     texture_numbers: HashMap<String, Option<u32>>,
-    /// Numbers of the textures of materials in layers, by the picture's name and the curve of its
-    /// values.
+    /// Indices of the textures of layered materials, by picture name and encoding.
     pub(super) map_numbers: HashMap<PictureKey, Option<u32>>,
-    /// What was decoded, by the name of the file or the bytes' place in memory.
+    /// Decoded pictures, by file name or by address in memory.
     pub(super) decoded: HashMap<PictureKey, Option<Texture>>,
-    /// The same with smaller versions of themselves.
+    /// Decoded pictures with mipmaps.
     pub(super) mipmapped: HashMap<PictureKey, Option<Texture>>,
-    /// What was decoded before somebody asked for it.
+    /// Pictures decoded in advance.
     pub(super) ahead: HashMap<PictureKey, Texture>,
     pub(super) textures: Vec<Texture>,
 }
@@ -69,14 +68,14 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// A mesh with its tree. For fewer rays than there are triangles a better one would take longer
-    /// than it saves; what rays hit is the same to the bit.
+    /// Builds the tree of a mesh. With fewer rays than triangles, a better tree would cost more
+    /// time than it saves. The hits are identical bit for bit.
     pub(super) fn tree(&self, mesh: Mesh) -> MeshTree {
         let few = self.resources.rays < mesh.len() as u64;
         MeshTree::new(mesh, if few { BuildQuality::Fast } else { BuildQuality::Balanced })
     }
 
-    /// The mesh of a file.
+    /// Returns the mesh of a file.
     pub(super) fn mesh(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         if let Some(known) = self.meshes.get(&name.path) {
             return known.clone();
@@ -109,11 +108,11 @@ impl<'r> Loader<'r> {
                 self.rules.has(Compat::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
             let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
-            // What the official program takes for a determinant of zero.
+            // The official program takes smaller determinants for zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };
             Arc::new(self.tree(mesh).least_volume(least_volume))
         });
-        // What there is to say of a file is said each time.
+        // Cache only meshes without diagnostics, which must be reported each time.
         if let (Some(kept), Some(origin), Some(tree), true) =
             (self.resources.kept, origin, &tree, diagnostics.iter().count() == said)
         {
@@ -123,27 +122,27 @@ impl<'r> Loader<'r> {
         tree
     }
 
-    /// What something is made of, if what is made is to be kept: a thing in memory by its hash,
-    /// else a file.
+    /// Returns the cache key of an asset if caching is on: the hash of data in memory, or the stamp
+    /// of a file.
     pub(super) fn origin(&self, path: &str, memory: impl FnOnce() -> Option<Digest>) -> Option<Origin> {
         self.resources.kept?;
         memory().map(Origin::Memory).or_else(|| self.resources.source.stamp(path).map(Origin::File))
     }
 
-    /// Counts a file among those that were read, which was read earlier.
+    /// Records a cached file as read.
     pub(super) fn remember(&self, path: &str, origin: Option<&Origin>, digest: Option<Digest>) {
         if let (Some(Origin::File(stamp)), Some(digest)) = (origin, digest) {
             self.resources.source.skip_reading(path, stamp, digest);
         }
     }
 
-    /// What a mesh file holds.
+    /// Reads a mesh file.
     fn mesh_file(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<MeshData> {
         let (decoder, quirks) = (self.resources.decoder, self.rules.compat);
         self.parsed(name, "mesh", diagnostics, |bytes, file, own| decoder.mesh(bytes, file, &name.path, quirks, own))
     }
 
-    /// What a reader makes of a file; its errors are followed by the place that names the file.
+    /// Parses a file; a note after its errors points to where the scene names the file.
     fn parsed<T>(
         &mut self,
         name: &FileName,
@@ -165,7 +164,7 @@ impl<'r> Loader<'r> {
         data
     }
 
-    /// The mesh of a height field.
+    /// Returns the mesh of a height field.
     pub(super) fn height_field(&mut self, field: &HeightField, diagnostics: &mut Diagnostics) -> Option<Arc<MeshTree>> {
         let name = &field.picture;
         let bytes = self.read(name, "picture of heights", diagnostics)?;
@@ -202,12 +201,12 @@ impl<'r> Loader<'r> {
         Some(Arc::new(self.tree(self.centered(Mesh::of_terrain(terrain, self.rules.mesh_normals)))))
     }
 
-    /// The mesh about the origin, if it lies far away; the official programs leave it there.
+    /// Moves a distant mesh to the origin, except in official programs.
     fn centered(&self, mesh: Mesh) -> Mesh {
         if self.rules.is_official() { mesh } else { mesh.centered() }
     }
 
-    /// The number of a picture's texture.
+    /// Returns the index of a picture's texture.
     pub(super) fn texture(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         if let Some(known) = self.texture_numbers.get(&name.path) {
             return *known;
@@ -222,7 +221,7 @@ impl<'r> Loader<'r> {
         number
     }
 
-    /// The cube map of a folder; where it may be missing, that is a warning.
+    /// Returns the cube map of a folder; a missing optional map is a warning.
     pub(super) fn cube_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<CubeMap> {
         let mut own = Diagnostics::default();
         let map = self.faces(name, &mut own);
@@ -236,7 +235,7 @@ impl<'r> Loader<'r> {
         map
     }
 
-    /// How strong a light shines in each direction, if a file says that.
+    /// Returns a light's intensity profile, if it has one.
     pub(super) fn profile(&mut self, light: &Light, diagnostics: &mut Diagnostics) -> Option<Arc<Profile>> {
         let name = light.profile()?;
         match self.assets.profiles.get(&name.path) {
@@ -249,7 +248,7 @@ impl<'r> Loader<'r> {
         }
     }
 
-    /// The densities of a file, and the box that they fill.
+    /// Returns the densities of a file, and the box that they fill.
     pub(super) fn density(
         &mut self,
         name: &FileName,
@@ -264,7 +263,7 @@ impl<'r> Loader<'r> {
         self.charge(name, grid.bytes() as u64, diagnostics).then(|| (bounds, Arc::new(grid)))
     }
 
-    /// A measured reflectance.
+    /// Returns a measured reflectance.
     pub(super) fn reflectance(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         let rows = self.curve(name, diagnostics)?;
         if let Some([nm, share]) = rows.iter().find(|row| row[1] > 1.0) {
@@ -275,7 +274,7 @@ impl<'r> Loader<'r> {
         Curve::reflectance(rows).map(Arc::new)
     }
 
-    /// The spectrum of a lamp: an illuminant by its name, else a file.
+    /// Returns the spectrum of a light: a named illuminant or a file.
     pub(super) fn illuminant(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Arc<Curve>> {
         if let Some(known) = illuminants::illuminant(&name.path) {
             return Some(Arc::new(known));
@@ -295,7 +294,7 @@ impl<'r> Loader<'r> {
         lamp.map(Arc::new)
     }
 
-    /// The rows of a file's only spectrum, or of the one that is named after a colon.
+    /// Returns the rows of a file's only spectrum, or of the one named after a colon.
     fn curve(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
         let (path, column) = match name.path.rsplit_once(':') {
             Some((path, column)) if !column.contains(['/', '\\']) => (path, Some(column)),
@@ -307,7 +306,7 @@ impl<'r> Loader<'r> {
         self.parsed(&file, "spectrum", diagnostics, read)
     }
 
-    /// The picture around a scene.
+    /// Returns the environment picture.
     pub(super) fn environment(&mut self, written: &Background, diagnostics: &mut Diagnostics) -> Option<Environment> {
         let Some(name) = written.environment.as_ref() else {
             if written.is_night() {
@@ -340,7 +339,7 @@ impl<'r> Loader<'r> {
         if environment.is_none() {
             let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);
             let warning = Diagnostic::warning(message).code("bad-file");
-            // What an option names has no place in the file.
+            // A name from an option has no place in the file.
             diagnostics.push(if name.span.is_place() { warning.at(name.span) } else { warning });
         }
         environment.filter(|environment| self.charge(name, environment.bytes() as u64, diagnostics))
@@ -356,15 +355,14 @@ impl<'r> Loader<'r> {
             let Some(bytes) = self.read(&file, "face of the cube map", &mut unread) else { break };
             files.push((file.path, bytes));
         }
-        // All are decoded at once, so each has what the others before it leave.
+        // All faces are decoded in parallel; each gets the memory that the ones before it leave.
         let mut memory = self.resources.memory;
         let mut left = Vec::with_capacity(6);
         for (path, bytes) in &files {
             left.push(memory);
             memory = memory.saturating_sub(Encoded::open(bytes, path).map_or(0, |face| face.needed_raster()));
         }
-        // Decoding takes longer than all else. The first face in order that is wrong is the one
-        // complained of.
+        // Decoding dominates. Report the first bad face in order.
         let srgb = self.rules.srgb_textures;
         let one = |((path, bytes), left): (&(String, Arc<[u8]>), &u64)| {
             let mut own = Diagnostics::default();
@@ -383,7 +381,7 @@ impl<'r> Loader<'r> {
         Some(CubeMap { faces: faces.try_into().ok()?, mirrored_back }).filter(|_| affordable)
     }
 
-    /// Takes memory from what is left; says so where there is too little.
+    /// Reserves memory; reports an error if there is too little.
     pub(super) fn charge(&mut self, name: &FileName, needed: u64, diagnostics: &mut Diagnostics) -> bool {
         let left = self.resources.memory;
         self.resources.memory = left.saturating_sub(needed);
@@ -395,9 +393,9 @@ impl<'r> Loader<'r> {
         needed <= left
     }
 
-    /// Reads a file; what goes wrong is said at the place that names it.
+    /// Reads a file; reports errors where the scene names it.
     pub(super) fn read(&self, name: &FileName, what: &str, diagnostics: &mut Diagnostics) -> Option<Arc<[u8]>> {
-        // Nobody would read of a file that is missing too.
+        // Skip the file if no more diagnostics are accepted.
         if diagnostics.is_full() {
             return None;
         }
@@ -411,7 +409,7 @@ impl<'r> Loader<'r> {
             SourceError::Missing { tried, near, .. } => {
                 let (help, folder) =
                     (missing_help(&tried, near.as_deref()), name.path.rfind('/').map_or(0, |at| at + 1));
-                // A face of a cube map is not named in the scene: only its folder is.
+                // The scene names only the folder of a cube map's faces.
                 match near.filter(|_| matches!(what, "mesh" | "texture" | "picture of heights")) {
                     Some(near) => diagnostic.help(help).fix(name.span, format!("{}{near}", &name.path[..folder])),
                     None => diagnostic.help(help),
@@ -425,7 +423,7 @@ impl<'r> Loader<'r> {
     }
 }
 
-/// Where a file was looked for, and a file there that has nearly its name.
+/// Returns help about the searched paths, and a file there with a similar name.
 fn missing_help(tried: &[PathBuf], near: Option<&str>) -> String {
     let shown: Vec<String> = tried.iter().map(|path| path.display().to_string()).collect();
     match near {

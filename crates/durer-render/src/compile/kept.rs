@@ -1,5 +1,4 @@
-//! What was made of a scene's files, for the next time that it is compiled: who watches a scene
-//! waits for what was changed alone.
+//! Cache of meshes and pictures between compilations: watching a scene only reloads what changed.
 
 use super::decoded::Encoding;
 use crate::world::MeshTree;
@@ -10,28 +9,28 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// What something was made of.
+/// Source of a cached item.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Origin {
-    /// A file, as it was then.
+    /// A file with its modification stamp.
     File(Stamp),
     /// Bytes or numbers in memory.
     Memory(Digest),
 }
 
-/// Meshes with their trees, and pictures of materials.
+/// Cached meshes with their trees, and cached pictures.
 #[derive(Debug, Default)]
 pub struct Kept(Mutex<Inside>);
 
 #[derive(Debug, Default)]
 struct Inside {
-    /// What the words meant of which the meshes were made.
+    /// Rules with which the meshes were built.
     rules: Option<Rules>,
     meshes: Items<Origin, Arc<MeshTree>>,
     pictures: Items<(Origin, Encoding), Texture>,
 }
 
-/// Things by what they were made of.
+/// Cached items by source.
 #[derive(Debug)]
 struct Items<K, V> {
     all: HashMap<K, Item<V>>,
@@ -39,21 +38,21 @@ struct Items<K, V> {
     reused: usize,
 }
 
-/// A thing that was made, and the hash of the file of which it was.
+/// A cached item, and the hash of its file.
 #[derive(Clone, Debug)]
 pub(super) struct Item<V> {
     pub thing: V,
     pub digest: Option<Digest>,
-    /// Whether the scene that is being compiled, or was last, has it.
+    /// True if the current or latest compilation uses it.
     used: bool,
 }
 
-/// How many things the scene that was compiled last has.
+/// Statistics of the cache for the latest compilation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reuse {
-    /// Those that were read and built for it.
+    /// Number of items that were read and built.
     pub made: usize,
-    /// Those that were there already.
+    /// Number of items that were reused.
     pub reused: usize,
 }
 
@@ -87,7 +86,7 @@ impl Kept {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// A scene is to be compiled. The same file is another mesh by other rules.
+    /// Starts a compilation. Other rules make other meshes, so they clear the cache.
     pub(super) fn begin(&self, rules: &Rules) {
         let mut inside = self.inside();
         if inside.rules.as_ref() != Some(rules) {
@@ -97,34 +96,34 @@ impl Kept {
         inside.pictures.begin();
     }
 
-    /// It was compiled: what it does not have is let go.
+    /// Ends a compilation; drops unused items.
     pub(super) fn finish(&self) {
         let mut inside = self.inside();
         inside.meshes.all.retain(|_, item| item.used);
         inside.pictures.all.retain(|_, item| item.used);
     }
 
-    /// A mesh that was made.
+    /// Returns a cached mesh.
     pub(super) fn mesh(&self, origin: &Origin) -> Option<Item<Arc<MeshTree>>> {
         self.inside().meshes.get(origin)
     }
 
-    /// Keeps a mesh.
+    /// Adds a mesh.
     pub(super) fn keep_mesh(&self, origin: Origin, mesh: &Arc<MeshTree>, digest: Option<Digest>) {
         self.inside().meshes.put(origin, Arc::clone(mesh), digest);
     }
 
-    /// A picture that was decoded.
+    /// Returns a cached picture.
     pub(super) fn picture(&self, origin: &Origin, encoding: Encoding) -> Option<Item<Texture>> {
         self.inside().pictures.get(&(origin.clone(), encoding))
     }
 
-    /// Keeps a picture.
+    /// Adds a picture.
     pub(super) fn keep_picture(&self, origin: Origin, encoding: Encoding, texture: &Texture, digest: Option<Digest>) {
         self.inside().pictures.put((origin, encoding), texture.clone(), digest);
     }
 
-    /// How many meshes and pictures were made and reused the last time.
+    /// Returns the numbers of meshes and pictures built and reused in the latest compilation.
     pub fn reuse(&self) -> Reuse {
         let inside = self.inside();
         Reuse { made: inside.meshes.made + inside.pictures.made, reused: inside.meshes.reused + inside.pictures.reused }

@@ -1,4 +1,4 @@
-//! Materials: the dialect's meaning of their words is worked in here.
+//! Compilation of materials: resolves the dialect's meaning of their fields.
 
 use super::files::Loader;
 use super::media;
@@ -25,7 +25,7 @@ pub(super) fn compile(
         scene::Material::Principled(layers) => Some(&**layers),
         _ => None,
     }));
-    // Boundaries of the same index share their tables.
+    // Boundaries of equal index share their tables.
     let mut tables = Vec::new();
     let mut one = |material: &scene::Spanned<scene::Material>| match &material.value {
         scene::Material::Solid(solid, ops) => {
@@ -67,7 +67,7 @@ pub(super) fn compile(
         }
         scene::Material::Hair(hair) => {
             let fibre = Fibre::new(hair);
-            // What Whitted's light makes of it.
+            // Appearance in Whitted's model.
             let highlight = Some((Color::splat(0.2), 20.0, HighlightModel::Blinn));
             let diffuse = fibre.color();
             Material::Phong(Phong { diffuse, highlight, fibre: Some(Arc::new(fibre)), ..Phong::default() })
@@ -80,7 +80,7 @@ pub(super) fn compile(
     scene.materials.iter().map(&mut one).collect()
 }
 
-/// A pattern with its two materials in the order of the dialect's program.
+/// Swaps a pattern's materials if the dialect's program does.
 fn meant(solid: &Solid, scene: &Scene, rules: &Rules) -> Solid {
     let is_solid =
         |i: u32| matches!(scene.materials.get(i as usize).map(|m| &m.value), Some(scene::Material::Solid(..)));
@@ -118,12 +118,12 @@ fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, 
     }
 }
 
-/// What Whitted's light makes of layers: the matte base, a highlight as wide as GGX's, metals that
-/// are mirrors, and glass.
+/// Approximates layers in Whitted's model: matte base, a highlight as wide as GGX's, metals as
+/// mirrors, and glass.
 fn plain(m: &PrincipledMaterial) -> Phong {
     let base = m.base_weight * m.base_color;
     let matte = (1.0 - m.base_metalness) * (1.0 - m.transmission_weight);
-    // Blinn's exponent of the same width at its middle; after Walter and others, *Microfacet Models
+    // Blinn's exponent with the same width at the peak; after Walter and others, *Microfacet Models
     // for Refraction*, 2007.
     let alpha = (m.specular_roughness * m.specular_roughness).max(1e-3);
     let exponent = (2.0 / (alpha * alpha) - 2.0).max(1.0);
@@ -137,7 +137,7 @@ fn plain(m: &PrincipledMaterial) -> Phong {
         highlight: (reflects != Color::ZERO).then_some((reflects, exponent, HighlightModel::Blinn)),
         reflective: if glass { m.specular_color } else { smooth * m.base_metalness * base },
         transparent: m.transmission_weight * m.transmission_color,
-        // A sheet bends no light.
+        // A thin sheet does not bend light.
         ior: if m.walls == Walls::Thin { 1.0 } else { m.specular_ior },
         fresnel: glass && m.walls == Walls::Solid,
         ..Phong::default()
@@ -155,8 +155,8 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
         (Highlight::Blinn, exponent, shininess) => blinn(exponent.or(shininess).unwrap_or(1.0)),
         (Highlight::Phong, exponent, shininess) => {
             let shininess = shininess.or(exponent).unwrap_or(0.0);
-            // Without sharpness there is nothing to see, but for the programs that take 0 to the
-            // power of 0.
+            // An exponent of 0 gives no highlight, except in programs that evaluate 0 to the power
+            // of 0.
             if shininess > 0.0 || rules.has(Compat::PowZero) { phong(shininess) } else { None }
         }
         (Highlight::ByKeyword, Some(exponent), _) => blinn(exponent),
@@ -165,13 +165,13 @@ fn highlight(m: &PhongMaterial, rules: &Rules) -> Option<(Color, f32, HighlightM
     }
 }
 
-/// The index of glass that divides light by Fresnel's law, if it is such.
+/// Returns the index of refraction if the material is glass with Fresnel's law.
 fn glass(m: &PhongMaterial, rules: &Rules) -> Option<f32> {
     let divides = matches!(rules.secondary, Secondary::SpecularFresnel | Secondary::ByKeyword);
     m.refraction_index.filter(|index| divides && *index > 0.0)
 }
 
-/// Weights of the mirrored and the transmitted ray, and the index of refraction.
+/// Returns the weights of the reflected and the transmitted ray, and the index of refraction.
 fn secondary(m: &PhongMaterial, rules: &Rules) -> (Color, Color, Option<f32>) {
     let specular = m.specular_color;
     match (rules.secondary, glass(m, rules)) {

@@ -1,4 +1,4 @@
-//! Media: what is inside of bodies, and in the air.
+//! Compilation of media: interiors of objects, and fog.
 
 use super::files::Loader;
 use durer_diag::{Diagnostic, Diagnostics};
@@ -8,7 +8,7 @@ use durer_scene::math::{Aabb, Affine, Color, Vec3, fp};
 use durer_scene::medium::{Fog, HenyeyGreenstein, Medium, Place};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// What fills a body of a material, if light loses something there.
+/// Returns the interior medium of a material, if it absorbs or scatters.
 pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     if m.walls == Walls::Thin {
         return None;
@@ -20,16 +20,16 @@ pub(super) fn inside(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &
     m.has_subsurface().then(|| subsurface(m))
 }
 
-/// Source: OpenPBR, *Translucent base*: with a colour T that is left after a depth, extinction is
-/// -ln T / depth, and scattering is the scattered colour over the depth.
+/// Medium of the transmission layer. Source: OpenPBR, *Translucent base*: with a colour T after a
+/// depth, extinction is -ln T / depth, and scattering is the scattered colour over the depth.
 fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     if m.transmission_depth <= 0.0 {
         return None;
     }
-    // Black would never be reached.
+    // Black would need infinite extinction.
     let extinction = m.transmission_color.map(|c| -fp::ln(c.clamp(1e-6, 1.0)) / m.transmission_depth);
     let scattering = m.transmission_scatter.max(Vec3::ZERO) / m.transmission_depth;
-    // Absorption below 0 is raised for all colours, so that the hue stays.
+    // Raise negative absorption for all colours equally, to keep the hue.
     let absorption = extinction - scattering;
     let absorption = absorption - absorption.min_element().min(0.0);
     let extinction = if scattering == Color::ZERO { extinction } else { absorption + scattering };
@@ -37,7 +37,7 @@ fn transmission(m: &PrincipledMaterial) -> Option<Medium> {
     (extinction != Color::ZERO).then(|| medium(extinction, scattering, phase))
 }
 
-/// How dense it is inside of a body where it is not the same everywhere.
+/// Returns the density field of an interior, if it is not uniform.
 fn density(m: &PrincipledMaterial, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Place> {
     let name = m.transmission_density.as_ref()?;
     let (bounds, grid) = loader.density(name, diagnostics)?;
@@ -67,7 +67,7 @@ fn medium(extinction: Color, scattering: Color, phase: HenyeyGreenstein) -> Medi
     Medium { extinction, albedo, phase, place: None }
 }
 
-/// The medium whose half-space shows a colour.
+/// Returns the medium whose half-space has a given albedo.
 ///
 /// Source: OpenPBR, *Subsurface*; the inversion after Kulla and Conty, *Revisiting Physically Based
 /// Shading at Imageworks*, 2017.
@@ -87,7 +87,7 @@ fn subsurface(m: &PrincipledMaterial) -> Medium {
     }
 }
 
-/// Whether a surface does nothing but bound a medium.
+/// Returns true if a surface only bounds a medium.
 pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
     let tint = m.transmission_depth > 0.0 || m.transmission_color == Vec3::ONE;
     m.walls == Walls::Solid
@@ -100,7 +100,7 @@ pub(super) fn is_interface(m: &PrincipledMaterial) -> bool {
         && m.emission_luminance == 0.0
 }
 
-/// What is in the air.
+/// Returns the medium of the air.
 pub(super) fn fog(written: &Fog, loader: &mut Loader, diagnostics: &mut Diagnostics) -> Option<Medium> {
     let corners = written.min.zip(written.max).map(|(min, max)| Aabb { min, max });
     let density = match &written.density {

@@ -1,4 +1,4 @@
-//! From the description to the world. The description ends here.
+//! Compiles the scene description into the world. No later stage needs the description.
 
 mod decoded;
 mod files;
@@ -31,47 +31,46 @@ pub use kept::{Kept, Reuse};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Which structure finds the objects that a ray may meet.
+/// Acceleration structure over the objects.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum AccelKind {
-    /// A tree of boxes.
+    /// A bounding volume hierarchy.
     #[default]
     Bvh,
-    /// A uniform grid, with these numbers of cells or suitable ones.
+    /// A uniform grid with these numbers of cells, or automatic ones.
     Grid(Option<[u32; 3]>),
-    /// None: everything is tested.
+    /// Brute force.
     None,
 }
 
-/// Where files come from while a scene is compiled.
+/// Resources for compiling a scene.
 pub struct Resources<'a> {
     /// Reads files that the scene names.
     pub source: &'a dyn AssetSource,
     /// Decodes meshes, photometric files, spectra and densities.
     pub decoder: &'a dyn AssetDecoder,
-    /// Remembers what was read, for diagnostics.
+    /// Keeps the texts of files for diagnostics.
     pub files: &'a mut Files,
-    /// Whether a scene whose cube map is missing is still compiled, with a warning and the
-    /// background's colour.
+    /// Turns a missing cube map into a warning, and uses the background's colour instead.
     pub sky_optional: bool,
-    /// Bytes that meshes and pictures may take.
+    /// Memory limit of meshes and pictures, in bytes.
     pub memory: u64,
-    /// About how many camera rays the world is for; as many as there can be where nobody knows.
+    /// Expected camera rays (`u64::MAX` if unknown): few rays get a faster BVH build.
     pub rays: u64,
-    /// What was made of the same files before, and is kept again.
+    /// Cache of meshes and pictures from earlier compilations.
     pub kept: Option<&'a Kept>,
 }
 
 impl<'a> Resources<'a> {
-    /// All the memory there is, for many rays, with nothing kept from before.
+    /// Unlimited memory, many rays, no cache.
     pub fn new(source: &'a dyn AssetSource, decoder: &'a dyn AssetDecoder, files: &'a mut Files) -> Self {
         Resources { source, decoder, files, sky_optional: false, memory: u64::MAX, rays: u64::MAX, kept: None }
     }
 }
 
-/// Turns a scene into a world. Errors and warnings are collected; with an error, there is no world.
+/// Compiles a scene into a world. Collects errors and warnings; returns `None` after an error.
 ///
-/// All values are checked first by [`Scene::validate`], wherever the scene comes from.
+/// First checks all values with [`Scene::validate`], whatever the source of the scene.
 pub fn compile(
     scene: &Scene,
     rules: &Rules,
@@ -112,7 +111,7 @@ pub fn compile(
     };
     match &scene.root {
         Some(root) => flattener.group(root, DAffine3::IDENTITY),
-        // The reader of a model has said so in its own words.
+        // The reader of a model has already reported it.
         None if diagnostics.iter().any(|known| known.code == "no-objects") => {}
         None => {
             let warning = Diagnostic::warning("the scene has no objects: it has no `Group`");
@@ -144,7 +143,7 @@ pub fn compile(
             *lamp = lamp.with_flux(profile);
         }
     }
-    // Numbers that JSON cannot tell apart, those that are not finite, are in no scene and no rules.
+    // Serialisation fails only for non-finite numbers, which valid scenes and rules do not have.
     let digest = loader.resources.source.record().digest(&serde_json::to_vec(&(scene, rules)).unwrap_or_default());
     let textures = loader.textures;
     let failed = own.has_errors();
@@ -158,7 +157,7 @@ pub fn compile(
     let contents = Contents {
         frame: CameraBasis::of(&camera, rules::camera_rules(rules)),
         camera,
-        // A picture around the scene takes the place of the colour, a black one too.
+        // An environment replaces the background colour, even if it is black.
         background: if environment.is_none() && (scene.background.environment.is_some() || scene.background.is_night())
         {
             Color::ZERO
@@ -183,7 +182,7 @@ pub fn compile(
     Some(world)
 }
 
-/// Makes the structure over a world's objects: at first, and anew after they were moved.
+/// Builds the acceleration structure over a world's objects, also after they have moved.
 pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let objects = world.objects();
     let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
@@ -224,20 +223,20 @@ pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>
     Ok(())
 }
 
-/// So many objects are tested one after the other, and simple shapes that take as long as so many
-/// spheres eight at a time, or by eight rays: a tree over them would cost more than it saves.
+/// Number of objects, and cost of simple shapes in units of spheres, up to which linear search is
+/// faster than a tree. Simple shapes are tested eight at a time, or against eight rays.
 const FEW: usize = 2;
 const FEW_SIMPLE: usize = 16;
 
-/// Fewer simple shapes than this are tested one after the other: eight at a time take longer.
+/// Number of simple shapes below which packing by eight is slower than one by one.
 const MIN_PACKED: usize = 4;
 
-/// `bounds` are those of objects that do not stand outside.
+/// Builds the structure over the objects with these bounds; `None` for unbounded objects.
 fn build_accel(world: &World, kind: AccelKind, bounds: Vec<Option<Aabb>>) -> Result<Accel, Box<Diagnostic>> {
     let cells = match kind {
         AccelKind::None => return Ok(Accel::None),
         AccelKind::Bvh => {
-            // What has an empty box here is left out.
+            // Empty boxes are ignored.
             let boxes: Vec<Aabb> = bounds.into_iter().map(|bounds| bounds.unwrap_or(Aabb::EMPTY)).collect();
             return Ok(Accel::Bvh(Bvh::build(&boxes)));
         }
@@ -282,7 +281,7 @@ fn check_sun(scene: &Scene, diagnostics: &mut Diagnostics) {
     }
 }
 
-/// Tells of words of the background that say how something looks which is not there.
+/// Warns of sky fields that have no effect.
 fn check_sky(scene: &Scene, diagnostics: &mut Diagnostics) {
     let sky = &scene.background;
     let (standard, sun) = (sky.cie_sky.is_some(), !matches!(sky.way_to_sun(), Ok(None)));
@@ -311,25 +310,24 @@ fn check_camera(scene: &Scene, pose: durer_scene::camera::Pose, diagnostics: &mu
     }
 }
 
-/// The sun that goes with a clear sky.
+/// Returns the sun of a clear sky.
 fn sun(background: &scene::Background) -> Option<Light> {
-    // Of the standard skies it is written where the sun is, but what they give is the sky's light
-    // alone.
+    // The standard skies use the sun's position, but emit the sky's light only.
     let way = background.sun().filter(|_| background.cie_sky.is_none() && !background.is_night())?;
     let sky = Sky::new(way, background.turbidity());
     let (turn, scale) = background.environment_placing();
     let (sin, cos) = fp::sin_cos_degrees(f64::from(-turn));
     let [sin, cos] = [sin, cos].map(|x| x as f32);
     let way = Vec3::new(cos * way.x + sin * way.z, way.y.max(0.0), cos * way.z - sin * way.x);
-    // A light's colour is what a white matte surface shows: illuminance over pi.
+    // A light's colour is the radiance of a white matte surface: illuminance over pi.
     let color = scale * sky.sun() / std::f32::consts::PI;
     Some(DirectionalLight { direction: -way, color, spread: Some(SUN_RADIUS), ..Default::default() }.into())
 }
 
-/// The lights, and the ambient light that goes with them.
+/// Returns the lights and the ambient light.
 fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<Light>, Color) {
     let written = scene.lights.as_deref().unwrap_or_default();
-    // Light comes from surfaces or from all around.
+    // Light comes from emissive surfaces or the environment.
     if written.is_empty() && scene.is_physical() {
         return (Vec::new(), scene.background.ambient_light);
     }
@@ -340,7 +338,7 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
                 ("the scene has no lights: colours are flat, as ambient as is written", scene.background.ambient_light)
             }
         };
-        // The first assignments have no lights, and ambient light of 1 1 1 as is meant.
+        // The first assignments intentionally have no lights and ambient light of 1 1 1.
         let meant = scene.background.ambient_light == Color::ONE;
         let finding = if meant { Diagnostic::note(message) } else { Diagnostic::warning(message) };
         diagnostics.push(finding.code("no-light"));
@@ -361,30 +359,30 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
     (written.iter().map(|light| rules::light(&light.value, rules)).collect(), scene.background.ambient_light)
 }
 
-/// Nested groups and transforms on their way to a flat list.
+/// Flattens nested groups and transforms into a list.
 struct SceneFlattener<'a, 'r> {
     objects: Vec<Object>,
     loader: &'a mut files::Loader<'r>,
     rules: &'a Rules,
     diagnostics: &'a mut Diagnostics,
     material_count: u32,
-    /// Whether some object needs the plain material behind the last.
+    /// True if some object needs the plain material after the last one.
     plain_needed: bool,
-    /// The first object without a material, and how many there are.
+    /// First object without a material, and their number.
     bare: Option<(Span, usize)>,
-    /// How many transforms are around the present object.
+    /// Number of transforms around the current object.
     transforms: u32,
-    /// An edge at which a mesh is open, if there is one, by its path.
+    /// An open edge of each checked mesh, by path; `None` for closed meshes.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
-/// Whether scenes of a dialect are trees of nodes, for words of help.
+/// Returns true if the dialect uses nodes, for help texts.
 fn is_nodes(rules: &Rules) -> bool {
     rules.name == Dialect::F23.name()
 }
 
 impl SceneFlattener<'_, '_> {
-    /// Says once that objects have no material.
+    /// Warns once of objects without a material.
     fn warn_of_bare(&mut self) {
         let Some((span, count)) = self.bare else { return };
         let mut message = "this object has no material, and is drawn in plain grey".to_string();
@@ -426,7 +424,7 @@ impl SceneFlattener<'_, '_> {
         MatrixOp::product(ops, rules::matrix_rules(self.rules))
     }
 
-    /// A shape or mesh, placed in the world; `None` after an error.
+    /// Places a shape or mesh in the world; `None` after an error.
     fn shape(&mut self, object: &scene::Object, to_world: DAffine3) -> Option<Object> {
         let geometry = match &object.node {
             Node::Primitive(Primitive::Triangle(t)) if self.rules.has(Compat::LooseTriangles) => {
@@ -442,7 +440,7 @@ impl SceneFlattener<'_, '_> {
             }
             Node::Group(_) | Node::Transform(..) | Node::Solid(..) => return None,
         };
-        // What is far from the origin of coordinates for its size would lose digits there.
+        // Move distant shapes to the origin, where they keep full precision.
         let (geometry, center) = match geometry {
             Geometry::Primitive(shape) if !self.rules.is_official() && shape.bounds().is_some_and(Aabb::is_far) => {
                 let (shape, center) = shape.centered().unwrap_or((shape, Vec3::ZERO));

@@ -1,4 +1,4 @@
-//! Pictures that materials name: each is decoded once, whatever number of textures shows it.
+//! Pictures of materials. Each is decoded once, however many textures use it.
 
 use super::decoded::{Encoding, decode};
 use super::files::{Loader, PictureKey};
@@ -16,8 +16,7 @@ use rayon::prelude::*;
 use std::collections::HashSet;
 
 impl Loader<'_> {
-    /// The number of a texture of a material in layers: an asset's, or a file's that repeats
-    /// without end.
+    /// Returns the index of a layered material's texture: an asset, or a file that repeats.
     fn map(&mut self, name: &FileName, encoding: Encoding, diagnostics: &mut Diagnostics) -> Option<u32> {
         let key = (name.path.clone(), encoding);
         if let Some(known) = self.map_numbers.get(&key) {
@@ -36,12 +35,12 @@ impl Loader<'_> {
         number
     }
 
-    /// The same of a picture of numbers.
+    /// Returns the index of a texture of numbers.
     pub(super) fn number_map(&mut self, name: &FileName, diagnostics: &mut Diagnostics) -> Option<u32> {
         self.map(name, Encoding::Linear, diagnostics)
     }
 
-    /// Where the bytes of a picture are, and how it lies.
+    /// Returns the source of a picture's bytes, and its mapping.
     fn found(&self, name: &FileName) -> (PictureBytes, Mapping) {
         if let Some(asset) = self.assets.pictures.get(&name.path) {
             return (asset.bytes.clone(), asset.mapping);
@@ -51,16 +50,15 @@ impl Loader<'_> {
         (PictureBytes::File(word.map_or(name.path.as_str(), |(path, _)| path).into()), mapping)
     }
 
-    /// Decodes the pictures of materials side by side, as far as memory has room for all of them
-    /// together. Those that cannot be had are left to whoever asks for them, and has a place to
-    /// complain at.
+    /// Decodes the pictures of materials in parallel, as far as memory allows for all of them.
+    /// Pictures that fail are left for later, where the error can be reported.
     pub(super) fn decode_ahead<'m>(&mut self, materials: impl Iterator<Item = &'m PrincipledMaterial>) {
         let mut left = self.resources.memory;
         let (mut packed, mut seen) = (Vec::new(), HashSet::new());
         for (name, encoding) in materials.flat_map(pictures) {
             let (bytes, _) = self.found(name);
             let key: PictureKey = (bytes.path().into(), encoding);
-            // Many materials may share a picture, which is looked at once.
+            // Materials may share a picture.
             if !seen.insert(key.clone()) {
                 continue;
             }
@@ -90,8 +88,7 @@ impl Loader<'_> {
         self.ahead = decoded.collect();
     }
 
-    /// The textures of a material in layers; what is wrong with one is said, and the material goes
-    /// without it.
+    /// Returns the textures of a layered material; reports errors, and omits those textures.
     pub(super) fn maps(&mut self, layers: &PrincipledMaterial, diagnostics: &mut Diagnostics) -> Maps {
         let mut one = |name: Option<&FileName>, encoding| name.and_then(|name| self.map(name, encoding, diagnostics));
         let mut maps = Maps {
@@ -121,7 +118,7 @@ impl Loader<'_> {
         maps
     }
 
-    /// A picture, decoded once whatever number of textures shows it.
+    /// Returns a picture, decoded once for all textures.
     pub(super) fn picture(
         &mut self,
         name: &FileName,
@@ -160,7 +157,7 @@ impl Loader<'_> {
         texture
     }
 
-    /// A picture with smaller versions of itself.
+    /// Returns a picture with mipmaps.
     fn mipmapped(
         &mut self,
         name: &FileName,
@@ -173,14 +170,14 @@ impl Loader<'_> {
             return known.clone();
         }
         let texture = self.picture(name, bytes, encoding, diagnostics);
-        // They take a third of what it takes itself: 1/4 + 1/16 + ...
+        // Mipmaps add a third: 1/4 + 1/16 + ...
         let texture = texture.filter(|texture| self.charge(name, texture.bytes() as u64 / 3, diagnostics));
         let texture = texture.map(Texture::with_levels);
         self.mipmapped.insert(key, texture.clone());
         texture
     }
 
-    /// What a picture is made of, if it is to be kept.
+    /// Returns the cache key of a picture if caching is on.
     fn picture_origin(&self, bytes: &PictureBytes) -> Option<Origin> {
         match bytes {
             PictureBytes::File(path) => self.origin(path, || None),
@@ -189,7 +186,7 @@ impl Loader<'_> {
     }
 }
 
-/// The pictures of a material in layers.
+/// Iterates over the pictures of a layered material.
 fn pictures(layers: &PrincipledMaterial) -> impl Iterator<Item = (&FileName, Encoding)> {
     let own = [
         (layers.emission_texture.as_ref(), Encoding::Srgb),

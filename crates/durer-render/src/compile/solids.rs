@@ -1,4 +1,4 @@
-//! Solids: what is combined must be closed.
+//! Compilation of solids: checks that parts are closed.
 
 use super::SceneFlattener;
 use crate::world::csg::Csg;
@@ -12,7 +12,7 @@ use glam::DAffine3;
 use std::sync::Arc;
 
 impl SceneFlattener<'_, '_> {
-    /// A solid with nothing but groups and transforms around it.
+    /// Compiles a solid below groups and transforms only.
     pub(super) fn solid(&mut self, span: Span, operation: Operation, parts: &[scene::Object], to_world: DAffine3) {
         let (errors, before) = (self.diagnostics.error_count(), self.objects.len());
         self.check_count(span, operation, parts);
@@ -30,7 +30,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// Parts of a union stay as they are, but must be closed as all parts are.
+    /// Compiles a part of a union, which stays a separate object but must be closed.
     fn part_of_union(&mut self, part: &scene::Object, to_world: DAffine3) {
         match &part.node {
             Node::Group(group) => {
@@ -46,7 +46,7 @@ impl SceneFlattener<'_, '_> {
         }
     }
 
-    /// A piece of a solid that is apart from the others becomes an object of its own.
+    /// Adds a disjoint piece of a solid as an object.
     fn piece(&mut self, piece: Solid, span: Span) {
         if let Solid::Operand(object) = piece {
             return self.objects.push(Arc::unwrap_or_clone(object));
@@ -80,7 +80,7 @@ impl SceneFlattener<'_, '_> {
         parts.iter().filter_map(|part| self.closed(part, to_world)).collect()
     }
 
-    /// A part of a solid, which must be closed; `None` after an error.
+    /// Compiles a part of a solid, which must be closed; `None` after an error.
     fn closed(&mut self, part: &scene::Object, to_world: DAffine3) -> Option<Solid> {
         match &part.node {
             Node::Group(group) => {
@@ -133,7 +133,7 @@ impl SceneFlattener<'_, '_> {
     }
 }
 
-/// Some solids as one; `None` of none.
+/// Combines solids into one; `None` if there are none.
 fn joined(operation: Operation, mut parts: Vec<Solid>) -> Option<Solid> {
     if parts.is_empty() {
         return None;

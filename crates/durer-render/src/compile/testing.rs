@@ -1,4 +1,4 @@
-//! Worlds for tests of other rooms.
+//! Worlds for tests of other modules.
 
 use super::*;
 use crate::world::World;
@@ -11,7 +11,7 @@ use glam::DAffine3;
 use std::cell::RefCell;
 use std::path::Path;
 
-/// The world of a scene file's text, and the findings about it.
+/// Compiles a scene text; also returns its diagnostics.
 pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (Option<World>, Diagnostics) {
     let mut files = Files::default();
     let file = files.add("scene.txt", text.as_bytes().into());
@@ -26,20 +26,20 @@ pub fn try_read(text: &str, rules: &Rules, accel: AccelKind, folder: &Path) -> (
     (world, diagnostics)
 }
 
-/// The world of a scene file's text, by our own dialect's rules.
+/// Compiles a scene text with our own dialect's rules.
 pub fn read(text: &str) -> World {
     let (world, diagnostics) = try_read(text, Dialect::Durer.rules(), AccelKind::Bvh, Path::new("."));
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// The words of a transform.
+/// Returns the text of a transform.
 pub fn matrix_words(affine: &DAffine3) -> String {
     let rows = glam::DMat4::from(*affine).transpose().to_cols_array();
     let words: Vec<String> = rows.iter().map(|x| format!("{:?}", *x as f32)).collect();
     format!("Matrix {{ {} }}", words.join(" "))
 }
 
-/// The world of one object, whose files are in a folder.
+/// Compiles a world of one object, with files from a folder.
 pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     let root = Group { objects: vec![object] };
     let camera = Some(durer_scene::camera::PerspectiveCamera::default().into());
@@ -50,7 +50,7 @@ pub fn object(object: scene::Object, accel: AccelKind, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{diagnostics:?}"))
 }
 
-/// Some shapes, each moved, and nothing else.
+/// Compiles a world of moved shapes.
 pub fn shapes(shapes: &[(Primitive, DAffine3)], accel: AccelKind) -> World {
     let object = |node| scene::Object { node, material: None, span: Default::default() };
     let moved = |(shape, affine): &(Primitive, DAffine3)| {

@@ -1,4 +1,4 @@
-//! What is refused on the way to a world, and with what words.
+//! Tests of errors in compilation and their messages.
 
 use super::testing::try_read;
 use super::*;
@@ -71,7 +71,7 @@ fn solids_are_made_of_closed_parts() {
     }
     let empty = format!("Group {{ Merge {{ {ball} Group {{ }} }} }}");
     assert_eq!(errors(&empty, AccelKind::Bvh), ["an empty `Group` cannot be part of a solid"]);
-    // What has no end may take part, and the whole may have none.
+    // Unbounded shapes are allowed, and the solid may be unbounded.
     let endless = format!("Group {{ Merge {{ {ball} Plane {{ normal 0 1 0 offset 0 }} }} }}");
     for accel in [AccelKind::Bvh, AccelKind::Grid(None), AccelKind::None] {
         assert_eq!(errors(&endless, accel), [""; 0]);
@@ -86,7 +86,7 @@ fn open_meshes_are_no_parts_and_closed_ones_are() {
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
     write("closed.obj", format!("{corners}{}", sides.concat()));
     write("open.obj", format!("{corners}{}", sides[..3].concat()));
-    // Every triangle has corners of its own, at the same places.
+    // Every triangle has its own corners at shared positions.
     write("loose.obj", format!("{corners}{corners}{}f 5 8 7\n", sides[..3].concat()));
     for (name, closed) in [("closed", true), ("open", false), ("loose", true)] {
         let text = format!(
@@ -141,7 +141,7 @@ fn height_fields_are_closed_landscapes() {
     let Geometry::Mesh(tree) = &world.objects()[0].geometry else { panic!() };
     assert_eq!(tree.mesh.open_edge(), None);
     assert_eq!((tree.mesh.len(), world.bounds().min, world.bounds().max.y), (4 + 18, [0.0, -0.5, 0.0].into(), 1.0));
-    // The white pixel is in the middle of the top row, which lies at the least z.
+    // The white pixel is in the middle of the top row, at the least z.
     let down = |x: f32, z: f32| {
         let ray = durer_scene::math::Ray::new([x, 5.0, z].into(), [0.0, -1.0, 0.0].into());
         world.closest(&ray, &mut ()).map(|hit| 5.0 - hit.t)
@@ -209,7 +209,7 @@ fn grids_that_cannot_be_made_are_refused() {
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([0, 1, 1]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(Some([256, 256, 256]))).len(), 1);
     assert_eq!(errors(&format!("Group {{ {balls} }}"), AccelKind::Grid(None)), [""; 0]);
-    // Nothing bounded: no grid is needed.
+    // Without bounded objects no grid is needed.
     assert_eq!(errors("Group { Plane { normal 0 1 0 offset 0 } }", AccelKind::Grid(None)), [""; 0]);
 }
 
@@ -226,13 +226,13 @@ fn tables_that_a_material_can_ask_for_are_worked_out_before_rays_are_traced() {
         ("specularRoughness 0 coatWeight 0.5 coatRoughness 0.2", [true, false, true]),
         ("baseMetalness 1 coatWeight 0.5 coatRoughness 0.2", [false, false, true]),
     ] {
-        // With half of its weight an opaque base has another index than glass.
+        // With half its specular weight, an opaque base has another index than glass.
         let text = format!("{CAMERA} Materials {{ PrincipledMaterial {{ specularWeight 0.5 {words} }} }} Group {{ }}");
         let world = super::testing::read(&text);
         let Material::Phong(phong) = &world.materials()[0] else { panic!("{words}") };
         let own = phong.principled.as_ref().unwrap();
         assert_eq!(own.tables.prepared(), opaque_glass_coat, "{words}");
-        // What points of it really ask for is among them.
+        // Shading asks for no other tables.
         let lanes = durer_scene::spectrum::Lanes::Rgb;
         let wo = Vec3::new(0.6, 0.0, 0.8);
         for inside in [false, true] {

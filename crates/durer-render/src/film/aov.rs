@@ -1,8 +1,7 @@
-//! What a picture can show beside colour: one table.
+//! Table of the pictures beside colour (AOVs).
 //!
-//! Most of these pictures are made of one ray through each pixel's centre, some of the sums of the
-//! colour's samples. Files of floating point get the values as they are; eight-bit files get a
-//! picture of them between 0 and 1.
+//! Most use one ray through each pixel's centre, some the sums of the colour's samples.
+//! Floating-point files get the values unchanged; eight-bit files get a mapping to 0 to 1.
 
 use super::false_color::LightScale;
 use super::{Film, luminance_of};
@@ -13,24 +12,24 @@ use durer_scene::math::{Aabb, Color, Vec3};
 use durer_scene::sampler::hash;
 use durer_scene::shape::Surface;
 
-/// What the ray through a pixel's centre found.
+/// Data from the ray through a pixel's centre.
 #[derive(Clone, Copy, Debug)]
 pub struct AovInput {
-    /// Whether the camera sees anything through this pixel.
+    /// True if the camera sees anything through this pixel.
     pub covered: bool,
-    /// What it met, if anything.
+    /// The first hit.
     pub hit: Option<Interaction>,
-    /// The diffuse colour hit.
+    /// Diffuse colour at the hit.
     pub albedo: Color,
-    /// The work for the pixel, with all secondary rays.
+    /// Traversal cost of the pixel, with all secondary rays.
     pub counts: TraversalStats,
-    /// The light that arrives at the surface, in lux where the scene's light is in cd/m^2, or in watts; 0 unless
-    /// it is asked for.
+    /// Illuminance at the surface, in lux if the scene's light is in cd/m^2, or in watts; 0 unless
+    /// requested.
     pub illuminance: f32,
 }
 
 impl AovInput {
-    /// Where the camera sees nothing.
+    /// A pixel through which the camera sees nothing.
     pub const NOTHING: AovInput = AovInput {
         covered: false,
         hit: None,
@@ -40,88 +39,88 @@ impl AovInput {
     };
 }
 
-/// What is known of a pixel from the samples of its colour: worked out where it is asked for.
+/// Statistics of a pixel's colour samples, computed on demand.
 #[derive(Clone, Copy, Debug)]
 pub struct Sums<'a> {
-    /// The pixel in its film; none where nothing is made of it.
+    /// Film and pixel; `None` if it has no samples yet.
     pub pixel: Option<(&'a Film, u32, u32)>,
-    /// The size of the samples' weights where their mean is 1, as [`Film::variance`] takes it.
+    /// Magnitude of the sample weights if their mean is 1, as [`Film::variance`] takes it.
     pub gain: f32,
-    /// What makes lumens of light, by colour, where that is in watts.
+    /// Luminous efficacy by colour channel, if light is in watts.
     pub lumens: Option<Vec3>,
 }
 
 impl Sums<'_> {
-    /// How many there are.
+    /// Returns the number of samples.
     pub fn samples(&self) -> u64 {
         self.pixel.map_or(0, |(film, x, y)| film.samples(x, y))
     }
 
-    /// Estimated variance of their mean luminance.
+    /// Returns the estimated variance of the mean luminance.
     pub fn variance(&self) -> f64 {
         self.pixel.map_or(f64::INFINITY, |(film, x, y)| film.variance(x, y, self.gain))
     }
 
-    /// Luminance of their mean.
+    /// Returns the luminance of the mean.
     pub fn luminance(&self) -> f64 {
         self.pixel.map_or(0.0, |(film, x, y)| brightness(film.resolve(x, y), self.lumens))
     }
 }
 
-/// The luminance of light, or its lumens where it is in watts.
+/// Returns the luminance of light, or its lumens if it is in watts.
 pub fn brightness(light: Color, lumens: Option<Vec3>) -> f64 {
     lumens.map_or_else(|| luminance_of(light), |lumens| light.as_dvec3().dot(lumens.as_dvec3()))
 }
 
-/// What is needed to make a picture of values.
+/// Parameters for displaying values.
 #[derive(Clone, Copy, Debug)]
 pub struct Display {
-    /// How values are shown.
+    /// Display rules of the dialect.
     pub look: DisplayRules,
-    /// Depths that become black and white; `None`: least and greatest of the picture.
+    /// Depths shown as black and white; `None`: minimum and maximum of the picture.
     pub depth_range: Option<(f32, f32)>,
-    /// What false colours stand for.
+    /// Scale of false colours.
     pub light_scale: LightScale,
-    /// The box of all values where something was hit.
+    /// Bounds of the values at hits.
     pub hits: Aabb,
-    /// The box of all values.
+    /// Bounds of all values.
     pub all: Aabb,
 }
 
-/// Whence the values of a picture come.
+/// Source of a picture's values.
 #[derive(Clone, Copy, Debug)]
 pub enum Value {
-    /// From the ray through the pixel's centre.
+    /// The ray through the pixel's centre.
     Ray(fn(&AovInput) -> Vec3),
-    /// From the samples of the colour.
+    /// The samples of the colour.
     Sums(fn(&Sums) -> Vec3),
 }
 
 /// One kind of picture.
 #[derive(Debug)]
 pub struct Aov {
-    /// Its name on the command line and in files.
+    /// Name on the command line and in files.
     pub name: &'static str,
-    /// What it shows.
+    /// Description.
     pub doc: &'static str,
-    /// The value at a pixel, as files of floating point have it.
+    /// Value at a pixel, as in floating-point files.
     pub value: Value,
-    /// The value as a colour; the flag tells whether anything was hit.
+    /// Value as a display colour; the flag is true for hits.
     pub picture: fn(Vec3, bool, &Display) -> Color,
-    /// Whether that colour depends on the values of other pixels too.
+    /// True if that colour depends on the values of other pixels.
     pub relative: bool,
-    /// The unit of values in false colours, whose scale is drawn beside them.
+    /// Unit of values in false colours, whose scale is drawn beside them.
     pub unit: Option<&'static str>,
 }
 
 impl Aov {
-    /// The one of a name.
+    /// Finds an AOV by name.
     pub fn from_name(name: &str) -> Option<&'static Aov> {
         AOVS.iter().find(|aov| aov.name == name)
     }
 }
 
-/// Gives pixels without a hit the colour of the hit before them: rows from the bottom, each from
+/// Gives pixels without a hit the colour of the previous hit, in rows from the bottom, each from
 /// the left.
 pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     let rows = pixels.len() / width.max(1);
@@ -137,7 +136,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// All kinds of picture beside colour.
+/// Every AOV.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
@@ -152,7 +151,7 @@ pub static AOVS: &[Aov] = &[
         doc: "the shading normal in world space",
         value: Value::Ray(|seen| of_surface(seen, |s| s.n_shade)),
         picture: normal_picture,
-        // Where nothing is hit, one quirk shows the normal hit last.
+        // For misses, one quirk shows the previous hit's normal.
         relative: true,
         unit: None,
     },
@@ -281,7 +280,7 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     let look = display.look;
     let (least, greatest) = (display.hits.min.x, display.hits.max.x);
     let (min, max) = match display.depth_range {
-        // A range that whole numbers cannot tell apart is left as it is.
+        // Keep a range whose ends truncate to the same integer.
         Some((min, max)) if look.whole_depths && min.trunc() != max.trunc() => (min.trunc(), max.trunc()),
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
@@ -300,14 +299,14 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
     })
 }
 
-/// A bright colour that differs from number to number.
+/// Returns a bright colour that differs between numbers.
 fn id_color(id: f32) -> Color {
     let bits = hash(0, id as u32, 0, 0, 0);
     let channel = |shift: u32| 0.25 + 0.75 * ((bits >> shift) & 0xff) as f32 / 255.0;
     Vec3::new(channel(0), channel(8), channel(16))
 }
 
-/// Black, blue, red, yellow, white as x goes from 0 to 1.
+/// Maps 0 to 1 to black, blue, red, yellow, white.
 pub(crate) fn heat(x: f32) -> Color {
     const STEPS: [Vec3; 5] =
         [Vec3::ZERO, Vec3::new(0.1, 0.1, 0.8), Vec3::new(0.9, 0.1, 0.1), Vec3::new(1.0, 0.9, 0.1), Vec3::ONE];

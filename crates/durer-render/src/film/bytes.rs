@@ -1,10 +1,10 @@
-//! Numbers as bytes: small ones take few of them.
+//! Variable-length encoding of integers.
 //!
-//! Whole numbers are written in groups of seven bits, the lowest first, the eighth bit telling that
-//! more follow (LEB128); signed ones alternate around zero (zigzag), so that small ones of either
+//! Integers are written in groups of seven bits, lowest first, where the eighth bit marks that more
+//! follow (LEB128). Signed integers alternate around zero (zigzag), so that small ones of either
 //! sign are short.
 
-/// Appends a whole number.
+/// Appends an unsigned integer.
 pub fn put(out: &mut Vec<u8>, mut number: u128) {
     while number > 0x7f {
         out.push(number as u8 | 0x80);
@@ -13,24 +13,25 @@ pub fn put(out: &mut Vec<u8>, mut number: u128) {
     out.push(number as u8);
 }
 
-/// Appends a number that may be negative.
+/// Appends a signed integer.
 pub fn put_signed(out: &mut Vec<u8>, number: i128) {
     put(out, ((number << 1) ^ (number >> 127)) as u128);
 }
 
-/// Reads numbers from bytes that may be cut or changed: then there is `None`, and never a panic.
+/// Reads numbers from untrusted bytes: returns `None` for truncated or invalid data, and never
+/// panics.
 #[derive(Clone, Copy, Debug)]
 pub struct Bytes<'a>(pub &'a [u8]);
 
 impl<'a> Bytes<'a> {
-    /// The next bytes.
+    /// Takes the next bytes.
     pub fn take(&mut self, count: usize) -> Option<&'a [u8]> {
         let (taken, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(taken)
     }
 
-    /// A whole number, if it fits its type.
+    /// Reads an unsigned integer, if it fits its type.
     pub fn whole<T: TryFrom<u128>>(&mut self) -> Option<T> {
         let mut number = 0_u128;
         for shift in (0..128).step_by(7) {
@@ -38,20 +39,20 @@ impl<'a> Bytes<'a> {
             let bits = u128::from(byte & 0x7f);
             number |= bits << shift;
             if byte < 0x80 {
-                // Bits that were shifted out make another number.
+                // Reject integers whose high bits were shifted out.
                 return if number >> shift == bits { number.try_into().ok() } else { None };
             }
         }
         None
     }
 
-    /// A number that may be negative, if it fits its type.
+    /// Reads a signed integer, if it fits its type.
     pub fn signed<T: TryFrom<i128>>(&mut self) -> Option<T> {
         let number: u128 = self.whole()?;
         ((number >> 1) as i128 ^ -((number & 1) as i128)).try_into().ok()
     }
 
-    /// Four bytes as they stand in memory: a floating-point number, bit for bit.
+    /// Reads a little-endian float, bit for bit.
     pub fn float(&mut self) -> Option<f32> {
         Some(f32::from_le_bytes(self.take(4)?.try_into().ok()?))
     }

@@ -1,22 +1,22 @@
-//! Light in false colours, with a scale beside it, as lighting engineers read pictures.
+//! False colours of light with a scale, as lighting engineers use them.
 
 use durer_scene::math::{Color, Vec3, fp};
 use serde::{Deserialize, Serialize};
 
-/// Which values the colours stand for.
+/// Range of values for the colours.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct LightScale {
-    /// The value of the first colour, dark blue.
+    /// Value of the first colour, dark blue.
     pub low: f32,
-    /// The value of the last, red; more than `low`.
+    /// Value of the last colour, red; more than `low`.
     pub high: f32,
-    /// Whether equal ratios are equal steps, and not equal differences; then `low` is more than 0.
+    /// True for a logarithmic scale, which needs `low` above 0.
     pub logarithmic: bool,
 }
 
 impl LightScale {
-    /// From 0 to what all but the brightest fiftieth of some values stay below: a lamp in sight
-    /// would leave no colours for the rest.
+    /// Returns a scale from 0 to the 98th percentile of the positive values. A visible emitter
+    /// would otherwise leave no colours for the rest.
     pub fn over(values: impl Iterator<Item = f32>) -> Self {
         let mut all: Vec<f32> = values.filter(|value| value.is_finite() && *value > 0.0).collect();
         all.sort_by(f32::total_cmp);
@@ -24,7 +24,7 @@ impl LightScale {
         LightScale { low: 0.0, high, logarithmic: false }
     }
 
-    /// Where a value lies, from 0 to 1.
+    /// Maps a value to 0 to 1.
     pub fn place(&self, value: f32) -> f32 {
         let share = match self.logarithmic {
             true if value <= 0.0 => 0.0,
@@ -34,7 +34,7 @@ impl LightScale {
         share.clamp(0.0, 1.0)
     }
 
-    /// The value at a place from 0 to 1.
+    /// Returns the value at a position from 0 to 1.
     fn value(&self, place: f32) -> f32 {
         match self.logarithmic {
             true => self.low * fp::exp(place * fp::ln(self.high / self.low)),
@@ -42,7 +42,7 @@ impl LightScale {
         }
     }
 
-    /// The colour of a value.
+    /// Returns the colour of a value.
     pub fn color(&self, value: f32) -> Color {
         const STEPS: [Vec3; 6] = [
             Vec3::new(0.02, 0.0, 0.12),
@@ -57,14 +57,14 @@ impl LightScale {
         STEPS[step].lerp(STEPS[step + 1], place - step as f32)
     }
 
-    /// Draws the scale over the right border of a picture: what colours mean, with numbers and
-    /// their unit. Small pictures have no room for it.
+    /// Draws a legend with numbers and unit over the right border of a picture, if it is large
+    /// enough.
     pub fn draw(&self, pixels: &mut [Color], width: usize, unit: &str) {
         const ROWS: usize = 8;
         let height = pixels.len() / width.max(1);
         let labels: Vec<String> = (0..=ROWS).map(|i| number(self.value(1.0 - i as f32 / ROWS as f32))).collect();
         let longest = labels.iter().map(String::len).chain([unit.len()]).max().unwrap_or(0);
-        // A letter is three points wide and five high, with one between.
+        // A glyph is three points wide and five high, plus one for spacing.
         let zoom = (height / 120).clamp(1, 8);
         let (bar, line) = (6 * zoom, 7 * zoom);
         let wide = bar + (4 * longest + 3) * zoom;
@@ -97,7 +97,7 @@ impl LightScale {
     }
 }
 
-/// Three digits of a number that count, without needless zeros.
+/// Formats a number with three significant digits, without trailing zeros.
 fn number(value: f32) -> String {
     let rounded = format!("{value:.2e}").parse::<f64>().unwrap_or(0.0);
     let text = if rounded != 0.0 && !(1e-3..1e7).contains(&rounded.abs()) {
@@ -108,7 +108,7 @@ fn number(value: f32) -> String {
     text.to_lowercase()
 }
 
-/// A letter of three by five points, its rows from the top; blank where there is none.
+/// Returns the rows of a 3x5 glyph from the top; blank for unknown characters.
 fn glyph(letter: char) -> [u8; 5] {
     match letter {
         '0' => [7, 5, 5, 5, 7],
@@ -146,11 +146,11 @@ mod tests {
                 let place = i as f32 / 10.0;
                 assert!((scale.place(scale.value(place)) - place).abs() < 1e-5);
             }
-            // What lies outside has the colours at the ends.
+            // Values outside get the colours at the ends.
             assert_eq!(scale.color(-1.0), scale.color(scale.low));
             assert_eq!(scale.color(f32::INFINITY), scale.color(scale.high));
         }
-        // A decade is as long as any other.
+        // All decades have equal length.
         let scale = LightScale { low: 1.0, high: 1e4, logarithmic: true };
         assert!((scale.place(10.0) - 0.25).abs() < 1e-6 && (scale.place(100.0) - 0.5).abs() < 1e-6);
         assert_eq!(LightScale::over([f32::NAN, 0.0].into_iter()).high, 1.0);
@@ -173,7 +173,7 @@ mod tests {
         LightScale::over([1000.0].into_iter()).draw(&mut pixels, width, "cd/m2");
         let touched = |x: usize| (0..height).any(|y| pixels[y * width + x] != Color::splat(0.25));
         assert!(touched(width - 1) && touched(width - 20) && !touched(width / 2));
-        // Its bar goes from red on top to dark blue.
+        // The bar runs from red at the top to dark blue.
         let column: Vec<Color> = (0..height).map(|y| pixels[y * width + width - 29]).collect();
         let scale = LightScale::over([1.0].into_iter());
         assert!(column.iter().any(|color| (*color - scale.color(1.0)).length() < 0.05), "{column:?}");

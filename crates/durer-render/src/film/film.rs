@@ -1,4 +1,4 @@
-//! Exact sums: samples are added as integers, so the order of adding and merging changes nothing.
+//! Exact sums: samples are added as integers, so the order of adding and merging does not matter.
 
 use super::bytes::{Bytes, put, put_signed};
 use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
@@ -6,15 +6,15 @@ use durer_scene::math::{Color, LUMINANCE_F64, Vec3};
 #[cfg(test)]
 mod tests;
 
-/// A window of a picture that adds up weighted samples, each pixel for itself.
+/// A window of a picture that accumulates weighted samples, each pixel separately.
 ///
-/// A weight is rounded once to a multiple of 2^-24, the product of colour and weight once to a
-/// multiple of 2^-48 (ties to even). From then on everything is integer addition. Colours are cut
-/// at 2^44 either way, and weights are up to 2^10: there is room in a pixel for 2^25 samples of the
-/// greatest colour and weight, and for 2^35 of the greatest colour at weight 1.
+/// A weight is rounded once to a multiple of 2^-24, and the product of colour and weight once to a
+/// multiple of 2^-48 (ties to even). Everything after that is integer addition. Colours are clamped
+/// to ±2^44, and weights are at most 2^10: a pixel holds 2^25 samples of the greatest colour and
+/// weight, and 2^35 of the greatest colour at weight 1.
 ///
-/// Beside the mean there are exact sums for its variance: luminances, rounded to multiples of 2^-28
-/// and cut at 2^14 either way, and their squares, with room for 2^21 samples.
+/// Exact sums for the variance of the mean: luminances, rounded to multiples of 2^-28 and clamped
+/// to ±2^14, and their squares, for up to 2^21 samples.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Film {
     left: u32,
@@ -33,20 +33,20 @@ pub(super) struct Pixel {
     pub(super) color: [i128; 3],
     /// Squares of luminances, in units of 2^-56.
     pub(super) squares: i128,
-    /// Luminances, not weighted, in units of 2^-28.
+    /// Sum of luminances without weights, in units of 2^-28.
     pub(super) luminance: i64,
     /// Weight, in units of 2^-24.
     pub(super) weight: i64,
-    /// The part of that weight whose samples saw something, in the same units.
+    /// Weight of the samples that hit something, in the same units.
     pub(super) covered: i64,
     pub(super) samples: u64,
 }
 
 impl Pixel {
-    /// Adds a sample that covers a share of the pixel; `false` if it is no finite number.
+    /// Adds a sample that covers a share of the pixel; returns `false` if it is not finite.
     #[inline]
     pub(super) fn add_any(&mut self, color: Color, share: f32, weight: f32) -> bool {
-        // Nearly all samples are small.
+        // Fast path: almost all samples are small.
         if share == 1.0 && Small::holds(color, weight) {
             let mut small = Small::default();
             small.add(color, weight);
@@ -56,15 +56,15 @@ impl Pixel {
         self.add(color.to_array().map(f64::from), weight.into(), share.into())
     }
 
-    /// The same; `false` if it is no finite number. What is too bright to be kept is cut.
+    /// Adds a sample; returns `false` if it is not finite. Clamps colours that are too bright.
     fn add(&mut self, rgb: [f64; 3], weight: f64, share: f64) -> bool {
         let weight = weight * WEIGHT_SCALE;
         if !(weight.abs() <= GREATEST_WEIGHT * WEIGHT_SCALE && rgb.iter().all(|c| c.is_finite())) {
             return false;
         }
         let rgb = rgb.map(|c| c.clamp(-GREATEST_COLOR, GREATEST_COLOR));
-        // At most 24 significant bits are left of the weight, so each product below is exact before
-        // its rounding.
+        // The weight has at most 24 significant bits, so each product below is exact before it is
+        // rounded.
         let weight = weight.round_ties_even();
         let scale = weight * (COLOR_SCALE / WEIGHT_SCALE);
         let luminance = luminance(rgb).clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE) * LUMINANCE_SCALE;
@@ -73,7 +73,7 @@ impl Pixel {
         true
     }
 
-    /// Whether so many samples, or fewer, can have these sums.
+    /// Checks sums read from a file: could `most_samples` samples produce them?
     fn is_possible(&self, most_samples: u32) -> bool {
         let (n, most) = (i128::from(self.samples), |greatest: f64, scale: f64| greatest as i128 * scale as i128);
         let within =
@@ -88,7 +88,7 @@ impl Pixel {
             && within(self.squares, luminance * luminance)
     }
 
-    /// Adds what [`Small`] has.
+    /// Adds the sums of a [`Small`].
     fn add_small(&mut self, small: &Small) {
         self.color.iter_mut().zip(small.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c.into()));
         self.luminance = self.luminance.wrapping_add(small.luminance);
@@ -98,15 +98,15 @@ impl Pixel {
         self.samples += small.samples;
     }
 
-    /// The sums of one sample of weight 1 that saw something.
+    /// Returns the sums of one covering sample of weight 1.
     pub(super) fn of_single(color: Color) -> Self {
         let mut pixel = Pixel::default();
         pixel.add_any(color, 1.0, 1.0);
         pixel
     }
 
-    /// The colour of which [`Pixel::of_single`] makes these sums. One sample of weight 1 has one:
-    /// what its colour is rounded to is a number of single precision again.
+    /// Returns the colour from which [`Pixel::of_single`] makes these sums. A sample of weight 1
+    /// has one, because its rounded colour is again a single-precision number.
     #[inline]
     pub(super) fn single(&self) -> Option<Color> {
         if self.samples != 1 || self.weight != WEIGHT_SCALE as i64 || self.covered != self.weight {
@@ -121,33 +121,33 @@ impl Pixel {
             let color = Color::from(color);
             return (Pixel::of_single(color) == *self).then_some(color);
         }
-        // What `add_small` makes of it.
+        // Same computation as in `add_small`.
         let is_same = rgb.iter().zip(&self.color).all(|(c, &sum)| i128::from((c * COLOR_SCALE) as i64) == sum)
             && whole_number(luminance(rgb) * LUMINANCE_SCALE) == self.luminance
             && i128::from(self.luminance) * i128::from(self.luminance) == self.squares;
         is_same.then(|| Color::from(color))
     }
 
-    /// As [`Film::resolve`].
+    /// Returns the mean; see [`Film::resolve`].
     #[inline]
     pub(super) fn mean(&self) -> Color {
         if self.weight == 0 {
             return Vec3::ZERO;
         }
-        // Each sum is rounded to double precision, then divided: two roundings, and one to single.
+        // Rounds each sum to double precision, divides, and rounds to single precision.
         let weight = self.weight as f64 / WEIGHT_SCALE;
         Vec3::from(self.color.map(|sum| (rounded(sum) / COLOR_SCALE / weight) as f32))
     }
 
-    /// As [`Film::coverage`].
+    /// Returns the coverage; see [`Film::coverage`].
     #[inline]
     pub(super) fn coverage(&self) -> f32 {
-        // Also where the weights sum to nothing: there all is seen that was looked for.
+        // Also if the weights sum to zero: then coverage counts as complete.
         if self.covered == self.weight {
             return 1.0;
         }
-        // Filters with negative weights may leave the range; where the weights sum to 0 the
-        // quotient is infinite.
+        // Negative filter weights may leave the range; if the weights sum to 0 the quotient is
+        // infinite.
         (self.covered as f64 / self.weight as f64).clamp(0.0, 1.0) as f32
     }
 
@@ -161,8 +161,8 @@ impl Pixel {
     }
 }
 
-/// Sums of up to [`MOST_SMALL`] samples of one pixel that cover it, of colours below [`SMALL_COLOR`]
-/// and weights of at most 1: the numbers that [`Pixel::add`] has, faster.
+/// Sums of up to [`MOST_SMALL`] covering samples of one pixel with colours below [`SMALL_COLOR`]
+/// and weights of at most 1: the same result as [`Pixel::add`], faster.
 #[derive(Default)]
 struct Small {
     color: [i64; 3],
@@ -186,18 +186,18 @@ impl Small {
         (0..3).for_each(|i| self.color[i] += whole_number(rgb[i] * scale));
         let luminance = whole_number(luminance(rgb) * LUMINANCE_SCALE);
         self.luminance += luminance;
-        // Below 2^62.
+        // The product is below 2^62.
         self.squares += i128::from(luminance * luminance);
         self.weight += weight;
         self.samples += 1;
     }
 }
 
-/// Sums of the sizes of a sample's red, green and blue below this, and weights up to 1, give
-/// products below 2^51 units.
+/// Bound on |red| + |green| + |blue| of a sample; with weights up to 1, products are below 2^51
+/// units.
 const SMALL_COLOR: f32 = 8.0;
 
-/// The products of so many fit 64 bits.
+/// Number of such products whose sum fits in 64 bits.
 const MOST_SMALL: usize = 1 << 11;
 
 const COLOR_SCALE: f64 = (1_u64 << 48) as f64;
@@ -209,71 +209,70 @@ const GREATEST_WEIGHT: f64 = (1_u64 << 10) as f64;
 const LUMINANCE_SCALE: f64 = (1_u64 << 28) as f64;
 const GREATEST_LUMINANCE: f64 = (1_u64 << 14) as f64;
 
-/// A sample that was left out because it is infinite or not a number. Ordered by row, column,
-/// sample.
+/// A sample that was rejected because it is infinite or NaN. Ordered by row, column, sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Rejected {
     /// Row from the top.
     pub y: u32,
     /// Column from the left.
     pub x: u32,
-    /// Number of the sample in its pixel.
+    /// Index of the sample in its pixel.
     pub sample: u32,
 }
 
-/// How many rejected samples are remembered.
+/// Number of rejected samples that are remembered.
 const REMEMBERED: usize = 16;
 
-/// The window of the film to merge does not lie in that of the other.
+/// The film to merge is not inside this film's window.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("a film of other pixels cannot be merged into this one")]
 pub struct WrongWindow;
 
 impl Film {
-    /// A black film of a whole picture.
+    /// Creates a black film of a whole picture.
     pub fn new(width: u32, height: u32) -> Self {
         Film::window(0, 0, width, height)
     }
 
-    /// A black film of a part of a picture. Pixels keep their places in the whole.
+    /// Creates a black film of a part of a picture. Pixel coordinates are those of the whole
+    /// picture.
     pub fn window(left: u32, top: u32, width: u32, height: u32) -> Self {
         let pixels = vec![Pixel::default(); width as usize * height as usize];
         Film { left, top, width, height, pixels, rejected: 0, first_rejected: Vec::new() }
     }
 
-    /// Columns and rows.
+    /// Returns width and height.
     pub fn size(&self) -> (u32, u32) {
         (self.width, self.height)
     }
 
-    /// Adds a sample of some weight (up to 2^10 in size) to a pixel. Panics outside the window.
+    /// Adds a sample with a weight (magnitude up to 2^10) to a pixel. Panics outside the window.
     pub fn add(&mut self, x: u32, y: u32, sample: u32, color: Color, weight: f32) {
         self.add_if_seen(x, y, sample, Some(color), weight);
     }
 
-    /// The same for a sample at which the camera may see nothing: it leaves the pixel transparent
-    /// by its weight.
+    /// Adds a sample that may be transparent: `None` reduces the pixel's coverage by its weight.
     pub fn add_if_seen(&mut self, x: u32, y: u32, sample: u32, color: Option<Color>, weight: f32) {
         self.add_covering(x, y, sample, color.map_or((Color::ZERO, 0.0), |color| (color, 1.0)), weight);
     }
 
-    /// The same for samples of one pixel that follow each other, with a weight for each colour.
+    /// Adds consecutive samples of one pixel, with a weight for each colour.
     pub fn add_seen(&mut self, x: u32, y: u32, first: u32, colors: &[Color], weights: &[f32]) {
         let holds = |&(color, weight): &(&Color, &f32)| Small::holds(*color, *weight);
         let small = colors.iter().zip(weights).take(MOST_SMALL).take_while(holds).count();
-        // Nothing is called in this loop, so that sums stay in registers.
+        // No calls in this loop, so that sums stay in registers.
         let mut sums = Small::default();
         for (&color, &weight) in colors[..small].iter().zip(&weights[..small]) {
             sums.add(color, weight);
         }
         self.pixel_mut(x, y).add_small(&sums);
-        // Nearly always there are no others.
+        // Almost always empty.
         for i in small..colors.len() {
             self.add(x, y, first + i as u32, colors[i], weights[i]);
         }
     }
 
-    /// The same for a sample of a colour that covers only a share of the pixel, from 0 to 1.
+    /// Adds a sample that covers a share of the pixel, from 0 to 1.
     pub fn add_covering(&mut self, x: u32, y: u32, sample: u32, (color, share): (Color, f32), weight: f32) {
         if !self.pixel_mut(x, y).add_any(color, share, weight) {
             self.reject(Rejected { y, x, sample });
@@ -285,7 +284,7 @@ impl Film {
         &mut self.pixels[index]
     }
 
-    /// Counts a sample as left out; the first few in reading order are remembered.
+    /// Counts a rejected sample; remembers the first few in reading order.
     fn reject(&mut self, what: Rejected) {
         self.rejected += 1;
         let place = self.first_rejected.partition_point(|old| *old <= what);
@@ -295,12 +294,12 @@ impl Film {
         }
     }
 
-    /// Adds everything that a film of the same pixels or some of them holds.
+    /// Adds a film whose window is inside this one's.
     pub fn merge(&mut self, other: &Film) -> Result<(), WrongWindow> {
         if other.pixels.is_empty() {
             return Ok(());
         }
-        // Where both corners lie inside, all between does.
+        // The window is a rectangle, so it suffices to check two corners.
         let (right, bottom) = (other.width - 1, other.height - 1);
         let far = other.left.checked_add(right).zip(other.top.checked_add(bottom));
         let far = far.and_then(|(x, y)| self.index(x, y));
@@ -308,7 +307,7 @@ impl Film {
         for (row, source) in other.pixels.chunks_exact(other.width as usize).enumerate() {
             let start = first + row * self.width as usize;
             for (to, from) in self.pixels[start..].iter_mut().zip(source) {
-                // Sums from a file may be anything; wrapping, they are still the same in any order.
+                // Sums from a file may overflow; wrapping addition is still independent of order.
                 to.color.iter_mut().zip(from.color).for_each(|(sum, c)| *sum = sum.wrapping_add(c));
                 to.squares = to.squares.wrapping_add(from.squares);
                 to.luminance = to.luminance.wrapping_add(from.luminance);
@@ -317,19 +316,19 @@ impl Film {
                 to.samples = to.samples.wrapping_add(from.samples);
             }
         }
-        // Those not remembered come after sixteen others, and so they do in the union.
+        // Samples that `other` forgot come after sixteen others, also in the union.
         other.first_rejected.iter().for_each(|&r| self.reject(r));
         self.rejected = self.rejected.wrapping_add(other.rejected - other.first_rejected.len() as u64);
         Ok(())
     }
 
-    /// Appends the sums, and what was left out, as bytes: the same for the same sums. The window is
-    /// not among them.
+    /// Appends the sums and the rejected samples as bytes, without the window. Equal films give
+    /// equal bytes.
     pub fn write(&self, out: &mut Vec<u8>) {
         for pixel in &self.pixels {
             put(out, pixel.samples.into());
             put_signed(out, pixel.weight.into());
-            // Mostly nothing.
+            // Usually zero.
             put_signed(out, i128::from(pixel.weight) - i128::from(pixel.covered));
             pixel.color.iter().for_each(|&sum| put_signed(out, sum));
             put_signed(out, pixel.luminance.into());
@@ -342,9 +341,8 @@ impl Film {
         }
     }
 
-    /// Reads what [`Film::write`] wrote into this film, which must have the same window and got at
-    /// most so many samples a pixel. `None` if the bytes are something else, or sums that no
-    /// samples have.
+    /// Reads bytes of [`Film::write`] into this film, which must have the same window and at most
+    /// `most_samples` samples a pixel. Returns `None` for invalid bytes or impossible sums.
     pub fn read(mut self, bytes: &mut Bytes, most_samples: u32) -> Option<Self> {
         for pixel in &mut self.pixels {
             pixel.samples = bytes.whole()?;
@@ -371,52 +369,51 @@ impl Film {
         self.first_rejected.is_sorted().then_some(self)
     }
 
-    /// Weighted mean of a pixel's samples, those that saw nothing taken for black; black where the
-    /// weights sum to nothing. Panics outside the window.
+    /// Returns the weighted mean of a pixel's samples, where misses count as black; black if the
+    /// weights sum to zero. Panics outside the window.
     pub fn resolve(&self, x: u32, y: u32) -> Color {
         self.pixel(x, y).mean()
     }
 
-    /// The share of a pixel's samples that saw something, by weight, from 0 to 1. Panics outside
-    /// the window.
+    /// Returns the weighted share of a pixel's samples that hit something, from 0 to 1. Panics
+    /// outside the window.
     pub fn coverage(&self, x: u32, y: u32) -> f32 {
         self.pixel(x, y).coverage()
     }
 
-    /// Estimated variance of the pixel's mean luminance, from its samples: what is to be expected
-    /// of the square of its error. Infinite for fewer than two samples. Panics outside the
-    /// window.
+    /// Returns the estimated variance of the pixel's mean luminance, from its samples: the expected
+    /// squared error. Infinite for fewer than two samples. Panics outside the window.
     ///
-    /// For n samples y of mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the size of the
-    /// samples' weights where their mean is 1 (see [`super::FilterSampler::gain`]); each error
-    /// counts that much more.
+    /// For n samples y with mean m it is sum (y - m)^2 / (n (n - 1)). `gain` is the magnitude of
+    /// the sample weights if their mean is 1 (see [`super::FilterSampler::gain`]); it scales each
+    /// error.
     pub fn variance(&self, x: u32, y: u32, gain: f32) -> f64 {
         let pixel = self.pixel(x, y);
         let n = pixel.samples as f64;
         if pixel.samples < 2 {
             return f64::INFINITY;
         }
-        // Cut as those of the samples are.
+        // Clamped like the samples.
         let mean = luminance(self.resolve(x, y).to_array().map(f64::from));
         let mean = mean.clamp(-GREATEST_LUMINANCE, GREATEST_LUMINANCE);
         let sum = pixel.luminance as f64 / LUMINANCE_SCALE;
         let squares = pixel.squares as f64 / (LUMINANCE_SCALE * LUMINANCE_SCALE);
-        // Of equal samples a rounding is left, which may be negative.
+        // For equal samples, rounding may leave a small negative number.
         let deviation = (squares - 2.0 * mean * sum + mean * mean * n).max(0.0);
         deviation / (n * (n - 1.0)) * f64::from(gain) * f64::from(gain)
     }
 
-    /// How many samples a pixel holds, without those left out. Panics outside the window.
+    /// Returns the number of samples of a pixel, without rejected ones. Panics outside the window.
     pub fn samples(&self, x: u32, y: u32) -> u64 {
         self.pixel(x, y).samples
     }
 
-    /// How many samples were left out.
+    /// Returns the number of rejected samples.
     pub fn rejected(&self) -> u64 {
         self.rejected
     }
 
-    /// The first sixteen of the samples left out, whatever the order they came in.
+    /// Returns the first sixteen rejected samples in reading order.
     pub fn first_rejected(&self) -> &[Rejected] {
         &self.first_rejected
     }
@@ -431,27 +428,25 @@ impl Film {
     }
 }
 
-/// A sum in double precision, rounded once. Nearly all fit 64 bits, for which there is an
-/// instruction.
+/// Rounds a sum to double precision. Almost all fit in 64 bits, for which there is an instruction.
 fn rounded(sum: i128) -> f64 {
     i64::try_from(sum).map_or_else(|_| sum as f64, |small| small as f64)
 }
 
-/// The luminance of a colour.
+/// Returns the luminance of a colour.
 pub fn luminance([r, g, b]: [f64; 3]) -> f64 {
     LUMINANCE_F64[0] * r + LUMINANCE_F64[1] * g + LUMINANCE_F64[2] * b
 }
 
-/// The same of a colour in single precision.
+/// Returns the luminance of a single-precision colour.
 pub fn luminance_of(color: Color) -> f64 {
     luminance(color.to_array().map(f64::from))
 }
 
-/// The nearest whole number, ties to even, of a number below 2^51 in size.
+/// Rounds a number below 2^51 in magnitude to the nearest integer, ties to even.
 ///
-/// A sum with 3 * 2^51 has no bits below 1 left, so it is rounded, and its bits count on from those
-/// of 3 * 2^51 by one for each whole number. There is no instruction that rounds in what all
-/// processors of a kind have.
+/// Adding 3 * 2^51 leaves no bits below 1, so the sum is rounded, and its bits exceed those of 3 *
+/// 2^51 by the integer. The baseline instruction sets lack a rounding instruction.
 fn whole_number(x: f64) -> i64 {
     const MAGIC: f64 = 3.0 * (1_u64 << 51) as f64;
     debug_assert!(x.abs() < (1_u64 << 51) as f64);

@@ -1,10 +1,9 @@
-//! Reconstruction filters: how much a sample at some offset from a pixel's centre counts for the
-//! pixel.
+//! Reconstruction filters: the weight of a sample at an offset from a pixel's centre.
 //!
-//! All are products of one function of `dx` and the same of `dy`, zero beyond the radius. They are
-//! importance-sampled: a uniform position is warped to an offset whose density is the filter's
-//! absolute value, so every sample of a pixel counts the same (but for a sign) and none touches
-//! another pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition,
+//! Each filter is a product of the same function of `dx` and of `dy`, zero beyond the radius.
+//! Filters are importance-sampled: a uniform position is warped to an offset whose density is the
+//! filter's absolute value, so every sample of a pixel has the same weight (up to sign) and affects
+//! no other pixel. Source: Pharr, Jakob, Humphreys, *Physically Based Rendering*, 4th edition,
 //! section 8.8.
 
 use durer_scene::math::{Vec2, fp};
@@ -17,7 +16,7 @@ mod tests;
 /// A reconstruction filter. Lengths are in pixels and must be positive and finite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Filter {
-    /// The same weight everywhere: sharp, aliases.
+    /// Constant weight: sharp, aliases.
     Box {
         /// Half the width.
         radius: f32,
@@ -27,7 +26,7 @@ pub enum Filter {
         /// Half the width.
         radius: f32,
     },
-    /// exp(-d^2 / (2 sigma^2)), lowered so that it meets zero at the radius.
+    /// exp(-d^2 / (2 sigma^2)), shifted to be zero at the radius.
     Gaussian {
         /// Standard deviation.
         sigma: f32,
@@ -57,7 +56,7 @@ impl Default for Filter {
 }
 
 impl Filter {
-    /// Every filter at its usual size, with its name on the command line.
+    /// Every filter at its default size, with its name on the command line.
     pub const NAMES: [(&'static str, Filter); 5] = [
         ("box", Filter::Box { radius: 0.5 }),
         ("tent", Filter::Tent { radius: 1.0 }),
@@ -66,12 +65,12 @@ impl Filter {
         ("mitchell", Filter::Mitchell { radius: 2.0 }),
     ];
 
-    /// The filter of a name at its usual size, if there is one.
+    /// Returns the filter of a name at its default size.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, filter)| filter)
     }
 
-    /// The same filter with another radius; a Gaussian's sigma grows with it.
+    /// Returns the filter with another radius; a Gaussian's sigma scales with it.
     pub fn with_radius(self, radius: f32) -> Self {
         match self {
             Filter::Box { .. } => Filter::Box { radius },
@@ -82,7 +81,7 @@ impl Filter {
         }
     }
 
-    /// Half the width in pixels: the weight is zero farther out.
+    /// Returns half the width in pixels: the weight is zero farther out.
     pub fn radius(self) -> f32 {
         match self {
             Filter::Box { radius }
@@ -93,13 +92,13 @@ impl Filter {
         }
     }
 
-    /// The weight at an offset from the pixel's centre, in pixels. Not normalised; negative in
-    /// Mitchell's lobes.
+    /// Returns the weight at an offset from the pixel's centre, in pixels. Not normalised; negative
+    /// in Mitchell's lobes.
     pub fn weight(self, dx: f32, dy: f32) -> f32 {
         self.profile(dx.abs()) * self.profile(dy.abs())
     }
 
-    /// The filter along one axis, at a distance of 0 or more.
+    /// Returns the filter along one axis, at a distance of 0 or more.
     fn profile(self, d: f32) -> f32 {
         if d > self.radius() {
             return 0.0;
@@ -126,30 +125,30 @@ impl Filter {
         }
     }
 
-    /// Prepares importance sampling: a table of 16 KiB, made once a render.
+    /// Prepares importance sampling: a table of 16 KiB, built once a render.
     pub fn sampler(self) -> FilterSampler {
         FilterSampler::new(self)
     }
 }
 
-/// Draws offsets in proportion to a filter's absolute value.
+/// Samples offsets in proportion to a filter's absolute value.
 ///
-/// Along an axis the filter's integral is inverted once, at `SHARES + 1` knots; between two knots
-/// all distances are equally likely. So each share of the filter lies where it belongs, and an
-/// offset is off by less than the width of its share: on average by less than a thousandth of the
-/// radius (a test).
+/// The filter's integral along an axis is inverted once, at `SHARES + 1` knots; between two knots
+/// the density is constant. An offset is off by less than the width of its share: on average by
+/// less than a thousandth of the radius, as a test checks.
 #[derive(Clone, Debug)]
 pub struct FilterSampler {
     filter: Filter,
-    /// The distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
+    /// Distances within which 0, 1, 2, ... of `SHARES` equal shares of the absolute filter lie.
     knots: Box<[f32; SHARES + 1]>,
-    /// Integral of the absolute filter over that of the filter: how much a sample must count.
+    /// Integral of the absolute filter over that of the filter, squared for two axes: the magnitude
+    /// of sample weights.
     gain: f32,
 }
 
 const SHARES: usize = 2048;
 
-/// Steps from the centre to the radius in which the filter is integrated, as linear in each.
+/// Number of linear pieces from the centre to the radius for integrating the filter.
 const BINS: usize = 1024;
 
 impl FilterSampler {
@@ -158,7 +157,7 @@ impl FilterSampler {
         let values: Vec<f64> = (0..=BINS).map(value).collect();
         let trapezoid = |a: f64, b: f64| 0.5 * (a + b);
         let signed: f64 = values.windows(2).map(|pair| trapezoid(pair[0], pair[1])).sum();
-        // The integral of the absolute filter from the centre up to each bin's end.
+        // Integral of the absolute filter from the centre to the end of each bin.
         let parts = values.windows(2).map(|pair| trapezoid(pair[0].abs(), pair[1].abs()));
         let integral: Vec<f64> = std::iter::once(0.0)
             .chain(parts.scan(0.0, |sum, part| {
@@ -167,8 +166,7 @@ impl FilterSampler {
             }))
             .collect();
         let absolute = integral[BINS];
-        // A filter that is nowhere positive is no filter: it is sampled as a box would be, at no
-        // gain.
+        // A filter with a non-positive integral is sampled without gain.
         let gain = if signed > 0.0 { (absolute / signed) * (absolute / signed) } else { 1.0 };
         let distance = |share: usize| {
             let target = share as f64 / SHARES as f64 * absolute;
@@ -183,7 +181,8 @@ impl FilterSampler {
         FilterSampler { filter, knots: Box::new(std::array::from_fn(distance)), gain: gain as f32 }
     }
 
-    /// The size of a sample's weight: 1 for filters without negative lobes, more for others.
+    /// Returns the magnitude of a sample's weight: 1 for filters without negative lobes, more for
+    /// others.
     pub fn gain(&self) -> f32 {
         match self.filter {
             Filter::Mitchell { .. } => self.gain,
@@ -191,18 +190,18 @@ impl FilterSampler {
         }
     }
 
-    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre, with the weight of
-    /// the sample there.
+    /// Warps a uniform position in [0,1)^2 to an offset from the pixel's centre; also returns the
+    /// sample's weight.
     ///
-    /// The weight is 1 for filters without negative lobes; otherwise its size is the same
-    /// everywhere, its sign the filter's, its mean 1. Offsets grow with positions, so an even
-    /// pattern stays even.
+    /// The weight is 1 for filters without negative lobes; otherwise its magnitude is constant, its
+    /// sign the filter's, its mean 1. Offsets are monotonic in the positions, so stratification is
+    /// preserved.
     pub fn sample(&self, position: Vec2) -> (Vec2, f32) {
         let offset = Vec2::new(self.warp(position.x), self.warp(position.y));
         (offset, self.weight(offset))
     }
 
-    /// The same of several positions side by side: x of all, then y.
+    /// Warps several positions in structure-of-arrays form: all x, then all y.
     #[inline(always)]
     pub fn samples<const N: usize>(&self, positions: &[[f32; N]; 2]) -> ([[f32; N]; 2], [f32; N]) {
         let (mut offsets, mut weights) = ([[0.0; N]; 2], [1.0; N]);
@@ -225,7 +224,7 @@ impl FilterSampler {
         }
     }
 
-    /// The distance from the centre for a share of the filter, on the side that `u` lies on.
+    /// Returns the offset for a uniform number, on the side of `u`.
     #[inline(always)]
     fn warp(&self, u: f32) -> f32 {
         let v = 2.0 * u - 1.0;

@@ -1,6 +1,6 @@
-//! From samples to pixels: reconstruction filters and exact sums.
+//! Accumulation of samples in pixels: reconstruction filters and exact sums.
 //!
-//! Pixels are counted from the top left corner; a position in a pixel runs right and down.
+//! Pixel coordinates start at the top left corner; x runs right, y down.
 
 pub mod aov;
 pub mod bytes;

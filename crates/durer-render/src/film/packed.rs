@@ -1,29 +1,26 @@
-//! Sums at rest, in as few bytes as they need: a picture's memory is mostly this.
+//! Compact storage of film sums, which dominate the memory of a picture.
 
 use super::film::{Film, Pixel, WEIGHT_ONE};
 use durer_scene::math::Color;
 
-/// A film that nothing is added to for a while. It is the same film: what comes out is what went
-/// in.
+/// A film in compact form, while nothing is added. Unpacking returns exactly the same film.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Packed {
-    /// Each pixel has one sample of weight 1, which saw something, and of which its colour tells
-    /// all.
+    /// Each pixel has one covering sample of weight 1, which its colour determines.
     Single(Box<[Color]>),
-    /// As in [`Packed::Small`], of samples of weight 1, as filters that are nowhere negative make
-    /// them.
+    /// [`Packed::Small`] with samples of weight 1, as from filters without negative lobes.
     Even(Box<[Even]>),
-    /// Sums of 64 bits are enough, and all samples saw something.
+    /// Sums fit in 64 bits, and all samples hit something.
     Small(Box<[Small]>),
-    /// All that a film can hold.
+    /// Everything a film can hold.
     Whole(Box<Film>),
 }
 
-/// The sums of [`Pixel`], as far as they are not known otherwise.
+/// The sums of [`Pixel`] that are not implied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Small {
     color: [i64; 3],
-    /// In two words, so that nothing lies empty.
+    /// Two words, to avoid padding.
     squares: [u64; 2],
     luminance: i64,
     weight: i64,
@@ -60,7 +57,7 @@ impl Small {
     }
 }
 
-/// The same without the weight, in words, so that nothing lies empty.
+/// Sums without the weight, in words, to avoid padding.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Even {
     color: [[u32; 2]; 3],
@@ -92,12 +89,12 @@ impl Even {
     }
 }
 
-/// The lower and the upper half.
+/// Returns the lower and the upper half.
 fn halves(number: u64) -> [u32; 2] {
     [number as u32, (number >> 32) as u32]
 }
 
-/// All of a film's pixels made smaller, if all can be.
+/// Converts all pixels of a film, if each can be converted.
 fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> {
     let mut made = Vec::with_capacity(film.pixels.len());
     for pixel in &film.pixels {
@@ -106,14 +103,14 @@ fn all<T>(film: &Film, smaller: impl Fn(&Pixel) -> Option<T>) -> Option<Vec<T>> 
     Some(made)
 }
 
-/// The lower and the upper half.
+/// Returns the lower and the upper half.
 fn words(number: i128) -> [u64; 2] {
     [number as u64, (number >> 64) as u64]
 }
 
 impl Packed {
-    /// A film, packed; `samples`: how many its pixels will have in all. What grows later is as wide
-    /// from the start, so that no memory is left between what was smaller.
+    /// Packs a film; `samples` is the final number of samples a pixel. A format that stays wide
+    /// enough avoids memory fragmentation.
     pub fn new(film: Film, samples: u32) -> Self {
         if film.rejected() > 0 {
             return Packed::Whole(Box::new(film));
@@ -132,7 +129,7 @@ impl Packed {
         }
     }
 
-    /// The film, whose window is given again: its left and upper edge, its width and height.
+    /// Unpacks the film; the window is left and upper edge, width and height.
     pub fn film(&self, [left, top, width, height]: [u32; 4]) -> Film {
         let film = |pixels: Vec<Pixel>| {
             let mut film = Film::window(left, top, width, height);
@@ -147,7 +144,7 @@ impl Packed {
         }
     }
 
-    /// The mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
+    /// Visits the mean and the coverage of each pixel, row by row: as [`Film::resolve`] and
     /// [`Film::coverage`].
     pub fn means(&self, mut offer: impl FnMut(Color, f32)) {
         let mut offer_pixel = |pixel: &Pixel| offer(pixel.mean(), pixel.coverage());
@@ -159,7 +156,7 @@ impl Packed {
         }
     }
 
-    /// Whether all of each pixel saw something.
+    /// Returns true if all pixels have full coverage.
     pub fn is_covered(&self) -> bool {
         match self {
             Packed::Single(_) | Packed::Even(_) | Packed::Small(_) => true,
@@ -167,7 +164,7 @@ impl Packed {
         }
     }
 
-    /// The film itself, where samples were left out: others pack.
+    /// Returns the film if it has rejected samples.
     pub fn with_rejected(&self) -> Option<&Film> {
         match self {
             Packed::Whole(film) => Some(film),
@@ -175,7 +172,7 @@ impl Packed {
         }
     }
 
-    /// Bytes that a pixel of so many samples takes at most, where light is not stronger than usual.
+    /// Returns the bytes a pixel with `samples` samples takes, for typical brightness.
     pub fn pixel_bytes(samples: u32) -> u64 {
         (if samples == 1 { size_of::<Color>() } else { size_of::<Small>() }) as u64
     }

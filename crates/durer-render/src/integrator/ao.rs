@@ -1,7 +1,7 @@
-//! Ambient occlusion: the share of the sky over a surface that nothing nearby hides.
+//! Ambient occlusion: the unoccluded share of the hemisphere over a surface.
 //!
-//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; each
-//! direction counts by its cosine.
+//! Source: Zhukov, Iones and Kronin, *An Ambient Light Illumination Model*, EGWR 1998; directions
+//! are weighted by the cosine.
 
 use super::spawn::spawn_ray;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
@@ -31,18 +31,18 @@ impl Parameters for AoParameters {
     }
 }
 
-/// The integrator over one world.
+/// Ambient occlusion integrator of one world.
 #[derive(Clone, Copy, Debug)]
 pub struct AmbientOcclusion<'w> {
-    /// What is seen.
+    /// The world.
     pub world: &'w World,
-    /// How far things count, in units of the world; infinite: all.
+    /// Maximum distance of occluders, in units of the world; infinite for all.
     pub radius: f32,
 }
 
 impl Integrate for AmbientOcclusion<'_> {
-    /// 1 where one direction, chosen by the random numbers of a sample, is free, and 0 where it is
-    /// not; white where nothing is hit.
+    /// Returns 1 if a random direction is unoccluded, 0 if it is occluded, and 1 if the camera ray
+    /// hits nothing.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color {
         let node = tally.begin(NodeId::ROOT, || TermKind::Ray {
             from: RayKind::Camera,

@@ -1,23 +1,23 @@
-//! What a ray runs in: air, or one thing of glass in another.
+//! The stack of objects that a ray is inside: air, or nested glass.
 
 use crate::world::{Interaction, World};
 use durer_scene::math::Vec3;
 use smallvec::SmallVec;
 
-/// How light goes through a surface.
+/// Transmission through a surface.
 pub struct Passage {
-    /// Index of refraction before it.
+    /// Index of refraction in front of the surface.
     pub here: f32,
-    /// Index of refraction behind it.
+    /// Index of refraction behind the surface.
     pub there: f32,
-    /// What a ray runs in behind it.
+    /// Media of the ray behind the surface.
     pub behind: Media,
-    /// Whether something else fills the place on both sides, so that there is no surface.
+    /// True if another object fills the space on both sides, so that the surface has no effect.
     pub hidden: bool,
 }
 
 impl Passage {
-    /// The index of refraction behind the surface over that before it.
+    /// Returns the index of refraction behind the surface over that in front.
     pub(crate) fn eta(&self) -> f32 {
         self.there / self.here
     }
@@ -29,14 +29,14 @@ impl Default for Passage {
     }
 }
 
-/// A thing that light goes into, as a ray is in it.
+/// An object that contains the ray.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
-    /// Number of the object.
+    /// Index of the object.
     pub object: u32,
     /// Its index of refraction.
     pub ior: f32,
-    /// Half the area of its box; `None` for an open surface, which has no inside that is its own.
+    /// Half the surface area of its bounds; `None` for an open surface, which has no inside.
     pub size: Option<f32>,
 }
 
@@ -45,9 +45,9 @@ impl Body {
         Body { object, ior, size: world.extent(object) }
     }
 
-    /// Whether it fills the space that it shares with another one. Of two closed things that is the
-    /// smaller one, so that ice displaces water wherever they overlap, from whatever side a ray
-    /// comes. Of others it is the one met last.
+    /// Returns true if this object fills the space that it shares with another one. Of two closed
+    /// objects that is the smaller one, so that ice displaces water wherever they overlap,
+    /// independent of the ray's direction. Otherwise it is the one entered last.
     fn fills(&self, other: &Body, met_later: bool) -> bool {
         match (self.size, other.size) {
             (Some(a), Some(b)) if a != b => a < b,
@@ -57,33 +57,32 @@ impl Body {
     }
 }
 
-/// All that a ray is in, what fills the place last.
+/// Objects that contain the ray; the last one fills the space.
 ///
 /// Source of the idea: Charles M. Schmidt and Brian Budge, *Simple Nested Dielectrics in Ray Traced
-/// Images*, Journal of Graphics Tools 7(2), 2002; there the order is given by priorities that are
-/// written.
+/// Images*, Journal of Graphics Tools 7(2), 2002, where explicit priorities define the order.
 #[derive(Debug, Default, PartialEq)]
 pub struct Media(SmallVec<[Body; 2]>);
 
 impl Clone for Media {
-    // Faster than one after another.
+    // Faster than cloning element by element.
     fn clone(&self) -> Self {
         Media(SmallVec::from_slice(&self.0))
     }
 }
 
 impl Media {
-    /// What is around a point.
+    /// Returns the media around a point.
     pub fn around(world: &World, point: Vec3) -> Self {
         Media::within(world, world.bodies_around(point))
     }
 
-    /// Of all things that it is in, with their indices of refraction.
+    /// Builds the stack from objects and their indices of refraction.
     fn within(world: &World, bodies: impl Iterator<Item = (u32, f32)>) -> Self {
         bodies.fold(Media::default(), |media, (object, ior)| media.entered(Body::new(world, object, ior)))
     }
 
-    /// Nothing but this.
+    /// A stack of a single object.
     pub fn only(medium: Body) -> Self {
         Media(SmallVec::from_slice(&[medium]))
     }
@@ -93,27 +92,27 @@ impl Media {
         self.0.clear();
     }
 
-    /// Whether the ray runs in air.
+    /// Returns true if the ray is in air.
     pub fn is_air(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// The index of refraction.
+    /// Returns the current index of refraction.
     pub fn ior(&self) -> f32 {
         self.0.last().map_or(1.0, |medium| medium.ior)
     }
 
-    /// Whether the ray is in an object.
+    /// Returns true if the ray is inside an object.
     pub fn holds(&self, object: u32) -> bool {
         self.0.iter().any(|medium| medium.object == object)
     }
 
-    /// The object that fills the place.
+    /// Returns the object that fills the space.
     pub fn object(&self) -> Option<u32> {
         self.0.last().map(|medium| medium.object)
     }
 
-    /// What it is after entering a thing.
+    /// Returns the stack after entering an object.
     pub fn entered(&self, medium: Body) -> Self {
         if self.is_air() {
             return Media::only(medium);
@@ -124,7 +123,7 @@ impl Media {
         Media(inside)
     }
 
-    /// What it is after leaving an object.
+    /// Returns the stack after leaving an object.
     pub fn left(&self, object: u32) -> Self {
         if let [only] = &self.0[..] {
             return if only.object == object { Media::default() } else { Media::only(*only) };
@@ -136,12 +135,12 @@ impl Media {
         Media(inside)
     }
 
-    /// Ours: things of glass may be inside each other and overlap.
+    /// Returns the transmission with nested and overlapping glass, as in our own dialect.
     pub(crate) fn nested_passage(&self, world: &World, at: &Interaction, ior: f32, leaving: bool) -> Passage {
         self.passage_into(world, (at.hit.object, at.ray.rounded.origin), ior, leaving)
     }
 
-    /// The same through the surface of an object, which light sets out for from a point.
+    /// Returns the transmission through an object's surface, for light that starts at a point.
     pub(crate) fn passage_into(&self, world: &World, (object, start): (u32, Vec3), ior: f32, leaving: bool) -> Passage {
         let own = Body::new(world, object, ior);
         if !leaving {
@@ -154,11 +153,11 @@ impl Media {
         } else if own.size.is_none() {
             self.entered(own)
         } else if world.objects()[object as usize].contains(start) {
-            // A ray that leaves what it never entered began inside.
+            // A ray that leaves an object it never entered started inside it.
             let others = world.glass_around(start).filter(|&(other, _)| other != object);
             Media::within(world, others.chain([(object, ior)]))
         } else {
-            // Turned inside out, it is the wall of a cavity in what is around.
+            // With inverted normals it is the wall of a cavity in the surrounding medium.
             let behind = self.object().map_or(Media::default(), |around| self.left(around));
             return Passage {
                 here: if self.is_air() { own.ior } else { self.ior() },
@@ -191,7 +190,7 @@ mod tests {
             assert_eq!(all.left(3).ior(), 1.31);
             assert!(all.left(3).left(5).left(7).is_air());
         }
-        // Twice in one that overlaps itself.
+        // An object that overlaps itself is entered twice.
         let twice = Media::only(ICE).entered(ICE);
         assert!(twice.left(5).holds(5) && twice.left(5).left(5).is_air());
         assert_eq!(Media::default().left(2), Media::default());

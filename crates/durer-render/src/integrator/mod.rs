@@ -1,4 +1,4 @@
-//! Integrators: how much light comes along a ray. One file each; the list is [`Method`].
+//! Integrators: estimators of the radiance along a ray. One file each; the list is [`Method`].
 
 pub mod ao;
 pub mod media;
@@ -19,51 +19,49 @@ use std::sync::atomic::AtomicBool;
 pub use trace::{NodeId, TraceListener, TraceNode, TraceRecorder, Tree};
 pub use whitted::{Settings, Whitted, WhittedParameters, refract};
 
-/// What an integrator is told that it alone knows: a name and options, stated in a `described!`
-/// block, which the command line walks.
+/// Parameters of an integrator: a name and options, stated in a `described!` block, which the
+/// command line walks.
 pub trait Parameters: Describe + Copy {
-    /// What does it.
+    /// The integrator type.
     type Integrator<'w>: Integrate;
 
-    /// Whether a ray's light depends on random numbers, so that a pixel needs many.
+    /// True if the radiance depends on random numbers, so that a pixel needs many samples.
     const IS_RANDOM: bool = true;
 
-    /// Whether the samples of some number are better taken all together: see
-    /// [`Integrate::prepare`].
+    /// True if the integrator prepares samples in advance: see [`Integrate::prepare`].
     const PREPARES: bool = false;
 
-    /// The integrator.
+    /// Creates the integrator.
     fn over(self, setup: Setup<'_>) -> Self::Integrator<'_>;
 
-    /// How light is carried, if it is followed over any number of surfaces.
+    /// Returns the path tracing options, if the method traces paths.
     fn transport(&self) -> Option<Transport> {
         None
     }
 }
 
-/// What every integrator knows.
+/// Data for every integrator.
 #[derive(Clone, Copy, Debug)]
 pub struct Setup<'w> {
-    /// What is seen.
+    /// The world.
     pub world: &'w World,
-    /// What light does.
+    /// Common settings.
     pub settings: Settings,
-    /// How wide what a sample stands for is, if there are pixels.
+    /// Footprint of a sample, if there are pixels.
     pub cone: Option<RayCone>,
-    /// Decides random numbers that are no sample's.
+    /// Seed of random numbers that do not belong to a sample.
     pub seed: u64,
-    /// Once set, no more rays are traced, and what comes out means nothing.
+    /// Once set, no more rays are traced, and results are meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// What every integrator does.
+/// Interface of integrators.
 pub trait Integrate {
-    /// The light that comes along a camera ray, by the random numbers of a sample.
+    /// Returns the radiance along a camera ray, with the random numbers of a sample.
     fn radiance<T: TraceListener>(&self, ray: &Ray, id: SampleId, tally: &mut T) -> Color;
 
-    /// The same for some camera rays that are neighbours, as it is for each: for those who can do
-    /// better with several. `begin` hears the number of the ray that comes next, and gives the
-    /// sample that it is of.
+    /// Computes the radiance of neighbouring camera rays, with the same results as one by one.
+    /// `begin` is called with the index of the next ray and returns its sample.
     fn radiances<T: TraceListener>(
         &self,
         rays: &[Ray64],
@@ -74,11 +72,11 @@ pub trait Integrate {
         one_by_one(self, rays, begin, tally, colors);
     }
 
-    /// Makes what the samples of some number need, by all threads, before they are taken.
+    /// Prepares the samples with a given index, on all threads, before they are taken.
     fn prepare(&self, _sample: u32) {}
 }
 
-/// [`Integrate::radiances`] of an integrator that gains nothing from several.
+/// [`Integrate::radiances`] for integrators that do not benefit from batches.
 fn one_by_one<T: TraceListener>(
     integrator: &(impl Integrate + ?Sized),
     rays: &[Ray64],
@@ -94,25 +92,24 @@ fn one_by_one<T: TraceListener>(
 macro_rules! delegate {
     ($($variant:ident),+) => {
         impl Method {
-            /// How light is carried along paths, by methods that follow it over any number of
-            /// surfaces.
+            /// Returns the path tracing options, if the method traces paths.
             pub fn transport(self) -> Option<Transport> {
                 match self { $(Method::$variant(it) => it.transport(),)+ }
             }
 
-            /// Whether a ray's light depends on random numbers, so that a pixel needs many.
+            /// Returns true if the radiance depends on random numbers.
             pub fn is_random(self) -> bool {
                 fn of<P: Parameters>(_: P) -> bool { P::IS_RANDOM }
                 match self { $(Method::$variant(it) => of(it),)+ }
             }
 
-            /// Whether the samples of some number are better taken all together.
+            /// Returns true if the method prepares samples in advance.
             pub fn prepares(self) -> bool {
                 fn of<P: Parameters>(_: P) -> bool { P::PREPARES }
                 match self { $(Method::$variant(it) => of(it),)+ }
             }
 
-            /// The integrator over a world.
+            /// Creates the integrator of a world.
             pub fn over(self, setup: Setup<'_>) -> Integrator<'_> {
                 match self { $(Method::$variant(it) => Integrator::$variant(it.over(setup)),)+ }
             }
@@ -145,7 +142,7 @@ macro_rules! integrators {
             Method: Parameters => delegate { $($variant($type),)+ }
         }
 
-        /// One of the integrators, over a world.
+        /// An integrator of a world.
         #[derive(Clone, Debug)]
         pub enum Integrator<'w> {
             $(#[doc = concat!("What `", stringify!($variant), "` asks for.")]
@@ -170,13 +167,13 @@ impl Default for Method {
 }
 
 impl Method {
-    /// Local light, mirrors and glass.
+    /// Direct light, mirrors and glass.
     pub const WHITTED: Method = Method::Whitted(WhittedParameters {});
 
-    /// All light, as it is without wishes.
+    /// Path tracing with default options.
     pub const PATH: Method = Method::Path(Transport { clamp: None, color: ColorMode::Rgb, direct: Direct::Both });
 
-    /// Its name.
+    /// Returns the method's name.
     pub fn name(&self) -> &'static str {
         self.own_keyword()
     }

@@ -1,10 +1,10 @@
 //! Secondary rays that do not hit the surface they start from.
 //!
-//! Why none starts behind the wall beside: a point on a surface is known in double precision in
-//! world space, and to a few roundings in the space of its object, whose coordinates are of the
-//! object's own size ([`Shape::centered`] takes off what is more). And a shape keeps its points off
-//! its own edges by more than that error, so moving one along the normal by twice the error leaves
-//! it in front of the neighbouring face as well.
+//! Why no ray starts behind an adjacent wall: a surface point is known in double precision in world
+//! space, and to a few roundings in the space of its object, whose coordinates have the object's
+//! own size ([`Shape::centered`] removes larger offsets). And a shape keeps its points off its own
+//! edges by more than that error, so moving one along the normal by twice the error leaves it in
+//! front of the adjacent face as well.
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 
@@ -12,11 +12,11 @@ use durer_scene::math::{Ray64, Side, Vec3, gamma};
 use durer_scene::shape::Surface;
 use glam::DVec3;
 
-/// A ray from a surface.
+/// Creates a secondary ray.
 ///
-/// With an `epsilon`, as the course has it: the ray starts on the surface, and hits count from
-/// there on. Without: it starts beside the surface, as far away as the point may be off, and every
-/// hit counts.
+/// With an `epsilon`, as in the course, the ray starts on the surface, and hits closer than
+/// `epsilon` do not count. Without it, the ray starts off the surface by a bound on the point's
+/// error, and every hit counts.
 #[inline(always)]
 pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
     if let Some(epsilon) = epsilon {
@@ -25,10 +25,10 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
     from(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
 
-/// A ray from a surface to a light at some distance, as [`spawn_ray`]; without an `epsilon` it
-/// starts on the bent surface that a triangle with normals at its corners stands for, on the side
-/// on which that faces the light. Where the triangle's own slope does not face it, it is in its own
-/// way: light from outside does not come in along the border of light.
+/// Creates a ray to a light at some distance, as [`spawn_ray`]. Without an `epsilon` it starts on
+/// the curved surface that a triangle with vertex normals approximates, on the side that faces the
+/// light. If the triangle itself faces away, it occludes the ray: no light leaks in along the
+/// terminator.
 #[inline(always)]
 pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
     match epsilon {
@@ -37,9 +37,9 @@ pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32
     }
 }
 
-/// A ray from a surface to a point of a light that has an extent, on the side of the true surface
-/// on which the light is. From a bent surface it is aimed anew: a parallel one would end beside
-/// that point, and behind the light where that is inclined.
+/// Creates a ray to a point of an area light, on the geometric side of the light. A ray from a
+/// curved surface is aimed again: a parallel one would miss that point, and end behind an inclined
+/// light.
 pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     let ray = from_bent_surface(surface, dir, distance, dir.dot(surface.n_geo) < 0.0);
     if surface.shadow_offsets == [Vec3::ZERO; 2] || !distance.is_finite() {
@@ -50,7 +50,7 @@ pub fn to_point(surface: &Surface, dir: Vec3, distance: f32) -> Ray64 {
     Ray64::new(ray.origin(), (way / length).as_vec3(), 0.0, length as f32 * (1.0 - gamma(4))).on_side(ray.side)
 }
 
-/// A ray from the bent surface, on the side of the normals or `behind`.
+/// Creates a ray from the curved surface, on the side of the normals or `behind`.
 #[inline(always)]
 fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) -> Ray64 {
     let [front, back] = surface.shadow_offsets;
@@ -58,7 +58,7 @@ fn from_bent_surface(surface: &Surface, dir: Vec3, distance: f32, behind: bool) 
     from(surface, lift, dir, distance - lift.dot(dir), behind)
 }
 
-/// A ray from beside the lifted point, on the side of the true normal or `behind`.
+/// Creates a ray from off the lifted point, on the side of the geometric normal or `behind`.
 #[inline(always)]
 fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> Ray64 {
     let side = if behind { -surface.n_geo } else { surface.n_geo };
@@ -66,8 +66,7 @@ fn from(surface: &Surface, lift: Vec3, dir: Vec3, t_max: f32, behind: bool) -> R
     surface.solid.map_or(ray, |solid| ray.on_side(Side::of(solid, behind)))
 }
 
-/// The surface's point, lifted, and beside it on the side to which a unit normal points, farther
-/// off than its error.
+/// Returns the surface's point, lifted, and offset along a unit normal by more than its error.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 6.8.6.
 #[inline(always)]
@@ -77,7 +76,7 @@ fn offset_ray_origin(surface: &Surface, lift: Vec3, side: Vec3) -> DVec3 {
     surface.point() + lift.as_dvec3() + offset.as_dvec3()
 }
 
-/// As far beside a surface's point as a ray from a flat surface starts at most.
+/// Returns the maximum distance from a flat surface at which a ray starts.
 pub fn offset_bound(surface: &Surface) -> f32 {
     2.0 * surface.error.element_sum()
 }

@@ -1,15 +1,15 @@
-//! An account of a ray's light: the tree of everything that made it.
+//! Trace of a ray's light: the tree of all terms that contribute to it.
 //!
-//! An integrator reports each term to a [`TraceListener`] twice: when it begins, with the node that
-//! it belongs to, and when its value is known. Nodes are addressed by number, so terms of several
-//! rays may be under way at once and end in any order. Counters ignore all of it at no cost; a
-//! [`TraceRecorder`] keeps it. In every node,
+//! An integrator reports each term to a [`TraceListener`] twice: when it begins, with its parent
+//! node, and when its value is known. Nodes are addressed by index, so terms of several rays may be
+//! in progress at once and end in any order. Counters ignore the reports at no cost; a
+//! [`TraceRecorder`] stores them. In every node,
 //!
 //! value = scale · (sum of the children's factor · value, in order).
 //!
-//! A tree adds up to the colour of the picture bit for bit, in the order in which the integrator
-//! sums: see [`Tree::sum`]. In spectral mode, terms are the light at the wavelengths of the sample,
-//! and [`Tree::sum`] is the colour of their sum.
+//! A tree adds up to the colour of the picture bit for bit, in the integrator's order of summation:
+//! see [`Tree::sum`]. In spectral mode, terms are radiances at the wavelengths of the sample, and
+//! [`Tree::sum`] is the colour of their sum.
 
 use crate::world::emitters::LightId;
 use crate::world::{HighlightModel, Interaction, World};
@@ -18,20 +18,21 @@ use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3};
 use durer_scene::spectrum::{Lanes, Spectrum};
 use serde::Serialize;
 
-/// Hears what an integrator does. The closures are called only by those that listen.
+/// Receives the terms of an integrator. The closures are called only by listeners that store terms.
 pub trait TraceListener: TraversalCounter {
-    /// Whether it wants to be told of terms that come to nothing too.
+    /// True if terms of zero contribution should be reported too.
     const LISTENS: bool = false;
 
-    /// What the lanes of all terms are; where it is not told, they are colours.
+    /// Sets the meaning of the lanes of all terms; RGB by default.
     fn lanes(&mut self, _lanes: &Lanes) {}
-    /// Adds a term below `parent` and returns its node. Siblings keep the order in which they begin.
+    /// Adds a term below `parent` and returns its node. Siblings keep the order in which they
+    /// begin.
     fn begin(&mut self, _parent: NodeId, _what: impl FnOnce() -> TermKind) -> NodeId {
         NodeId::NONE
     }
     /// Records the hit of a ray's node.
     fn hit(&mut self, _node: NodeId, _hit: impl FnOnce() -> HitRecord) {}
-    /// Records what became of a term: see [`TraceNode`].
+    /// Records the result of a term: see [`TraceNode`].
     fn end(
         &mut self,
         _node: NodeId,
@@ -40,18 +41,18 @@ pub trait TraceListener: TraversalCounter {
         _value: impl Into<TermValue>,
     ) {
     }
-    /// Records, for a node of a path, the fraction `scale` of its light that the way through media
-    /// leaves, and the throughput: the product of all factors from the camera to here, by which the
-    /// values of its terms, or its own, count in the pixel.
+    /// Records, for a node of a path, the transmittance `scale` of the media before it, and the
+    /// throughput: the product of all factors from the camera to here, which scales its value or
+    /// those of its terms in the pixel.
     fn weigh(&mut self, _node: NodeId, _scale: impl Into<TermValue>, _throughput: impl Into<TermValue>) {}
 }
 
-/// Number of a node of a trace, in the order in which terms began.
+/// Index of a node of a trace, in the order in which terms began.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeId(u32);
 
 impl NodeId {
-    /// No node: what listeners return that keep nothing.
+    /// No node, returned by listeners that store nothing.
     pub const NONE: NodeId = NodeId(u32::MAX);
     /// Parent of the term that all others belong to.
     pub const ROOT: NodeId = NodeId(u32::MAX - 1);
@@ -61,13 +62,13 @@ impl TraceListener for () {}
 impl TraceListener for RayCount {}
 impl TraceListener for TraversalStats {}
 
-/// What a term is: a colour, or light at four wavelengths.
+/// Value of a term: a colour, or radiances at four wavelengths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum TermValue {
     /// Red, green and blue.
     Color(Color),
-    /// At the wavelengths of the sample.
+    /// Radiances at the wavelengths of the sample.
     Waves(Spectrum),
 }
 
@@ -78,7 +79,7 @@ impl From<Color> for TermValue {
 }
 
 impl TermValue {
-    /// Light in the lanes of a path.
+    /// Converts the lanes of a path.
     pub fn of(lanes: &Lanes, light: Spectrum) -> Self {
         match lanes {
             Lanes::Rgb => TermValue::Color(light.truncate()),
@@ -86,7 +87,7 @@ impl TermValue {
         }
     }
 
-    /// As the lanes of a path have it.
+    /// Returns the value in the lanes of a path.
     pub fn spectrum(self) -> Spectrum {
         match self {
             TermValue::Color(color) => color.extend(color.y),
@@ -94,7 +95,7 @@ impl TermValue {
         }
     }
 
-    /// Its numbers, by lane.
+    /// Returns the numbers, by lane.
     pub fn numbers(&self) -> &[f32] {
         match self {
             TermValue::Color(color) => color.as_ref(),
@@ -102,7 +103,7 @@ impl TermValue {
         }
     }
 
-    /// Whether all of it is this number.
+    /// Returns true if every lane equals `number`.
     pub fn is(&self, number: f32) -> bool {
         self.numbers().iter().all(|x| *x == number)
     }
@@ -130,57 +131,56 @@ impl std::ops::Add for TermValue {
     }
 }
 
-/// All light along a ray.
+/// The trace of a ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Tree {
-    /// The term that all others belong to.
+    /// The root term.
     #[serde(flatten)]
     pub root: TraceNode,
-    /// What its terms are; in JSON only if they are light at wavelengths.
+    /// Meaning of the lanes; in JSON only for wavelengths.
     #[serde(rename = "waves", skip_serializing_if = "Lanes::is_rgb")]
     pub lanes: Lanes,
 }
 
 impl Tree {
-    /// The colour that a term is.
+    /// Returns the colour of a term.
     pub fn color(&self, light: TermValue) -> Color {
         self.lanes.color(light.spectrum())
     }
 
-    /// Colour of the ray, computed again from the terms. It has the bits of the picture.
+    /// Computes the colour of the ray from the terms. It equals the picture bit for bit.
     ///
-    /// A path adds throughput · value of each source in the order in which it finds them, and so
-    /// does this: [`TraceNode::added`]. In such a tree the values of rays are only as exact as the
-    /// rounding of sums. Other integrators have no throughputs, and sum the terms of each node:
+    /// For a path, adds throughput · value of each source in the order in which the path finds
+    /// them: [`TraceNode::added`]. In such a tree the values of rays are only as exact as rounded
+    /// sums. Other integrators have no throughputs; for them, sums the terms of each node:
     /// [`TraceNode::sum`].
     pub fn sum(&self) -> Color {
         self.color(self.root.added().unwrap_or_else(|| self.root.sum()))
     }
 }
 
-/// A term: what it is, how it counts, and of what it is made.
+/// A term: its kind, its value, and its parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TraceNode {
-    /// What it is.
+    /// Kind of the term.
     pub what: TermKind,
-    /// What it is multiplied by in the node above.
+    /// Factor in the parent node.
     pub factor: TermValue,
-    /// What the sum of the terms below is multiplied by.
+    /// Factor of the sum of the terms below.
     pub scale: TermValue,
-    /// What comes of it.
+    /// Value of the term.
     pub value: TermValue,
-    /// Of a path: what the values of its terms are multiplied by in the pixel, or its own if it is
-    /// a source of light.
+    /// For paths: factor of the terms' values in the pixel; for a source of light, factor of its
+    /// value.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub throughput: Option<TermValue>,
-    /// The terms that it is the sum of, in the order of addition; none where `what` itself says how
-    /// it is computed.
+    /// The terms that it sums, in the order of addition; empty if `what` states how it is computed.
     pub terms: Vec<TraceNode>,
 }
 
 impl TraceNode {
-    /// What a node of a path adds to the pixel: the sum of throughput · value over the sources of
-    /// light below, in order. `None` for integrators without throughputs.
+    /// Returns a path node's contribution to the pixel: the sum of throughput · value over the
+    /// sources of light below, in order. `None` for integrators without throughputs.
     pub fn added(&self) -> Option<TermValue> {
         self.throughput.map(|_| self.add_sources(TermValue::Color(Color::ZERO)))
     }
@@ -195,12 +195,12 @@ impl TraceNode {
         }
     }
 
-    /// What the node adds to the one above.
+    /// Returns the contribution to the parent node.
     pub fn contribution(&self) -> TermValue {
         self.factor * self.value
     }
 
-    /// The sum that `value` is, computed anew from the terms; `value` itself where there are none.
+    /// Computes the sum of the terms again; returns `value` if there are none.
     pub fn sum(&self) -> TermValue {
         if self.terms.is_empty() {
             return self.value;
@@ -210,30 +210,30 @@ impl TraceNode {
     }
 }
 
-/// What sent a ray out.
+/// Origin of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RayKind {
     /// The camera.
     Camera,
-    /// A mirror.
+    /// A mirror reflection.
     Reflected,
-    /// Glass.
+    /// A transmission through glass.
     Transmitted,
-    /// A surface that scatters light into many directions.
+    /// A lobe that scatters into many directions.
     Scattered,
 }
 
-/// A ray as numbers.
+/// A ray as plain numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RayRecord {
-    /// Where it begins.
+    /// Origin.
     pub origin: Vec3,
-    /// Its direction; not of length 1 in the space of an object that was scaled.
+    /// Direction; not unit length in the space of a scaled object.
     pub dir: Vec3,
-    /// Hits count from this `t` on.
+    /// Minimum `t` of hits.
     pub t_min: f32,
-    /// Hits count up to this `t`; `null` in JSON where there is no end.
+    /// Maximum `t` of hits; `null` in JSON if infinite.
     pub t_max: f32,
 }
 
@@ -249,40 +249,39 @@ impl From<&Ray> for RayRecord {
     }
 }
 
-/// What a ray hit, and how the surface is there.
+/// A hit and its surface attributes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HitRecord {
-    /// Number of the object in the world.
+    /// Index of the object in the world.
     pub object: u32,
-    /// Number of the triangle in a mesh, else 0.
+    /// Index of the triangle in a mesh, else 0.
     pub part: u32,
-    /// Position along the ray.
+    /// Distance along the ray.
     pub t: f32,
-    /// The point.
+    /// Hit point.
     pub position: Vec3,
-    /// Unit normal of the true surface.
+    /// Unit geometric normal.
     pub n_geo: Vec3,
-    /// Unit normal for shading, as the surface has it.
+    /// Unit shading normal of the surface.
     pub n_shade: Vec3,
-    /// The normal that light is reckoned with: `n_shade`, turned where a surface is shaded from
-    /// behind.
+    /// Normal used for lighting: `n_shade`, flipped if a back is shaded.
     pub n: Vec3,
-    /// Whether the surface is seen from behind.
+    /// True if the ray hits the back.
     pub from_behind: bool,
-    /// Whether its back is left black, as an old program has it.
+    /// True if an old program leaves the back black.
     pub black: bool,
     /// Texture coordinates, if the shape has any.
     pub uv: Option<Vec2>,
-    /// Barycentric coordinates; 0 on what is no triangle.
+    /// Barycentric coordinates; 0 for shapes other than triangles.
     pub barycentric: Vec3,
-    /// The ray in the object's own space, where a transform applies.
+    /// The ray in object space, if there is a transform.
     pub local: Option<RayRecord>,
-    /// Numbers of the materials that make up the point, with their shares.
+    /// Index of the material.
     pub material: u32,
 }
 
 impl HitRecord {
-    /// Of a hit, of which `n` is the normal that light is reckoned with.
+    /// Records a hit; `n` is the normal used for lighting.
     pub(super) fn new(world: &World, at: &Interaction, n: Vec3, from_behind: bool, black: bool) -> Self {
         let Interaction { ray, hit, surface, material, .. } = at;
         let object = &world.objects()[hit.object as usize];
@@ -304,148 +303,145 @@ impl HitRecord {
     }
 }
 
-/// How a ray's direction was chosen.
+/// Sampling of a ray's direction.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bounce {
-    /// The lobe that chose it.
+    /// Lobe that was sampled.
     pub lobe: &'static str,
-    /// The probability with which that lobe was chosen.
+    /// Probability of choosing this lobe.
     pub probability: f32,
-    /// The density per solid angle over all lobes; 0 for a single direction.
+    /// Density per solid angle over all lobes; 0 for a delta lobe.
     pub pdf: f32,
-    /// The probability that the path went on here.
+    /// Survival probability of Russian roulette.
     pub survival: f32,
-    /// How many directions were followed from there; each brings its part.
+    /// Number of directions followed from the vertex.
     pub directions: u32,
 }
 
-/// What stands between a surface and a light.
+/// Occlusion between a surface and a light.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Shadow {
-    /// The ray to the light.
+    /// The shadow ray.
     pub ray: RayRecord,
-    /// Number of the first object on it and the `t` of its hit; none where the light is free.
+    /// Index of the first object on it and the `t` of its hit; `None` if the light is unoccluded.
     pub blocker: Option<(u32, f32)>,
-    /// The share of the light that comes through.
+    /// Share of the light that arrives.
     pub share: TermValue,
 }
 
-/// One kind of term.
+/// Kinds of terms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum TermKind {
-    /// The light that comes along a ray.
+    /// Radiance along a ray.
     Ray {
-        /// What sent it out.
+        /// Origin of the ray.
         from: RayKind,
         /// The ray.
         ray: RayRecord,
-        /// How much it counts for in the pixel.
+        /// Weight of the ray in the pixel.
         weight: f32,
-        /// What it hit.
+        /// Hit of the ray.
         hit: Option<Box<HitRecord>>,
-        /// How its direction was chosen at random.
+        /// Random choice of its direction.
         #[serde(skip_serializing_if = "Option::is_none")]
         bounce: Option<Bounce>,
     },
-    /// A surface's own light, the value; the factor is its weight beside that of being chosen as a
-    /// light.
+    /// Emission of a surface; the factor is its MIS weight.
     Emission {
-        /// That weight, by multiple importance sampling.
+        /// MIS weight.
         mis: f32,
     },
-    /// The light of one that was chosen at random, the value; the factor is bsdf · mis · what comes
-    /// through / (choice · density).
+    /// Radiance of a sampled light; the factor is bsdf · mis · visibility / (choice · pdf).
     Direct {
-        /// Which it is.
+        /// The light.
         light: LightId,
-        /// Unit vector to it.
+        /// Unit direction to the light.
         to_light: Vec3,
-        /// How far it is; `null` in JSON for what has no place.
+        /// Distance; `null` in JSON for lights at infinity.
         distance: f32,
-        /// The probability with which it was chosen.
+        /// Probability of choosing this light.
         choice: f32,
-        /// The density per solid angle of the direction; 0 for a light without extent, whose
-        /// density counts as 1. Where it was taken of several to the surroundings, what counts as
-        /// its density.
+        /// Density per solid angle of the direction; 0 for a light without extent, whose density
+        /// counts as 1. For a direction resampled from several, the effective density.
         pdf: f32,
-        /// The surface's value times the cosine.
+        /// BSDF times cosine.
         bsdf: TermValue,
-        /// Its weight beside that of being met by chance, by multiple importance sampling.
+        /// MIS weight.
         mis: f32,
-        /// The shadow ray; none where shadows are off.
+        /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// The light of lamps over mirrors and glass, from photons nearby; the value says how much.
+    /// Light over mirrors and glass, estimated from nearby photons; the value is the estimate.
     Photons {
-        /// How far away they are at most.
+        /// Search radius.
         radius: f32,
-        /// How many there are.
+        /// Number of photons.
         photons: usize,
     },
-    /// What glass scatters that spreads colours: the other wavelengths go elsewhere, and the first
-    /// counts for all four, by the factor.
+    /// Light refracted by dispersive glass: only the hero wavelength continues, and the factor
+    /// makes it stand for all four.
     OneWavelength {
-        /// That wavelength in nanometres.
+        /// Wavelength in nanometres.
         nm: f32,
     },
-    /// The background or sky, where a ray hits nothing.
+    /// The background or sky, for rays that miss.
     Sky,
-    /// Ambient light times the surface's colour, the value; the factor is share · ambient light.
+    /// Ambient light: the value is the surface's colour; the factor is share · ambient light.
     Ambient {
-        /// The material's share in the point.
+        /// The material's share at the point.
         share: f32,
     },
-    /// The light of one lamp: (diffuse + highlight) · what arrives, which is the scale. The factor
-    /// is share · what comes through.
+    /// One light: (diffuse + highlight) · arriving light, which is the scale. The factor is share ·
+    /// visibility.
     Light {
-        /// Number of the light in the scene.
+        /// Index of the light in the scene.
         light: usize,
-        /// Unit vector to it.
+        /// Unit direction to the light.
         to_light: Vec3,
-        /// How far it is; `null` in JSON for a light without a place.
+        /// Distance; `null` in JSON for lights at infinity.
         distance: f32,
-        /// The material's share in the point.
+        /// The material's share at the point.
         share: f32,
-        /// The shadow ray; none where shadows are off.
+        /// The shadow ray; `None` if shadows are off.
         shadow: Option<Shadow>,
     },
-    /// max(0, N·L), the factor, times the surface's colour, the value.
+    /// Diffuse term: the factor is max(0, N·L), the value the surface's colour.
     Diffuse {
         /// N·L.
         cosine: f32,
     },
-    /// max(0, base)^exponent, the factor, times the specular colour, the value.
+    /// Highlight: the factor is max(0, base)^exponent, the value the specular colour.
     Highlight {
-        /// Which base it has.
+        /// Name of the base.
         model: &'static str,
         /// N·H or R·L.
         base: f32,
-        /// How sharp it is.
+        /// Exponent.
         exponent: f32,
     },
-    /// Mirrored and transmitted light.
+    /// Reflected and transmitted light.
     Secondary {
         /// Index of refraction on the ray's side.
         here: f32,
         /// Index of refraction behind the surface.
         there: f32,
-        /// The mirrored share, where Fresnel's law divides the light.
+        /// Reflected share, if Fresnel's law splits the light.
         fresnel: Option<f32>,
-        /// Whether no light gets through, by total reflection.
+        /// True for total internal reflection.
         total: bool,
     },
-    /// A ray that counts for too little to be traced.
+    /// A ray that is not traced because its weight is too small.
     Cut {
-        /// What it would count for.
+        /// Its weight.
         weight: f32,
     },
-    /// Mirrored and transmitted light, of which no more levels are wanted.
+    /// Reflected and transmitted light beyond the maximum depth.
     Spent,
 }
 
 impl TermKind {
-    /// A name for a model of highlights.
+    /// Returns the name of a highlight model's base.
     pub fn highlight(model: HighlightModel) -> &'static str {
         match model {
             HighlightModel::Blinn => "N·H",
@@ -454,7 +450,7 @@ impl TermKind {
     }
 }
 
-/// Listener that keeps every term.
+/// Listener that stores every term.
 #[derive(Debug, Default)]
 pub struct TraceRecorder {
     /// Terms in the order in which they began, each with its parent.
@@ -466,11 +462,11 @@ impl TraceRecorder {
     /// Builds the tree; `None` if no term was reported.
     pub fn into_tree(mut self) -> Option<Tree> {
         let mut root = None;
-        // A parent comes before its children: from the end on, each node is complete when its turn
-        // comes, with its children in reverse.
+        // Parents precede their children: going backwards, each node is complete when it is
+        // reached, with its children in reverse.
         while let Some((parent, mut node)) = self.nodes.pop() {
             node.terms.reverse();
-            // A path ends before anyone knows the light along its rays.
+            // A path learns the radiance along its rays only at its end.
             if node.throughput.is_some() && !node.terms.is_empty() {
                 node.value = node.sum();
             }

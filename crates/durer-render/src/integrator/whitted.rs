@@ -1,8 +1,8 @@
-//! Whitted's ray tracing: local light, a mirrored and a transmitted ray.
+//! Whitted's ray tracing: direct light, a reflected and a transmitted ray.
 //!
-//! Rays go through the stages of `Whitted::trace` in batches, also where there is only one; what
-//! they spawn waits in a `Queue`, so nothing recurses. Each sum is made in the order of its terms,
-//! whatever batch a ray was in.
+//! Rays pass the stages of `Whitted::trace` in batches, even if there is only one. Spawned rays
+//! wait in a `Queue`, so nothing recurses. Each sum is computed in the order of its terms,
+//! independent of the batches.
 //!
 //! Source: Turner Whitted, *An Improved Illumination Model for Shaded Display*, CACM 23(6), 1980,
 //! with the terms of the course.
@@ -24,28 +24,28 @@ use smallvec::SmallVec;
 use std::cell::RefCell;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// What a picture takes into account.
+/// Settings of the light transport.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
-    /// Levels of secondary rays; 0 means local light only.
+    /// Maximum depth of secondary rays; 0 means direct light only.
     pub bounces: u32,
-    /// Whether things between a light and a surface block it.
+    /// Casts shadows.
     pub shadows: bool,
-    /// Whether surfaces seen from behind are shaded with their normal turned.
+    /// Shades surfaces seen from behind with a flipped normal.
     pub shade_back: bool,
-    /// Whether transparent things cast coloured shadows.
+    /// Lets transparent objects cast coloured shadows.
     pub transparent_shadows: bool,
-    /// Whether mirrored rays are traced.
+    /// Traces reflected rays.
     pub reflection: bool,
-    /// Whether transmitted rays are traced.
+    /// Traces transmitted rays.
     pub refraction: bool,
-    /// A ray that counts for less than this is not traced. A colour counts by its largest part; for
-    /// old programs, by its length, as in the course.
+    /// Minimum throughput of a ray. A colour counts by its largest component; for old programs, by
+    /// its length, as in the course.
     pub least_weight: f32,
 }
 
 impl Settings {
-    /// Most levels that a job may have.
+    /// Largest maximum depth of a job.
     pub const MAX_BOUNCES: u32 = 256;
 }
 
@@ -66,53 +66,53 @@ impl Parameters for WhittedParameters {
     }
 }
 
-/// The integrator over one world.
+/// Whitted's integrator of one world.
 #[derive(Clone, Copy, Debug)]
 pub struct Whitted<'w> {
-    /// What is seen.
+    /// The world.
     pub world: &'w World,
-    /// What is taken into account.
+    /// Settings.
     pub settings: Settings,
-    /// Once set, no more rays are traced, and what comes out means nothing: a pixel of many mirrors
-    /// may take long.
+    /// Once set, no more rays are traced, and results are meaningless. A single pixel of many
+    /// mirrors may take long.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// One of the materials that make up a point.
+/// A material of a shaded point.
 struct Lit<'w> {
     part: WeightedMaterial<'w>,
-    /// Its diffuse colour: a texture or noise is looked up once for all lights.
+    /// Diffuse colour, looked up once for all lights.
     diffuse: Color,
     /// Terms of the current light.
     direct: Direct,
 }
 
-/// A surface point that is shaded.
+/// A surface point to shade.
 struct Shaded {
-    /// Number of its segment.
+    /// Index of its segment.
     segment: u32,
     at: Interaction,
-    /// How light goes through the surface.
+    /// Transmission through the surface.
     passage: Passage,
-    /// Normal that light is reckoned with.
+    /// Normal used for lighting.
     n: Vec3,
-    /// Whether an old program leaves it without light.
+    /// True if an old program leaves it unlit.
     black: bool,
-    /// Where its materials begin in the list of all.
+    /// Index of its first material in the list.
     first_part: usize,
-    /// How many materials it has.
+    /// Number of its materials.
     parts: usize,
-    /// Light that it scatters against its ray.
+    /// Radiance towards the ray's origin.
     color: Color,
 }
 
-/// Materials of the points of a batch, one point after the other.
+/// Materials of the points of a batch, point by point.
 type Parts<'w> = SmallVec<[Lit<'w>; TOGETHER]>;
 
-/// Memory of a thread, used again for each batch of camera rays.
+/// Thread-local buffers, reused for each batch of camera rays.
 struct Scratch {
     queue: Queue,
-    /// Room for [`TOGETHER`] points.
+    /// Buffer of [`TOGETHER`] points.
     points: Vec<Shaded>,
     rays: [Ray64; TOGETHER],
 }
@@ -141,12 +141,12 @@ thread_local! {
     static SCRATCH: RefCell<Scratch> = RefCell::default();
 }
 
-/// The side of a surface that is shaded.
+/// The shaded side of a surface.
 struct Side {
-    /// The normal that light is reckoned with.
+    /// Normal used for lighting.
     n: Vec3,
     from_behind: bool,
-    /// Whether an old program leaves it black.
+    /// True if an old program leaves it black.
     black: bool,
 }
 
@@ -170,16 +170,16 @@ impl Integrate for Whitted<'_> {
 }
 
 impl<'w> Whitted<'w> {
-    /// The light that comes along a camera ray.
+    /// Returns the radiance along a camera ray.
     pub fn radiance<T: TraceListener>(&self, ray: &Ray, tally: &mut T) -> Color {
         let mut color = [Color::ZERO];
         self.trace(&[ray.into()], |_| {}, tally, &mut color);
         color[0]
     }
 
-    /// The light along camera rays, and all rays that follow from them: batch by batch, first hits,
-    /// then their light, then the rays that they spawn. `begin` hears the number of the camera ray
-    /// that is worked on.
+    /// Traces camera rays and all rays that follow from them, batch by batch: first hits, then
+    /// lighting, then secondary rays. `begin` is called with the index of the camera ray in
+    /// progress.
     fn trace<T: TraceListener>(&self, rays: &[Ray64], begin: impl Fn(usize), tally: &mut T, colors: &mut [Color]) {
         SCRATCH.with_borrow_mut(|Scratch { queue, points, rays: batch_rays }| {
             queue.clear();
@@ -213,8 +213,8 @@ impl<'w> Whitted<'w> {
         });
     }
 
-    /// Finds what the rays of a batch hit, and which points there are to shade; returns how many.
-    /// What hits nothing is finished; what passes a surface that is none waits again.
+    /// Intersects the rays of a batch and collects the points to shade; returns their number. Rays
+    /// that miss are finished; rays that pass an ignored surface are queued again.
     fn hit<T: TraceListener>(
         &self,
         batch: &[u32],
@@ -262,7 +262,7 @@ impl<'w> Whitted<'w> {
                 Lit { part, diffuse, direct: Direct::default() }
             };
             match &self.world.materials()[point.at.material as usize] {
-                // Most points are of one material.
+                // Fast path: most points have one material.
                 Material::Phong(phong) => parts.push(lit(WeightedMaterial { phong, share: 1.0 })),
                 Material::Solid(..) => parts.extend(self.world.parts(&point.at).into_iter().map(lit)),
             }
@@ -272,8 +272,8 @@ impl<'w> Whitted<'w> {
         count
     }
 
-    /// Works out the light that points scatter against their rays: ambient light, then one light
-    /// after the other.
+    /// Computes the light that points scatter towards their rays: ambient light, then light by
+    /// light.
     fn shade<T: TraceListener>(
         &self,
         points: &mut [Shaded],
@@ -296,7 +296,7 @@ impl<'w> Whitted<'w> {
                 point.color += ambient * met;
             }
         }
-        // Points that a light may reach: their numbers, and the light as they see it.
+        // Points that a light may reach: index, and the light as seen from there.
         let mut lit = [(0, Illumination { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); TOGETHER];
         for number in 0..self.world.lights().len() {
             let mut count = 0;
@@ -308,7 +308,7 @@ impl<'w> Whitted<'w> {
                     *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
                     dark &= direct.is_dark(part.phong);
                 }
-                // Where a light adds nothing, only listeners ask whether it arrives.
+                // Only listeners need the visibility of a light that adds nothing.
                 if (dark || seen.color == Color::ZERO) && !T::LISTENS {
                     continue;
                 }
@@ -331,7 +331,7 @@ impl<'w> Whitted<'w> {
         }
     }
 
-    /// Adds a light to a point's colour, of which a share arrives.
+    /// Adds the visible share of a light to a point's colour.
     #[inline(always)]
     fn add_light<T: TraceListener>(
         &self,
@@ -343,7 +343,7 @@ impl<'w> Whitted<'w> {
     ) {
         for Lit { part, diffuse, direct } in parts {
             let share = part.share;
-            // Nothing is computed of a light that does not arrive.
+            // Skip the computation if no light arrives.
             let dark = visible == Color::ZERO;
             let color = if dark { Color::ZERO } else { direct.color(part.phong, seen) };
             if T::LISTENS {
@@ -362,12 +362,12 @@ impl<'w> Whitted<'w> {
         }
     }
 
-    /// Whether mirrored and transmitted rays are traced yet.
+    /// Returns true if secondary rays are still traced.
     fn goes_on(&self, bounces: u32) -> bool {
         bounces > 0 && !self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// The side of a surface that is shaded.
+    /// Determines the shaded side of a surface.
     #[inline]
     fn side(&self, at: &Interaction) -> Side {
         let (rules, shade_back, n_shade) = (self.world.shading_rules(), self.settings.shade_back, at.surface.n_shade);
@@ -377,15 +377,14 @@ impl<'w> Whitted<'w> {
         Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back }
     }
 
-    /// Whether a ray meets a surface on the side that its normal does not point to.
+    /// Returns true if a ray hits the back of a surface.
     #[inline]
     pub fn sees_back(&self, at: &Interaction) -> bool {
         let shaded = self.world.shading_rules().shaded_sides;
         at.ray.dir().dot(if shaded { at.surface.n_shade } else { at.surface.n_geo }) > 0.0
     }
 
-    /// The diffuse colour at a hit, of each material that makes it up by its share: its albedo,
-    /// without any light.
+    /// Returns the diffuse colour at a hit, weighted over its materials: the albedo.
     pub fn albedo(&self, at: &Interaction) -> Color {
         let parts = self.world.parts(at);
         parts.iter().map(|part| part.share * self.world.diffuse_color(part.phong, &at.surface)).sum()

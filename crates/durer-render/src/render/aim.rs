@@ -1,4 +1,4 @@
-//! Where the samples of a job go.
+//! Camera rays for the samples of a job.
 
 use super::error::center;
 use super::sub_pixels::SubPixels;
@@ -11,60 +11,60 @@ use durer_scene::math::{Ray, Vec2};
 use durer_scene::sampler::{LENS_DIMENSION, PIXEL_DIMENSION, SampleId, Sampler, Sequence};
 use std::array::from_fn;
 
-/// Where a sample goes.
+/// A sample's position, weight and ray.
 pub(super) struct PixelSample {
-    /// In the picture, in pixels from the upper left corner.
+    /// Position in the picture, in pixels from the upper left corner.
     pub(super) place: Vec2,
-    /// In the lens, from 0 to 1.
+    /// Position on the lens, from 0 to 1.
     pub(super) lens: Vec2,
-    /// How much it counts for in the pixel.
+    /// Weight in the pixel.
     pub(super) weight: f32,
-    /// Its ray; `None` where the camera sees nothing.
+    /// Camera ray; `None` if the camera sees nothing there.
     pub(super) ray: Option<Ray>,
 }
 
-/// What the samples of a pixel have in common.
+/// Data shared by the samples of a pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Pixel {
     pub(super) x: u32,
     pub(super) y: u32,
-    /// Its samples.
+    /// Sample id of its samples.
     pub(super) id: SampleId,
-    /// Its middle, in pixels from the upper left corner, and on the square that the camera covers.
+    /// Centre, in pixels from the upper left corner, and in the camera's square.
     center: Vec2,
     point: Vec2,
-    /// Where in the pixel Sobol's samples lie.
+    /// Sobol positions in the pixel.
     positions: Sequence,
 }
 
-/// How many samples are aimed side by side.
+/// Number of samples that are generated with SIMD.
 pub(super) const BATCH: usize = 8;
 
-/// Samples that are aimed side by side.
+/// A group of samples to generate together.
 pub(super) trait Several {
-    /// How many there are, at most [`BATCH`].
+    /// Returns the number of samples, at most [`BATCH`].
     fn len(&self) -> usize;
 
-    /// The pixel of one; also where there are less, of some pixel.
+    /// Returns the pixel of a sample; any pixel for unused slots.
     fn pixel(&self, i: usize) -> &Pixel;
 
-    /// Its number in the pixel.
+    /// Returns the index of a sample in its pixel.
     fn number(&self, i: usize) -> u32;
 }
 
-/// Some samples, of one pixel or several.
+/// Samples of one or several pixels.
 pub(super) struct Batch {
     of: [(Pixel, u32); BATCH],
     len: usize,
 }
 
 impl Batch {
-    /// None, of a film that has this pixel.
+    /// Creates an empty batch; unused slots refer to the pixel `some`.
     pub(super) fn new(some: Pixel) -> Self {
         Batch { of: [(some, 0); BATCH], len: 0 }
     }
 
-    /// Adds one; `true` where it is the last that there is room for.
+    /// Adds a sample; returns `true` if the batch is full.
     pub(super) fn push(&mut self, pixel: &Pixel, sample: u32) -> bool {
         self.of[self.len] = (*pixel, sample);
         self.len += 1;
@@ -93,7 +93,7 @@ impl Several for Batch {
     }
 }
 
-/// As many samples of one pixel as are aimed side by side, from a number on.
+/// [`BATCH`] consecutive samples of one pixel.
 pub(super) struct Row<'a> {
     pub(super) pixel: &'a Pixel,
     pub(super) first: u32,
@@ -116,7 +116,7 @@ impl Several for Row<'_> {
     }
 }
 
-/// Aims the samples of a job.
+/// Generates camera rays for the samples of a job.
 pub(super) struct Aim<'a> {
     world: &'a World,
     job: &'a Job,
@@ -135,18 +135,18 @@ impl<'a> Aim<'a> {
         Aim { world, job, raster, warp, has_aperture: world.camera().has_aperture() }
     }
 
-    /// The size of a sample's weight.
+    /// Returns the magnitude of a sample's weight.
     pub(super) fn gain(&self) -> f32 {
         self.warp.as_ref().map_or(1.0, FilterSampler::gain)
     }
 
-    /// What the samples of a pixel have in common.
+    /// Returns the shared data of a pixel.
     pub(super) fn pixel(&self, x: u32, y: u32) -> Pixel {
         let (id, center) = (SampleId::new(self.job.seed, (x, y), 0), center(x, y));
         Pixel { x, y, id, center, point: self.raster.point(center), positions: id.sequence(PIXEL_DIMENSION) }
     }
 
-    /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
+    /// Generates a sample, for samplings whose samples affect their own pixel only.
     pub(super) fn sample(&self, pixel: &Pixel, sample: u32) -> PixelSample {
         let middle = Vec2::splat(0.5);
         let (place, lens, weight) = match (self.job.sampling, &self.warp) {
@@ -158,15 +158,14 @@ impl<'a> Aim<'a> {
             (Sampling::Course2004 { sampler, samples, .. }, _) => {
                 return self.kept((sampler, sampler.round_up(samples)), pixel.x, pixel.y, sample).0;
             }
-            // One ray through the middles of pixel and lens.
+            // One ray through the centres of pixel and lens.
             _ => (pixel.center, middle, 1.0),
         };
         let at = CameraSample { point: self.raster.point(place), pixel: pixel.point, lens };
         PixelSample { place, lens, weight, ray: self.world.camera().ray(self.world.camera_frame(), &at) }
     }
 
-    /// Gives ray and weight of some samples, one after the other, as [`Aim::sample`] has them one by
-    /// one.
+    /// Generates ray and weight of several samples, with the same results as [`Aim::sample`].
     pub(super) fn several(&self, of: &impl Several, mut take: impl FnMut(usize, Option<Ray>, f32)) {
         let mut take = |i: usize, ray, weight| {
             if i < of.len() {
@@ -200,8 +199,8 @@ impl<'a> Aim<'a> {
         self.world.camera().rays(self.world.camera_frame(), &samples, take);
     }
 
-    /// Where a sample goes that keeps its place in its pixel, which comes with it. It counts for
-    /// more pixels than one, as a filter says.
+    /// Generates a sample that affects several pixels through a filter; also returns its position
+    /// in the pixel.
     pub(super) fn kept(&self, (sampler, samples): (Sampler, u32), x: u32, y: u32, sample: u32) -> (PixelSample, Vec2) {
         let position = sampler.pixel_position(self.job.seed, x, y, sample, samples);
         let (place, lens) = (Vec2::new(x as f32, y as f32) + position, self.lens(sampler, x, y, sample));
@@ -209,14 +208,14 @@ impl<'a> Aim<'a> {
         (PixelSample { place, lens, weight: 1.0, ray }, position)
     }
 
-    /// Where the sample of a sub-pixel goes.
+    /// Generates the sample of a sub-pixel.
     pub(super) fn sub_pixel(&self, grid: &SubPixels, raster: &Raster, (x, y): (u32, u32)) -> PixelSample {
         let (place, lens) = (grid.place(self.job.seed, (x, y)), self.lens(Sampler::Random, x, y, 0));
         let ray = camera_ray(self.world, raster, (x, y), place, lens);
         PixelSample { place: place / grid.scale() as f32, lens, weight: 1.0, ray }
     }
 
-    /// Where in the lens a sample lies. A lens without extent needs no numbers.
+    /// Returns a sample's position on the lens. A pinhole needs no random numbers.
     fn lens(&self, sampler: Sampler, x: u32, y: u32, sample: u32) -> Vec2 {
         match self.has_aperture {
             true => sampler.lens_position(self.job.seed, x, y, sample),
@@ -225,7 +224,7 @@ impl<'a> Aim<'a> {
     }
 }
 
-/// Aims some samples as a filter wants them.
+/// SIMD kernel for filtered sampling.
 struct AimKernel<'a, S, F> {
     aim: &'a Aim<'a>,
     warp: &'a FilterSampler,

@@ -1,20 +1,20 @@
-//! How many samples each pixel gets, where more are taken where the picture is noisier.
+//! Adaptive allocation: more samples for noisier pixels.
 //!
-//! Of a given number of samples the mean square error is least if each pixel's is proportional to
-//! the standard deviation of its samples (Neyman 1934; Cochran, *Sampling Techniques*, 1977,
-//! section 5.5). So first all pixels get the same, the pilot: a quarter. Then it is decided, once,
-//! how many each has in the end, from exact sums and in a fixed order.
+//! For a fixed number of samples, the mean squared error is minimal if each pixel's number is
+//! proportional to the standard deviation of its samples (Neyman 1934; Cochran, *Sampling
+//! Techniques*, 1977, section 5.5). First every pixel gets the same number, the pilot: a quarter.
+//! Then the final number of each is decided once, from exact sums and in a fixed order.
 //!
-//! What is asked for is the deviation that is left as more samples are taken. Where they lie as
-//! Sobol's do, that is far less than they differ at the edges of things: so it is told by how much
-//! the second half of the pilot moves a pixel's mean, and not by the variance of its samples.
+//! The relevant deviation is the one that remains as more samples are taken. For Sobol points it is
+//! far less than the deviation between samples at edges. So it is estimated by how much the second
+//! half of the pilot moves a pixel's mean, not by the variance of its samples.
 //!
-//! A pixel's own samples have no say in it. If they had, those that found much light by chance
-//! would bring more samples beside them and count less, and the picture would be too dark (Kirk and
-//! Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). So pixels are coloured as a
-//! chessboard is. Each colour has its share of all samples, and how they are divided is decided by
-//! the pixels of the other colour: their samples are independent, and near ones have about the same
-//! variance. Nothing that a pixel's number follows from hangs on its samples, so there is no bias.
+//! A pixel's sample count never depends on its own samples. Otherwise, samples that found much
+//! light by chance would attract more samples and count less, and the picture would be too dark
+//! (Kirk and Arvo, *Unbiased Sampling Techniques for Image Synthesis*, 1991). So pixels are
+//! coloured like a chessboard. Each colour has its share of all samples, distributed by the pixels
+//! of the other colour: their samples are independent, and neighbours have about the same variance.
+//! The estimate is therefore unbiased.
 
 #[cfg(test)]
 mod tests;
@@ -25,40 +25,39 @@ use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
 use std::sync::Arc;
 
-/// The fewest samples a pixel, on average, that can be divided.
+/// Minimum average number of samples a pixel for adaptive sampling.
 pub const LEAST_ADAPTIVE: u32 = 16;
 
-/// The fewest samples of half a pilot.
+/// Minimum number of samples in half a pilot.
 const LEAST_HALF: u32 = 4;
 
-/// No pixel gets more than so many times the average.
+/// Maximum number of samples of a pixel, relative to the average.
 const MOST_TIMES: u32 = 64;
 
-/// No pixel gets more samples than this, which a film can hold of any light.
+/// Maximum number of samples of a pixel: a film can hold this many of any brightness.
 const MOST: u32 = 1 << 20;
 
-/// Weights of the pixels up to six away, down and across: binomial coefficients. The product of
-/// both is about a normal distribution of standard deviation 1.7.
+/// Weights of the pixels up to six away, down and across: binomial coefficients. Their product
+/// approximates a normal distribution of standard deviation 1.7.
 const WEIGHTS: [f32; 13] = [1.0, 12.0, 66.0, 220.0, 495.0, 792.0, 924.0, 792.0, 495.0, 220.0, 66.0, 12.0, 1.0];
 
-/// Half of the samples that every pixel gets before it is decided who gets more, of so many on
-/// average.
+/// Returns half the number of samples of the pilot, for an average of `samples`.
 pub(super) fn half(samples: u32) -> u32 {
     (samples / 8).max(LEAST_HALF)
 }
 
-/// All of those.
+/// Returns the number of samples of the pilot.
 pub(super) fn pilot(samples: u32) -> u32 {
     2 * half(samples)
 }
 
-/// The most samples that a pixel gets, of so many on average.
+/// Returns the maximum number of samples of a pixel, for an average of `samples`.
 pub(super) fn most(samples: u32) -> u32 {
     samples.saturating_mul(MOST_TIMES).min(MOST.max(samples))
 }
 
-/// How many samples a pixel has when there are `end` a pixel on average, of `samples` in all: the
-/// pilot's, and then its part of what it will have.
+/// Returns the number of samples of a pixel when the average is `end` of `samples`: the pilot's,
+/// plus its share of its final number.
 pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     let pilot = pilot(samples);
     if end <= pilot {
@@ -68,10 +67,10 @@ pub(super) fn count(samples: u32, target: u32, end: u32) -> u32 {
     pilot + (more * gone / all) as u32
 }
 
-/// Why the samples of a job cannot be divided, if they cannot.
+/// Returns the reason why a job cannot be sampled adaptively, if there is one.
 pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     let is_spread = match job.sampling {
-        // A pixel's centre is too few, which is told as that.
+        // `Center` is refused below for too few samples.
         Sampling::Center | Sampling::Filtered { .. } => true,
         Sampling::Course2004 { sampler, filter: None, .. } => matches!(sampler, Sampler::Sobol | Sampler::Random),
         _ => false,
@@ -95,8 +94,8 @@ pub(super) fn refusal(job: &Job, is_whole: bool) -> Option<String> {
     Some(why)
 }
 
-/// The variance of the mean luminance of each of a block's pixels, from half a pilot and all of it:
-/// of two independent halves it is the square of half their difference, on average.
+/// Returns the variance of the mean luminance of each pixel in a block, from half a pilot and the
+/// whole: half the difference of two independent halves, squared, is an unbiased estimate.
 pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
     let luminance = |film: &Film, (x, y)| luminance_of(film.resolve(x, y));
     let square = |place| {
@@ -106,7 +105,7 @@ pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
     rect.places().map(square).map(|square| if square.is_finite() { square } else { 0.0 }).collect()
 }
 
-/// The variance of each pixel's mean as those of the other colour around it tell.
+/// Estimates the variance of each pixel's mean from the neighbours of the other colour.
 pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     let (height, reach) = (variances.len() / width, WEIGHTS.len() / 2);
     let mut row = vec![(0.0_f32, 0.0_f32); width];
@@ -130,21 +129,21 @@ pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     found
 }
 
-/// Divides as many samples a pixel by the pixels' standard deviations: none gets fewer than the
-/// pilot's. What nobody needs is left over.
+/// Distributes `samples` a pixel in proportion to standard deviations, at least the pilot's for
+/// each. Samples that no pixel needs are left over.
 pub(super) fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
     let (least, most) = (f64::from(pilot(samples)), f64::from(most(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);
     let all = deviations.len() as f64 * f64::from(samples);
-    // The greatest factor that does not take too many. The bits of positive numbers are in their
-    // order.
+    // Bisect for the greatest factor that stays within the budget. The bits of positive floats are
+    // ordered like the floats.
     let (mut low, mut high) = (0, f64::MAX.to_bits());
     while low < high {
         let middle = high - (high - low) / 2;
         let spent: f64 = deviations.iter().map(|&deviation| wanted(f64::from_bits(middle), deviation)).sum();
         if spent <= all { low = middle } else { high = middle - 1 }
     }
-    // What rounding takes from one the next one gets, so the sum is as it should be.
+    // Carry rounding errors to the next pixel, so that the sum is exact.
     let (mut sum, mut given) = (0.0, 0.0);
     let rounded = |&deviation: &f32| {
         sum += wanted(f64::from_bits(low), deviation);

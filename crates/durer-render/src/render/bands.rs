@@ -1,4 +1,4 @@
-//! Pictures larger than memory: made in bands of rows, which are written and forgotten.
+//! Pictures larger than memory: rendered in bands of rows that are written and freed.
 
 use super::{BLOCK, Control, Crop, Job, PartialRender, RenderError, RenderOutcome, Shard, Statistics};
 use crate::world::World;
@@ -7,10 +7,10 @@ use durer_scene::source::Digest;
 use std::io::{self, Write};
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Bytes of a band, where more are allowed: larger ones would not be made any faster.
+/// Maximum bytes of a band; larger ones would not be faster.
 const ENOUGH: u64 = 256 << 20;
 
-/// The colour picture of a job, that may be of any size.
+/// The colour picture of a job, of any size.
 #[derive(Debug)]
 pub struct Bands {
     job: Job,
@@ -18,25 +18,25 @@ pub struct Bands {
     rows: u32,
 }
 
-/// Why it was not made.
+/// Error of a render in bands.
 #[derive(Debug, thiserror::Error)]
 pub enum BandsError {
-    /// It cannot be rendered.
+    /// The render failed.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// The format cannot hold it.
+    /// The format cannot store the picture.
     #[error(transparent)]
     Image(#[from] ImageError),
-    /// It cannot be written.
+    /// Writing failed.
     #[error(transparent)]
     Io(#[from] io::Error),
 }
 
 impl Bands {
-    /// The picture of a job in bands that take at most so many bytes each.
+    /// Divides the picture of a job into bands of at most `memory` bytes each.
     ///
     /// # Errors
-    /// [`RenderError::Bands`] for what needs all pixels at once, and [`RenderError::Memory`] where
+    /// [`RenderError::Bands`] for jobs that need all pixels at once, and [`RenderError::Memory`] if
     /// not even one row of blocks fits.
     pub fn new(job: &Job, memory: u64) -> Result<Self, RenderError> {
         let refuse = |why: &str| Err(RenderError::Bands(why.into()));
@@ -61,12 +61,12 @@ impl Bands {
         }
     }
 
-    /// Bytes that a band takes.
+    /// Returns the bytes of a band.
     pub fn bytes_needed(&self) -> u64 {
         self.crops().first().map_or(0, |crop| PartialRender::bytes_needed(&self.band(*crop), Shard::WHOLE))
     }
 
-    /// The parts, from top to bottom. They end where blocks end in the whole picture.
+    /// Returns the bands from top to bottom. They end at block boundaries of the whole picture.
     fn crops(&self) -> Vec<Crop> {
         let window = self.job.window();
         let (mut crops, mut top, end) = (Vec::new(), window.top, window.top + window.height);
@@ -82,11 +82,11 @@ impl Bands {
         Job { crop: Some(crop), ..self.job.clone() }
     }
 
-    /// Makes the picture and writes it. What was counted comes back, and the hash that
-    /// [`PartialRender::hash`] of all of it has, for formats whose top row comes first.
+    /// Renders and writes the picture. Returns statistics and, for top-down formats, the hash that
+    /// [`PartialRender::hash`] of the whole picture would have.
     ///
     /// # Errors
-    /// [`BandsError`]; what was written is not whole then.
+    /// [`BandsError`]; the output is incomplete then.
     pub fn write(
         &self,
         world: &World,
@@ -97,8 +97,7 @@ impl Bands {
     ) -> Result<(Statistics, Option<Digest>), BandsError> {
         let window = self.job.window();
         let bottom_up = format.rows.is_some_and(|rows| rows.bottom_up);
-        // Whether the camera sees all is not known before the end: where it may not, there is
-        // alpha.
+        // Full coverage is only known at the end: if it is possibly incomplete, write alpha.
         let (width, height, display) = (window.width, window.height, options.display);
         let strip = Strip { width, height, alpha: !sees_all(world, &self.job), display };
         let samples = u64::from(self.job.sampling.samples());
@@ -125,7 +124,7 @@ impl Bands {
     }
 }
 
-/// Whether the camera has a ray for each of many pixels, the corners among them.
+/// Returns true if the camera has a ray for each pixel of a grid that includes the corners.
 fn sees_all(world: &World, job: &Job) -> bool {
     const ACROSS: u32 = 256;
     let (window, raster) = (job.window(), super::raster(world, job.width, job.height));

@@ -1,9 +1,8 @@
-//! How a picture is cut: into blocks, which never change, tiles of blocks, which threads take, and
-//! shards.
+//! Subdivision of a picture: fixed blocks, tiles of blocks as tasks for threads, and shards.
 //!
-//! All that decides anything (which shard makes a pixel, where noise is low enough) goes by blocks
-//! of 8 x 8 pixels, whose corners lie at multiples of 8 in the whole picture. So the size of tiles
-//! changes nothing.
+//! All decisions (which shard renders a pixel, where noise is low enough) use blocks of 8 x 8
+//! pixels, whose corners are at multiples of 8 in the whole picture. So the tile size does not
+//! affect the result.
 
 use super::Crop;
 use serde::{Deserialize, Serialize};
@@ -12,21 +11,21 @@ use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
-/// Pixels across and down a block.
+/// Width and height of a block in pixels.
 pub const BLOCK: u32 = 8;
 
-/// The blocks of a window, numbered in reading order. Those at the window's edges may be smaller.
+/// The blocks of a window in reading order. Blocks at the window's edges may be smaller.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blocks {
     window: Crop,
-    /// First column and row of blocks, counted in the whole picture.
+    /// First column and row of blocks in the whole picture.
     first: (u32, u32),
     columns: u32,
     rows: u32,
 }
 
 impl Blocks {
-    /// The blocks of a window that is not empty.
+    /// Returns the blocks of a non-empty window.
     pub fn new(window: Crop) -> Self {
         let first = (window.left / BLOCK, window.top / BLOCK);
         let columns = (window.left + window.width).div_ceil(BLOCK) - first.0;
@@ -34,12 +33,12 @@ impl Blocks {
         Blocks { window, first, columns, rows }
     }
 
-    /// How many there are.
+    /// Returns the number of blocks.
     pub fn count(&self) -> usize {
         self.columns as usize * self.rows as usize
     }
 
-    /// The pixels of a block.
+    /// Returns the pixels of a block.
     pub fn rect(&self, index: usize) -> Crop {
         let (column, row) = (index as u32 % self.columns + self.first.0, index as u32 / self.columns + self.first.1);
         let side = |block: u32, start: u32, length: u32| {
@@ -51,18 +50,18 @@ impl Blocks {
         Crop { left, top, width, height }
     }
 
-    /// The numbers of the blocks of each row of them.
+    /// Returns the indices of the blocks in each row.
     pub fn rows(&self) -> impl Iterator<Item = Range<usize>> {
         let columns = self.columns as usize;
         (0..self.count() / columns.max(1)).map(move |row| row * columns..(row + 1) * columns)
     }
 
-    /// The number of the block that holds a pixel of the window.
+    /// Returns the index of the block that contains a pixel of the window.
     pub fn at(&self, x: u32, y: u32) -> usize {
         (y / BLOCK - self.first.1) as usize * self.columns as usize + (x / BLOCK - self.first.0) as usize
     }
 
-    /// Some blocks, by the tiles in which they lie; tiles in reading order.
+    /// Groups blocks into tiles; tiles in reading order.
     pub fn tiles(&self, chosen: impl Iterator<Item = usize>, side: u32) -> Vec<Vec<usize>> {
         let blocks_a_side = side.div_ceil(BLOCK).max(1);
         let mut tiles: BTreeMap<(u32, u32), Vec<usize>> = BTreeMap::new();
@@ -75,45 +74,45 @@ impl Blocks {
     }
 }
 
-/// How work is split over machines.
+/// Division of work between machines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ShardBy {
-    /// Each makes some of the pixels, wholly.
+    /// Each shard renders some of the pixels.
     #[default]
     Tiles,
-    /// Each takes some of the samples of every pixel.
+    /// Each shard renders some of the samples of every pixel.
     Samples,
 }
 
 /// One of several parts of the work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Shard {
-    /// Which one, from 1.
+    /// Index, from 1.
     pub index: u32,
-    /// How many there are.
+    /// Number of shards.
     pub count: u32,
-    /// How the work is split.
+    /// Division of the work.
     pub by: ShardBy,
 }
 
 impl Shard {
-    /// All of it.
+    /// Shard that contains the entire work.
     pub const WHOLE: Shard = Shard { index: 1, count: 1, by: ShardBy::Tiles };
 
-    /// Whether it has the pixels of a block. Neighbours go to different shards, which so have about
-    /// as much work.
+    /// Returns true if the shard has the pixels of a block. Neighbouring blocks belong to different
+    /// shards, which balances the work.
     pub fn has_block(self, index: usize) -> bool {
         self.by == ShardBy::Samples || self.has_rays(index)
     }
 
-    /// Whether it has the rays through the centres of a block's pixels: these are split by blocks
-    /// in any case.
+    /// Returns true if the shard has the centre rays of a block, which are always divided by
+    /// blocks.
     pub fn has_rays(self, index: usize) -> bool {
         index as u64 % u64::from(self.count) == u64::from(self.index - 1)
     }
 
-    /// Its samples of those of a pixel: from the first to before the last.
+    /// Returns its half-open range of a pixel's samples.
     pub fn range(self, samples: u32) -> (u32, u32) {
         let end = |index: u32| (u64::from(samples) * u64::from(index) / u64::from(self.count)) as u32;
         if self.by == ShardBy::Tiles { (0, samples) } else { (end(self.index - 1), end(self.index)) }
@@ -129,7 +128,7 @@ impl fmt::Display for Shard {
 impl FromStr for Shard {
     type Err = String;
 
-    /// Reads `3/16`: the third of sixteen, by tiles.
+    /// Parses `3/16`: the third of sixteen, by tiles.
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.trim().parse().ok()?, n.trim().parse().ok()?)));
         let (index, count) = numbers.ok_or("say it as 3/16: the third of sixteen")?;

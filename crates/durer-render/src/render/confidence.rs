@@ -1,16 +1,16 @@
-//! How far a pixel may be from the truth, noise and bias together.
+//! Error bounds of pixels from noise and bias.
 //!
-//! Of n samples the mean has a standard error. Photons have a bias besides: light is the mean of a
-//! neighbourhood. The same photons with a kernel that is right to second order (see
-//! [`crate::integrator::Photons::corrected`]) tell it. With mean M, corrected mean C and the
-//! standard error s of C, the truth lies within t s of C with some confidence, where t is Student's
-//! quantile of n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
+//! The mean of n samples has a standard error. Photons also have a bias, because the estimate
+//! averages over a neighbourhood. The same photons with a second-order kernel (see
+//! [`crate::integrator::Photons::corrected`]) estimate it. With mean M, corrected mean C and the
+//! standard error s of C, the truth is within t s of C at some confidence, where t is Student's
+//! quantile with n - 1 degrees of freedom; so it is at most |M - C| + t s away from M.
 //!
 //! Source: Hachisuka, Jarosz and Jensen, *A Progressive Error Estimation Framework for Photon
-//! Density Estimation*, 2010. There the bias comes of derivatives of a smooth kernel, here of two
-//! kernels over the same photons; with radii that are the same for all pixels (Knaus and Zwicker
-//! 2011) it is an ordinary mean over samples. As there, light is taken to be smooth within the
-//! radius: at the sharp edge of a caustic about six tenths of the bias are found.
+//! Density Estimation*, 2010. There the bias comes from derivatives of a smooth kernel, here from
+//! two kernels over the same photons; with equal radii for all pixels (Knaus and Zwicker 2011) it
+//! is an ordinary mean over samples. As there, light is assumed to be smooth within the radius: at
+//! the sharp edge of a caustic, about six tenths of the bias are found.
 
 use super::part::PartialRender;
 use super::run::whole;
@@ -22,25 +22,25 @@ use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
 use serde::Serialize;
 
-/// The confidence with which an error is at most its bound.
+/// Confidence of the error bounds.
 pub const CONFIDENCE: f64 = 0.9;
 
-/// How far a pixel's luminance may be from the truth.
+/// Error bound of a pixel's luminance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ErrorBound {
-    /// Its luminance.
+    /// Luminance.
     pub luminance: f64,
-    /// How much of that is bias, by estimate: of photons alone; may be negative.
+    /// Estimated bias in it; only photons have one. May be negative.
     pub bias: f64,
-    /// The standard error of the luminance without the bias.
+    /// Standard error of the luminance without the bias.
     pub standard_error: f64,
-    /// With a confidence of [`CONFIDENCE`] the luminance is not further than this from the truth;
-    /// infinite for one sample.
+    /// Bound of the absolute error of the luminance, with a confidence of [`CONFIDENCE`]; infinite
+    /// for one sample.
     pub bound: f64,
 }
 
 impl ErrorBound {
-    /// Of a pixel's samples, and of the same samples corrected.
+    /// Computes the bound from a pixel's samples, and the same samples corrected.
     pub(super) fn new(own: &Sums, corrected: &Sums) -> Self {
         let (luminance, without) = (own.luminance(), corrected.luminance());
         let standard_error = corrected.variance().sqrt();
@@ -49,24 +49,23 @@ impl ErrorBound {
         ErrorBound { luminance, bias, standard_error, bound: bias.abs() + student(freedom) * standard_error }
     }
 
-    /// The bounds on the luminance without the bias, between which the truth lies with a confidence
-    /// of [`CONFIDENCE`].
+    /// Returns the confidence interval of the true luminance, for a confidence of [`CONFIDENCE`].
     pub fn interval(&self) -> (f64, f64) {
         let (middle, half) = (self.luminance - self.bias, self.bound - self.bias.abs());
         (middle - half, middle + half)
     }
 }
 
-/// The quantile of Student's distribution that is passed with probability (1 - [`CONFIDENCE`]) / 2;
-/// infinite without degrees of freedom.
+/// Returns the quantile of Student's distribution with upper tail probability (1 - [`CONFIDENCE`])
+/// / 2; infinite without degrees of freedom.
 ///
 /// Source: Abramowitz and Stegun, *Handbook of Mathematical Functions*, 26.7.5. It is 5 % too small
-/// for one degree of freedom, and right to 0.3 % from two on.
+/// for one degree of freedom, and accurate to 0.3 % from two on.
 fn student(freedom: f64) -> f64 {
     if freedom < 1.0 {
         return f64::INFINITY;
     }
-    // The normal distribution's quantile of 0.95.
+    // The 0.95 quantile of the normal distribution.
     let z = 1.644_853_626_951_472_7_f64;
     let (square, mut power) = (z * z, z);
     // z and its odd powers up to the ninth.
@@ -87,7 +86,7 @@ fn student(freedom: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum / freedom + term)
 }
 
-/// The method whose samples have no bias, where a method's have some.
+/// Returns the bias-corrected variant of a method, if it has a bias.
 pub(super) fn corrected(method: Method) -> Option<Method> {
     match method {
         Method::Photons(photons) => Some(Method::Photons(PhotonParameters { corrected: true, ..photons })),
@@ -96,13 +95,13 @@ pub(super) fn corrected(method: Method) -> Option<Method> {
 }
 
 impl PartialRender {
-    /// How far each pixel's luminance may be from the truth, with a confidence of [`CONFIDENCE`]:
-    /// the values, and a heat map of them up to 0.1. It is made beside the work, whose sums and
-    /// hash it leaves alone. Photons are followed a second time for it.
+    /// Computes the error bound of each pixel's luminance with a confidence of [`CONFIDENCE`]: the
+    /// values, and a heat map of them up to 0.1. Does not change the sums and hash of the part.
+    /// Traces photons a second time.
     ///
     /// # Errors
-    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons whose
-    /// pixels have samples as noise or time allows.
+    /// [`RenderError`], as for the picture itself; [`RenderError::Diagram`] for photons with
+    /// adaptive or time-limited sampling.
     pub fn error(&self, world: &World, threads: Option<usize>) -> Result<[Layer; 2], RenderError> {
         let made = |job: &Job| whole(world, job, &Control { threads, ..Control::default() });
         let job = Job { color: true, aovs: Vec::new(), ..self.job.clone() };
@@ -126,8 +125,8 @@ impl PartialRender {
         Ok([Layer::data("error", values), Layer::data("error", shown)])
     }
 
-    /// The bound of each pixel, with another part that has the same samples corrected; infinite
-    /// where there are none.
+    /// Returns the bound of each pixel, given another part with the same samples corrected;
+    /// infinite without samples.
     fn error_bounds(&self, other: Option<&PartialRender>) -> Vec<f32> {
         let (window, gain) = (self.job.window(), self.gain());
         let (state, other) = (self.state(), other.map(PartialRender::state));

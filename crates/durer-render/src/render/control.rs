@@ -1,43 +1,43 @@
-//! What only decides when and with how much a picture is made.
+//! Execution options of a render.
 
 use std::sync::atomic::{AtomicBool, AtomicU64};
 use std::time::Duration;
 
-/// How a picture is made: nothing in here changes a bit of a finished one.
+/// Execution options and progress. They do not change a finished picture.
 #[derive(Debug, Default)]
 pub struct Control {
-    /// Threads; `None`: as many as the machine has.
+    /// Number of threads; `None`: all of the machine.
     pub threads: Option<usize>,
-    /// Pixels across and down a tile, the work that a thread takes at once; rounded up to a
-    /// multiple of 8. `None`: a suitable number.
+    /// Side of a tile in pixels, the task of a thread; rounded up to a multiple of 8. `None`:
+    /// automatic.
     pub tile: Option<u32>,
-    /// After this time no more samples are taken, once every pixel has one.
+    /// Time limit after which no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,
-    /// After so many tiles no more work is done, as if it were cancelled: for tests of resuming.
+    /// Number of tiles after which the render stops as if cancelled, for tests of resuming.
     pub most_tiles: Option<u64>,
-    /// How often the watcher is told that it is time to save.
+    /// Interval at which the callback is asked to save.
     pub save_every: Option<Duration>,
-    /// Bytes that may be taken; `None`: any number.
+    /// Memory limit in bytes; `None`: unlimited.
     pub memory: Option<u64>,
-    /// Set by the caller to stop.
+    /// Set by the caller to cancel.
     pub cancel: AtomicBool,
-    /// All samples and rays for data that are to be done; see [`super::PartialRender::work`].
+    /// Total number of samples and data rays; see [`super::PartialRender::work`].
     pub all: AtomicU64,
-    /// How many of them are done.
+    /// Number of them that are done.
     pub done: AtomicU64,
-    /// Rays traced so far.
+    /// Number of rays traced so far.
     pub rays: AtomicU64,
-    /// Whether `all` is that of several renders, which count on with `done`.
+    /// True if `all` covers several renders, which continue to count in `done`.
     pub goes_on: bool,
 }
 
-/// Until when work goes on.
+/// End of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Until {
-    /// All is done.
+    /// Until everything is done.
     End,
-    /// All passes are done that end with so many samples a pixel, or fewer.
+    /// Until all passes with at most this many samples a pixel are done.
     Samples(u32),
-    /// A single pass is done that ends with so many samples a pixel.
+    /// After the single pass that ends with this many samples a pixel.
     Pass(u32),
 }

@@ -1,4 +1,4 @@
-//! Parts of pictures.
+//! Rectangular parts of pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -9,24 +9,24 @@ pub struct Crop {
     pub left: u32,
     /// First row.
     pub top: u32,
-    /// Columns.
+    /// Width.
     pub width: u32,
-    /// Rows.
+    /// Height.
     pub height: u32,
 }
 
 impl Crop {
-    /// One pixel.
+    /// A single pixel.
     pub fn pixel((left, top): (u32, u32)) -> Crop {
         Crop { left, top, width: 1, height: 1 }
     }
 
-    /// How many pixels it has.
+    /// Returns the number of pixels.
     pub fn pixels(self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
 
-    /// The least part around this one and another.
+    /// Returns the smallest crop that contains both.
     pub fn around(self, other: Crop) -> Crop {
         let (left, top) = (self.left.min(other.left), self.top.min(other.top));
         let right = (self.left + self.width).max(other.left + other.width);
@@ -34,7 +34,7 @@ impl Crop {
         Crop { left, top, width: right - left, height: bottom - top }
     }
 
-    /// The same with some pixels more on each side, within another.
+    /// Returns the crop grown by some pixels on each side, clipped to another.
     pub fn grown(self, by: u32, within: Crop) -> Crop {
         let (left, top) = (self.left.saturating_sub(by), self.top.saturating_sub(by));
         let right = self.left.saturating_add(self.width).saturating_add(by).min(within.width);
@@ -42,7 +42,7 @@ impl Crop {
         Crop { left, top, width: right - left, height: bottom - top }
     }
 
-    /// Whether a pixel lies in it.
+    /// Returns true if it contains a pixel.
     pub fn holds(self, x: u32, y: u32) -> bool {
         x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
     }
@@ -52,7 +52,7 @@ impl Crop {
         (y - self.top) as usize * self.width as usize + (x - self.left) as usize
     }
 
-    /// Its pixels, in reading order.
+    /// Iterates over the pixels in reading order.
     pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
         (self.top..self.top + self.height).flat_map(move |y| (self.left..self.left + self.width).map(move |x| (x, y)))
     }

@@ -1,4 +1,4 @@
-//! The colour picture without its noise.
+//! The denoised colour picture.
 
 use super::part::PartialRender;
 use super::{Control, Job, RenderError, render};
@@ -8,32 +8,32 @@ use durer_image::denoise::{Guides, denoise};
 use durer_image::{Image, Layer};
 use durer_scene::math::Vec3;
 
-/// The pictures that say what each pixel's surface is.
+/// AOVs that guide the denoiser.
 const GUIDES: [&str; 3] = ["albedo", "normals", "position"];
 
-/// A colour picture with its noise, and what is known of each pixel: what denoisers need.
+/// A noisy colour picture with auxiliary data for denoisers.
 #[derive(Clone, Debug)]
 pub struct Noisy {
     /// The picture, as rendered.
     pub picture: Image,
-    /// How much of each pixel the camera sees.
+    /// Coverage of each pixel.
     pub coverage: Vec<f32>,
-    /// The surface's own colour.
+    /// Albedo of the surface.
     pub albedo: Vec<Vec3>,
-    /// Its normal; zero where nothing is hit.
+    /// Normal of the surface; zero for misses.
     pub normal: Vec<Vec3>,
-    /// Its place.
+    /// World-space position of the surface.
     pub position: Vec<Vec3>,
-    /// The variance of the mean luminance.
+    /// Variance of the mean luminance.
     pub variance: Vec<f32>,
 }
 
 impl PartialRender {
-    /// The colour picture of what is there, with its guides by one ray a pixel. It is made beside
-    /// the work, whose sums and hash it leaves alone.
+    /// Returns the current colour picture with its guides, from one ray a pixel. Does not change
+    /// the sums and hash of the part.
     ///
     /// # Errors
-    /// [`RenderError`], as for a picture of one ray a pixel.
+    /// [`RenderError`], as for a picture with one ray a pixel.
     pub fn noisy(&self, world: &World, threads: Option<usize>) -> Result<Noisy, RenderError> {
         let aovs = GUIDES.iter().filter_map(|name| Aov::from_name(name)).collect();
         let job = Job { color: false, aovs, noise: None, adaptive: false, ..self.job.clone() };
@@ -51,8 +51,8 @@ impl PartialRender {
 }
 
 impl Noisy {
-    /// Without noise by our own denoiser: see [`denoise`]. It has the same bits on any number of
-    /// threads.
+    /// Denoises with our own denoiser: see [`denoise`]. The result has the same bits on any number
+    /// of threads.
     pub fn denoised(self) -> Layer {
         let Noisy { picture, albedo, normal, position, variance, .. } = &self;
         let clean = denoise(picture, &Guides { albedo, normal, position, variance });
@@ -60,7 +60,7 @@ impl Noisy {
         self.layer(clean)
     }
 
-    /// A picture without noise as the layer that goes beside the noisy one.
+    /// Wraps a denoised picture as a layer.
     pub fn layer(self, clean: Image) -> Layer {
         Layer::color("denoised", clean).with_coverage(self.coverage)
     }

@@ -1,4 +1,4 @@
-//! Why a pixel has its colour: every sample, and the tree of terms that it is the sum of.
+//! Explanation of a pixel's colour: every sample, and the tree of its terms.
 
 pub mod check;
 mod course;
@@ -23,61 +23,60 @@ use serde::Serialize;
 use std::sync::atomic::AtomicBool;
 pub use text::{Names, Telling, TextLine, number, ray_text};
 
-/// A pixel and all that made it.
+/// A pixel and everything that contributed to it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Explanation {
     /// Column from the left.
     pub x: u32,
     /// Row from the top.
     pub y: u32,
-    /// The pixel's colour, as a file of floating point has it.
+    /// Colour, as in a floating-point file.
     pub color: Color,
-    /// The share of it that the camera sees at all.
+    /// Coverage.
     pub coverage: f32,
-    /// How its samples become its colour; see [`Explanation::sum`].
+    /// Combination of the samples; see [`Explanation::sum`].
     pub mean: Mean,
-    /// Its samples, in the order in which they are summed.
+    /// Samples, in the order of summation.
     pub samples: Vec<SampleAccount>,
-    /// What an old program's quirk `stale-texels` adds to the colour.
+    /// Contribution of an old program's quirk `stale-texels`.
     pub stale_texels: Option<Color>,
-    /// How far it may be from the truth, where paths make it of more samples than one.
+    /// Error bound, for path tracing with more than one sample.
     pub error: Option<ErrorBound>,
 }
 
-/// How samples become a pixel.
+/// Combination of samples to a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum Mean {
-    /// All are its own; it is their mean by weight, in the film's exact sums.
+    /// Weighted mean of the pixel's own samples, by the film's exact sums.
     Own,
-    /// 2004: samples of the pixels around count too; it is the mean by weight, summed in double
+    /// 2004: samples of neighbouring pixels count too; the weighted mean, summed in double
     /// precision.
     Around,
-    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. Weights are
-    /// those of all this together.
+    /// 2012: sub-pixels are blurred along rows, then along columns, then averaged. The weights
+    /// include all three steps.
     SubPixels(SubPixels),
 }
 
-/// One sample of a pixel.
+/// A sample of a pixel.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SampleAccount {
-    /// Column and row of the pixel that it was taken for: mostly the one that is explained.
+    /// Column and row of the pixel that the sample belongs to, usually the explained one.
     pub of: (u32, u32),
-    /// Its number in that pixel.
+    /// Index in that pixel.
     pub sample: u32,
-    /// Where in the picture it lies, in pixels from the upper left corner.
+    /// Position in the picture, in pixels from the upper left corner.
     pub place: Vec2,
-    /// Where in the lens, from 0 to 1.
+    /// Position on the lens, from 0 to 1.
     pub lens: Vec2,
-    /// Its weight in the pixel, not divided by the sum of all.
+    /// Weight in the pixel, not normalised.
     pub weight: f32,
-    /// The tree of its light; `null` in JSON where the camera sees nothing.
+    /// Trace of its light; `null` in JSON if the camera sees nothing.
     pub light: Option<Tree>,
 }
 
 impl Explanation {
-    /// The pixel's colour and coverage, computed anew from the trees by the picture's own
-    /// arithmetic.
+    /// Computes the pixel's colour and coverage from the traces, with the picture's own arithmetic.
     pub fn sum(&self) -> (Color, f32) {
         let mut film = Film::window(self.x, self.y, 1, 1);
         let light =
@@ -93,14 +92,14 @@ impl Explanation {
         (film.resolve(self.x, self.y), film.coverage(self.x, self.y))
     }
 
-    /// The index of the sample that counts most: the first of those.
+    /// Returns the index of the first sample with the largest weight.
     pub fn heaviest(&self) -> usize {
         (1..self.samples.len())
             .fold(0, |best, i| if self.samples[i].weight > self.samples[best].weight { i } else { best })
     }
 }
 
-/// The tree of the light along any ray, by the random numbers of a sample.
+/// Returns the trace of any ray, with the random numbers of a sample.
 pub fn explain_ray(world: &World, job: &Job, ray: &Ray, id: SampleId) -> Option<Tree> {
     told(&job.integrator(world, None), ray, id)
 }
@@ -111,18 +110,18 @@ fn told(integrator: &Integrator, ray: &Ray, id: SampleId) -> Option<Tree> {
     account.into_tree()
 }
 
-/// Why a pixel of the job's colour picture is as it is.
+/// Explains a pixel of the job's colour picture.
 ///
 /// # Errors
 ///
-/// The pixel does not lie in the picture; [`RenderError`] where how many samples it has is decided
-/// by noise.
+/// The pixel is outside the picture; [`RenderError`] if rendering for an adaptive sample count
+/// fails.
 pub fn explain(world: &World, job: &Job, x: u32, y: u32) -> Result<Explanation, RenderError> {
     explain_of(world, job, (x, y), None)
 }
 
-/// The same where it may be known how many samples the pixel has: if noise decides that, it takes
-/// some rendering to find out, and of an adaptive picture a quarter of all of it.
+/// Explains a pixel whose number of samples may be known. If the noise decides it, finding out
+/// takes some rendering, for an adaptive picture a quarter of the whole.
 ///
 /// # Errors
 /// Those of [`explain`].
@@ -170,8 +169,8 @@ pub fn explain_of(
     Ok(explanation)
 }
 
-/// How far a pixel may be from the truth: from its samples, and for photons from the same samples
-/// without their bias.
+/// Returns the error bound of a pixel from its samples, and for photons from the bias-corrected
+/// samples.
 fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) -> ErrorBound {
     let Explanation { x, y, ref samples, .. } = *explanation;
     let film = |color: &dyn Fn(&SampleAccount) -> Option<Color>| {
@@ -191,8 +190,8 @@ fn error(world: &World, job: &Job, source: &Samples, explanation: &Explanation) 
     ErrorBound::new(&sums(&own), &sums(twin.as_ref().unwrap_or(&own)))
 }
 
-/// How many samples a pixel has: where noise decides, as many as its block needs, or as it gets by
-/// the pilot's samples of all of the picture.
+/// Returns the number of samples of a pixel. With a noise threshold it depends on its block, with
+/// adaptive sampling on the pilot of the whole picture.
 fn count(world: &World, job: &Job, (x, y): (u32, u32)) -> Result<u32, RenderError> {
     let samples = job.sampling.samples();
     let window = if job.window().holds(x, y) { job.window() } else { job.whole() };

@@ -11,8 +11,8 @@ use durer_scene::shape::Primitive;
 use rayon::prelude::*;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Colours of cells by the number of things in them: white for one, then brighter to hotter; the
-/// course leaves them free.
+/// Colours of cells by the number of objects in them: white for one, then from cold to hot; the
+/// course leaves the choice open.
 const COLORS: [Vec3; 8] = [
     Vec3::ONE,
     Vec3::new(1.0, 0.0, 1.0),
@@ -45,17 +45,17 @@ pub fn grid_picture(world: &World, job: &Job, control: &Control) -> Result<Image
     Ok(Image::from_pixels(job.width, job.height, colors)?)
 }
 
-/// The grid's cells with what really overlaps them: the rays' own grid has a margin for rounding.
+/// Returns the grid's cells with exact overlaps: the grid for rays has a margin for rounding.
 fn occupied(world: &World) -> Option<Grid> {
     let Accel::Grid { grid, parts } = world.accel() else { return None };
     let object = |part: usize| &world.objects()[parts[part].0 as usize];
-    // A sphere takes cells by the distance of their middles alone, as the course's programs have it:
-    // also beyond its box, and with their own size.
+    // A sphere occupies cells by the distance of the centres alone, as in the course's programs:
+    // also beyond its bounds.
     let half = 0.5 * grid.cell_bounds([0; 3]).size();
     let is_sphere = |object: &Object| {
         object.to_world.is_none() && matches!(object.geometry, Geometry::Primitive(Primitive::Sphere(_)))
     };
-    // Only things with bounds are in the grid.
+    // Only bounded objects are in the grid.
     let bounds = |i: usize| match object(i).part_bounds(parts[i].1).unwrap_or(Aabb::EMPTY) {
         own if is_sphere(object(i)) => Aabb { min: own.min - half.length(), max: own.max + half.length() },
         own => own,
@@ -67,7 +67,7 @@ fn occupied(world: &World) -> Option<Grid> {
     })
 }
 
-/// The colour of the first occupied cell along a ray.
+/// Returns the colour of the first occupied cell along a ray.
 fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let mut found = None;
     grid.walk_cells(ray, |grid, cell, t_max| {
@@ -82,7 +82,7 @@ fn cell_color(world: &World, grid: &Grid, ray: &Ray) -> Color {
     let bounds = grid.cell_bounds(cell);
     let Some((enter, _)) = bounds.clip(ray.origin, ray.dir) else { return world.sky(ray.dir) };
     let point = ray.at(enter);
-    // The face is the one whose plane the point is nearest to, measured in cells.
+    // The entered face is the one whose plane is closest to the point, measured in cells.
     let from_center = (point - bounds.center()) / bounds.size();
     let axis = (0..3).fold(0, |best, i| if from_center[i].abs() > from_center[best].abs() { i } else { best });
     let normal = Vec3::AXES[axis] * from_center[axis].signum();

@@ -1,4 +1,4 @@
-//! What decides a picture.
+//! The job: everything that determines a picture beside the scene.
 
 use super::crop::Crop;
 use super::error::RenderError;
@@ -16,39 +16,39 @@ use durer_scene::sampler::Sampler;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::atomic::AtomicBool;
 
-/// Where in a pixel rays go, and how they become a colour.
+/// Positions of samples in a pixel, and their combination.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Sampling {
     /// One ray through each pixel's centre.
     Center,
-    /// Sobol points, spread by the filter: no sample counts for another pixel.
+    /// Sobol points, distributed by the filter: a sample affects its own pixel only.
     Filtered {
-        /// Samples a pixel.
+        /// Samples per pixel.
         samples: u32,
         /// Reconstruction filter.
         filter: Filter,
     },
-    /// Fall 2004: samples are kept, and weighted by their offset from the pixel's centre.
+    /// Fall 2004: samples are stored, and weighted by their offset from a pixel's centre.
     Course2004 {
-        /// Where samples lie.
+        /// Positions of samples.
         sampler: Sampler,
-        /// Samples a pixel.
+        /// Samples per pixel.
         samples: u32,
-        /// How they are weighted; without, a pixel is the mean of its own.
+        /// Filter; without one, a pixel is the mean of the samples within it.
         filter: Option<CourseFilter>,
     },
-    /// Fall 2012: three by three sub-pixels, moved at random, blurred by five taps.
+    /// Fall 2012: 3 x 3 jittered sub-pixels, blurred by five taps.
     Course2012 {
-        /// Whether there are sub-pixels.
+        /// Enables sub-pixels.
         jitter: bool,
-        /// Whether the picture is blurred.
+        /// Enables the blur.
         blur: bool,
     },
 }
 
 impl Sampling {
-    /// Samples that a pixel gets in the end. Where samples count for other pixels too, it is one:
-    /// the finished value.
+    /// Returns the final number of samples of a pixel. It is one if samples affect other pixels
+    /// too: the finished value.
     pub fn samples(self) -> u32 {
         match self {
             Sampling::Filtered { samples, .. } => samples.max(1),
@@ -57,7 +57,7 @@ impl Sampling {
         }
     }
 
-    /// The same with another number of samples a pixel, where there is one.
+    /// Returns the sampling with another number of samples a pixel, if it has one.
     pub fn with_samples(self, number: u32) -> Self {
         match self {
             Sampling::Filtered { filter, .. } => Sampling::Filtered { samples: number, filter },
@@ -66,46 +66,45 @@ impl Sampling {
         }
     }
 
-    /// Whether a pixel is made of samples of its own alone.
+    /// Returns true if a pixel depends on its own samples only.
     pub fn is_local(self) -> bool {
         !matches!(self, Sampling::Course2004 { filter: Some(_), .. } | Sampling::Course2012 { .. })
     }
 }
 
-/// What the picture is. Plain data: nothing in here depends on the machine.
+/// Everything that determines the picture beside the scene. Plain data, independent of the machine.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Job {
-    /// Columns of the whole picture.
+    /// Width of the whole picture.
     pub width: u32,
-    /// Rows of the whole picture.
+    /// Height of the whole picture.
     pub height: u32,
-    /// The part that is made; `None`: all.
+    /// The part to render; `None`: all.
     pub crop: Option<Crop>,
-    /// Decides the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// Rays of the colour picture.
+    /// Sampling of the colour picture.
     pub sampling: Sampling,
-    /// Where the estimated error falls below this, no more samples are taken: see
-    /// [`passes::error`]. `None`: nowhere.
+    /// Noise threshold: sampling stops where the estimated error is below, see [`passes::error`].
+    /// `None`: never.
     pub noise: Option<f32>,
-    /// Whether the samples are so many a pixel on average: more where the picture is noisier, by
-    /// what a quarter of them tell.
+    /// Adaptive sampling: the number of samples is an average; noisier pixels get more, as the
+    /// pilot estimates.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub adaptive: bool,
-    /// What computes the light.
+    /// Integrator.
     #[serde(default)]
     pub method: Method,
-    /// What light does.
+    /// Common settings of the integrators.
     pub settings: Settings,
-    /// Whether colour is wanted.
+    /// Renders colour.
     pub color: bool,
-    /// Which other pictures are wanted.
+    /// Other pictures to render.
     #[serde(serialize_with = "aov_names", deserialize_with = "named_aovs")]
     pub aovs: Vec<&'static Aov>,
-    /// Depths shown as black and white; `None`: least and greatest of the picture.
+    /// Depths shown as black and white; `None`: minimum and maximum of the picture.
     pub depth_range: Option<(f32, f32)>,
-    /// What the false colours of light stand for; `None`: 0 and what nearly all of the picture
-    /// stays below.
+    /// Scale of the false colours of light; `None`: from 0 to a percentile of the picture.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub light_scale: Option<LightScale>,
 }
@@ -151,15 +150,15 @@ impl Default for Job {
 }
 
 impl Job {
-    /// Samples a pixel may have at most.
+    /// Maximum samples a pixel.
     pub const MAX_SAMPLES: u32 = 1 << 20;
-    /// Radius in pixels that a filter may have at most.
+    /// Maximum radius of a filter in pixels.
     pub const MAX_FILTER_RADIUS: f32 = 64.0;
 
     /// Checks all values: size at least 1 x 1, samples from 1 to [`Job::MAX_SAMPLES`], the filter's
     /// radius more than 0 and at most [`Job::MAX_FILTER_RADIUS`], depth of recursion at most
-    /// [`Settings::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their rules.
-    /// [`PartialRender::new`](super::PartialRender::new) asks this first.
+    /// [`Settings::MAX_BOUNCES`], thresholds and scales, and the integrator's options by their
+    /// rules. [`PartialRender::new`](super::PartialRender::new) calls this first.
     ///
     /// # Errors
     ///
@@ -225,23 +224,23 @@ impl Job {
         Ok(())
     }
 
-    /// The part that is made.
+    /// Returns the part to render.
     pub fn window(&self) -> Crop {
         self.crop.unwrap_or(self.whole())
     }
 
-    /// The whole picture.
+    /// Returns the whole picture.
     pub fn whole(&self) -> Crop {
         Crop { left: 0, top: 0, width: self.width, height: self.height }
     }
 
-    /// The names of its pictures, in their order.
+    /// Returns the names of its pictures, in order.
     pub fn picture_names(&self) -> impl Iterator<Item = &'static str> {
         self.color.then_some("color").into_iter().chain(self.aovs.iter().map(|aov| aov.name))
     }
 
-    /// What computes the light, over a world. Once `cancel` is set, no more rays are traced, and
-    /// what comes out means nothing.
+    /// Creates the integrator of a world. Once `cancel` is set, no more rays are traced, and
+    /// results are meaningless.
     pub fn integrator<'w>(&self, world: &'w World, cancel: Option<&'w AtomicBool>) -> Integrator<'w> {
         let raster = raster(world, self.width, self.height);
         let area = raster.pixel_area() / self.sampling.samples() as f32;
@@ -249,12 +248,12 @@ impl Job {
         self.method.over(Setup { world, settings: self.settings, cone, seed: self.seed, cancel })
     }
 
-    /// Whether the colour's samples are wanted, as colour or as something else.
+    /// Returns true if samples are needed, for colour or for an AOV.
     pub fn wants_samples(&self) -> bool {
         self.color || self.aovs.iter().any(|aov| matches!(aov.value, Value::Sums(_)))
     }
 
-    /// The pictures that come from rays through the pixels' centres.
+    /// Returns the AOVs from rays through the pixels' centres.
     pub fn ray_aovs(
         &self,
     ) -> impl Iterator<Item = (&'static Aov, fn(&crate::film::aov::AovInput) -> durer_scene::math::Vec3)> {
@@ -264,13 +263,12 @@ impl Job {
         })
     }
 
-    /// The part for which rays go through the pixels' centres: all where a picture of a part
-    /// depends on the whole.
+    /// Returns the part for centre rays: the whole picture if an AOV depends on all of it.
     pub fn ray_window(&self) -> Crop {
         if self.ray_aovs().any(|(aov, _)| aov.relative) { self.whole() } else { self.window() }
     }
 
-    /// Whether it stops a block of pixels before its last sample.
+    /// Returns true if the noise threshold stops a block before its last sample.
     pub(super) fn is_done(&self, film: &crate::film::Film, rect: Crop, samples: u32, gain: f32) -> bool {
         self.noise.is_some_and(|noise| samples >= passes::LEAST && passes::error(film, rect, gain) <= f64::from(noise))
     }

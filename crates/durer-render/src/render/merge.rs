@@ -1,4 +1,4 @@
-//! Shards into one picture.
+//! Merging of shards.
 
 use super::blocks::{Shard, ShardBy};
 use super::part::{BlockSamples, PartialRender};
@@ -7,48 +7,48 @@ use crate::film::Packed;
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// Why parts do not make a picture. Parts are told by their names.
+/// An error of merging; parts are identified by name.
 #[derive(Debug, thiserror::Error)]
 pub enum MergeError {
-    /// There are none.
+    /// No parts were given.
     #[error("there are no parts to merge")]
     NoParts,
     /// A part belongs to another picture than the first.
     #[error("`{name}` cannot be merged with `{first}`: {error}")]
     Foreign {
-        /// The part.
+        /// Name of the part.
         name: String,
-        /// The first part.
+        /// Name of the first part.
         first: String,
-        /// Why.
+        /// Reason.
         error: PartError,
     },
-    /// Two parts have the same work in them.
+    /// Two parts contain the same work.
     #[error("`{first}` and `{second}` overlap: both have {what}")]
     Overlap {
-        /// One.
+        /// Name of one part.
         first: String,
-        /// The other.
+        /// Name of the other.
         second: String,
-        /// What both have.
+        /// Description of the shared work.
         what: String,
     },
     /// Some work is in no part.
     #[error("there is something missing:\n{0}")]
     Missing(String),
-    /// What is merged would be too large.
+    /// The merged picture would be too large.
     #[error(transparent)]
     PartialRender(#[from] PartError),
 }
 
-/// How many places of what is missing are listed.
+/// Maximum number of missing places that are listed.
 const LISTED: usize = 8;
 
-/// Puts parts together that make up a whole picture: bit for bit what one run would have made.
-/// Their order does not matter.
+/// Merges parts of a whole picture, with the same bits as a single run. The order of parts does not
+/// matter.
 ///
 /// # Errors
-/// [`MergeError`]: parts of other pictures, work that is in two parts, work that is in none.
+/// [`MergeError`]: parts of different pictures, duplicate work, or missing work.
 pub fn merge(parts: &[(String, PartialRender)]) -> Result<PartialRender, MergeError> {
     let ((first, start), rest) = parts.split_first().ok_or(MergeError::NoParts)?;
     for (name, part) in rest {
@@ -76,7 +76,7 @@ fn merge_samples(
     let (samples, gain) = (whole.job.sampling.samples(), whole.gain());
     let mut state = whole.state();
     for (index, merged) in state.samples.iter_mut().enumerate() {
-        // What each part has of the block, by its samples.
+        // The block's data in each part, by sample range.
         let mut pieces: Vec<(&str, BlockSamples)> = Vec::new();
         for (name, part) in parts {
             let piece = part.state().samples[index].clone();
@@ -148,7 +148,7 @@ fn merge_rays(
     Ok(())
 }
 
-/// Which shards are missing or not finished, where all parts are shards of one splitting.
+/// Describes missing or unfinished shards, if all parts come from one division.
 fn shards_missing(parts: &[(String, PartialRender)]) -> String {
     let Shard { count, by, .. } = parts[0].1.shard;
     let mut text = String::new();

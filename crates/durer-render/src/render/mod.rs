@@ -1,4 +1,4 @@
-//! From a world and a job to pictures.
+//! Rendering of a world and a job to pictures.
 
 mod adaptive;
 mod aim;

@@ -1,4 +1,4 @@
-//! What is made of a picture so far: exact sums, and which work is in them.
+//! A partial render: exact sums, and a record of the work in them.
 
 use super::allocation::{self, count, half, pilot};
 use super::blocks::{Blocks, Shard, ShardBy};
@@ -12,59 +12,59 @@ use durer_scene::math::Vec3;
 use durer_scene::source::Digest;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A picture in the making, or a shard of one: rendered from time to time, saved, read again,
-/// merged with others.
+/// A picture in progress, or a shard of one. It can be rendered step by step, saved, read again,
+/// and merged with others.
 ///
-/// It is locked within, so it can be rendered by one thread while another looks at it.
+/// Uses interior locking, so that one thread can render while another reads it.
 #[derive(Debug)]
 pub struct PartialRender {
     pub(super) job: Job,
     pub(super) shard: Shard,
     pub(super) scene: Digest,
     pub(super) look: DisplayRules,
-    /// The blocks of the colour's window, and of that of the rays through centres.
+    /// Blocks of the colour's window, and of the centre rays' window.
     pub(super) blocks: Blocks,
     pub(super) ray_blocks: Blocks,
     state: Mutex<State>,
-    /// How often it was locked.
+    /// Number of times it was locked.
     #[cfg(test)]
     pub(super) locked: std::sync::atomic::AtomicU64,
 }
 
-/// What was made.
+/// Results so far.
 #[derive(Clone, Debug, Default)]
 pub(super) struct State {
-    /// The samples of each block of the colour's window.
+    /// Samples of each block of the colour's window.
     pub(super) samples: Vec<BlockSamples>,
-    /// What the rays through the centres of each block's pixels saw, if they were traced.
+    /// Results of the centre rays of each block, if they were traced.
     pub(super) rays: Vec<Option<Box<BlockAovs>>>,
 }
 
-/// The samples of one block.
+/// Samples of a block.
 #[derive(Clone, Debug, Default)]
 pub(super) struct BlockSamples {
-    /// The first sample of each pixel that is in the film, and one past the last.
+    /// Half-open range of each pixel's samples in the film.
     pub(super) from: u32,
     pub(super) to: u32,
-    /// Rays traced for them.
+    /// Number of rays traced for them.
     pub(super) rays: u64,
-    /// Their sums, if there are any: shared, so that whoever goes on with them locks for as long as
-    /// a count takes.
+    /// Their sums, if there are any. Shared, so that a reader holds the lock only to clone the
+    /// pointer.
     pub(super) film: Option<Arc<Packed>>,
-    /// The variances of its pixels' means, once they have the samples of a pilot.
+    /// Variances of its pixels' means, once the pilot is complete.
     pub(super) variances: Option<Arc<[f32]>>,
-    /// How many samples each of its pixels gets, where that was decided: of those, `to` and what
-    /// else says how many there are is the average of the whole picture.
+    /// Final number of samples of each pixel, once decided; `to` and other counts are then averages
+    /// over the picture.
     pub(super) targets: Option<Arc<[u32]>>,
 }
 
 impl BlockSamples {
-    /// How many samples one of its pixels has when there are `end`, of those of a job.
+    /// Returns the number of samples of a pixel when the average is `end`.
     pub(super) fn count(&self, job: &Job, pixel: usize, end: u32) -> u32 {
         self.targets.as_ref().map_or(end, |targets| count(job.sampling.samples(), targets[pixel], end))
     }
 
-    /// How many all of its pixels have then together, without those before its first.
+    /// Returns the number of samples of all its pixels then, without those before `from`.
     pub(super) fn total(&self, job: &Job, pixels: u64, end: u32) -> u64 {
         match &self.targets {
             None => pixels * u64::from(end - self.from),
@@ -72,50 +72,50 @@ impl BlockSamples {
         }
     }
 
-    /// The sums of a block of these pixels, if there are any.
+    /// Returns the sums of the block, if there are any.
     pub(super) fn film(&self, Crop { left, top, width, height }: Crop) -> Option<Film> {
         self.film.as_ref().map(|film| film.film([left, top, width, height]))
     }
 }
 
-/// What the rays through the centres of a block's pixels saw.
+/// Results of the centre rays of a block.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct BlockAovs {
-    /// What each pixel's ray found.
+    /// Outcome of each pixel's ray.
     pub(super) found: Vec<PrimaryHit>,
-    /// The values of each picture, one picture after the other.
+    /// Values of each AOV, one AOV after the other.
     pub(super) values: Vec<Vec3>,
-    /// Rays traced for them.
+    /// Number of rays traced for them.
     pub(super) rays: u64,
 }
 
-/// What a ray through a pixel's centre found.
+/// Outcome of a centre ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub(super) enum PrimaryHit {
     /// The camera has no ray there.
     Blind,
-    /// Nothing was hit.
+    /// The ray misses.
     Nothing,
-    /// Something was hit.
+    /// The ray hits something.
     Hit,
 }
 
-/// What was counted while a picture was made; the same however it was made.
+/// Counters of a picture, independent of how it was rendered.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
-    /// Samples in the picture.
+    /// Number of samples in the picture.
     pub samples: u64,
-    /// Rays traced for the picture, secondary rays with them.
+    /// Number of rays traced, including secondary rays.
     pub rays: u64,
-    /// Samples that were not finite, and left out.
+    /// Number of samples that were rejected because they were not finite.
     pub rejected: u64,
-    /// The first of those.
+    /// The first rejected samples.
     pub first_rejected: Vec<Rejected>,
 }
 
 impl Statistics {
-    /// Counts what another part of the same picture counted.
+    /// Adds the counters of another part of the same picture.
     pub(super) fn add(&mut self, other: Statistics) {
         self.samples += other.samples;
         self.rays += other.rays;
@@ -127,11 +127,11 @@ impl Statistics {
 }
 
 impl PartialRender {
-    /// A part of a picture of a world of which nothing is made yet.
+    /// Creates an empty part of a picture.
     ///
     /// # Errors
-    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`], and [`RenderError::Shard`] for work
-    /// that cannot be split so.
+    /// [`RenderError::Job`], [`RenderError::Image`], [`RenderError::CropOutside`], and
+    /// [`RenderError::Shard`] if the work cannot be divided this way.
     pub fn new(world: &World, job: &Job, shard: Shard) -> Result<Self, RenderError> {
         PartialRender::empty(job.clone(), shard, world.digest(), world.display_rules())
     }
@@ -144,8 +144,7 @@ impl PartialRender {
         if !inside(window.left, window.width, job.width) || !inside(window.top, window.height, job.height) {
             return Err(RenderError::CropOutside(job.width, job.height));
         }
-        // Refuses what is too large before anything is computed. Of a larger picture a part may be
-        // made.
+        // Refuse oversized windows before computing anything; a part of a larger picture is fine.
         checked_count(window.width, window.height)?;
         let (blocks, ray_blocks) = (Blocks::new(window), Blocks::new(job.ray_window()));
         check_shard(&job, shard, blocks.count())?;
@@ -172,22 +171,22 @@ impl PartialRender {
         })
     }
 
-    /// What decides the picture.
+    /// Returns the job.
     pub fn job(&self) -> &Job {
         &self.job
     }
 
-    /// Which part of the work it is.
+    /// Returns the shard.
     pub fn shard(&self) -> Shard {
         self.shard
     }
 
-    /// The hash of the scene.
+    /// Returns the hash of the scene.
     pub fn scene(&self) -> Digest {
         self.scene
     }
 
-    /// The hash of all that decides the picture: scene, job and the version of this program.
+    /// Returns the hash of everything that determines the picture: scene, job and program version.
     pub fn identity(&self) -> Digest {
         identity(self.scene, &job_text(&self.job))
     }
@@ -198,7 +197,7 @@ impl PartialRender {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Whether a block has all samples that it will get, given the size of the samples' weights.
+    /// Returns true if a block has all its samples; `gain` is the magnitude of the sample weights.
     pub(super) fn is_done(&self, index: usize, block: &BlockSamples, gain: f32) -> bool {
         let end = self.shard.range(self.job.sampling.samples()).1;
         let rect = self.blocks.rect(index);
@@ -206,7 +205,7 @@ impl PartialRender {
         block.to >= end || self.job.noise.is_some() && block.film(rect).is_some_and(enough)
     }
 
-    /// The size of the samples' weights.
+    /// Returns the magnitude of the sample weights.
     pub(super) fn gain(&self) -> f32 {
         match self.job.sampling {
             Sampling::Filtered { filter, .. } => filter.sampler().gain(),
@@ -214,8 +213,8 @@ impl PartialRender {
         }
     }
 
-    /// How much work there is in all, and how much of it is done: samples and rays through centres.
-    /// With a rule that stops earlier, it may end before all is done.
+    /// Returns the total work and the finished work: samples and centre rays. A noise threshold may
+    /// end it early.
     pub fn work(&self) -> (u64, u64) {
         let range = self.shard.range(self.job.sampling.samples());
         let (mut all, mut done) = (0, 0);
@@ -233,13 +232,13 @@ impl PartialRender {
         (all, done)
     }
 
-    /// Whether every pixel of its picture has something.
+    /// Returns true if every pixel of the picture has data.
     pub fn is_whole(&self) -> bool {
         let state = self.state();
         state.samples.iter().all(|block| block.film.is_some()) && state.rays.iter().all(Option::is_some)
     }
 
-    /// Whether nothing of its work is left.
+    /// Returns true if no work is left.
     pub fn is_finished(&self) -> bool {
         let (gain, state) = (self.gain(), self.state());
         let mut samples = state.samples.iter().enumerate().filter(|(index, _)| self.shard.has_block(*index));
@@ -247,7 +246,7 @@ impl PartialRender {
         samples.all(|(index, block)| self.is_done(index, block, gain)) && rays.all(|(_, block)| block.is_some())
     }
 
-    /// What was counted.
+    /// Returns the counters.
     pub fn statistics(&self) -> Statistics {
         let state = self.state();
         let mut statistics = Statistics::default();
@@ -269,15 +268,15 @@ impl PartialRender {
         statistics
     }
 
-    /// The hash of the film: of all sums and values of its window. The same picture has the same
-    /// hash, however it was made; what it cost is not among it.
+    /// Returns the hash of the film: all sums and values of its window. Equal pictures have equal
+    /// hashes, however they were rendered; the cost is excluded.
     pub fn hash(&self) -> Digest {
         let mut hasher = blake3::Hasher::new();
         self.hash_into(&mut hasher);
         Digest(hasher.finalize().into())
     }
 
-    /// Goes on with the hash of a picture of which this is the next part, whole rows of blocks.
+    /// Continues the hash of a picture with this part, whole rows of blocks.
     pub(super) fn hash_into(&self, hasher: &mut blake3::Hasher) {
         let (state, mut bytes) = (self.state(), Vec::new());
         for (index, block) in state.samples.iter().enumerate() {
@@ -286,7 +285,7 @@ impl PartialRender {
             hasher.update(&bytes);
             bytes.clear();
         }
-        // The work depends on the structure that finds what rays hit.
+        // The cost depends on the acceleration structure.
         let names: Vec<&str> = self.job.ray_aovs().map(|(aov, _)| aov.name).collect();
         for block in state.rays.iter().flatten() {
             let values = block.values.chunks(block.found.len()).zip(&names).filter(|(_, name)| **name != "cost");
@@ -296,29 +295,28 @@ impl PartialRender {
         }
     }
 
-    /// How many samples a pixel's sums will have, as they are kept: where samples count for several
-    /// pixels, finished ones.
+    /// Returns the final number of samples in a pixel's sums; 1 if samples affect several pixels,
+    /// because sums are stored finished.
     pub(super) fn packed_samples(&self) -> u32 {
         if self.job.sampling.is_local() { self.job.sampling.samples() } else { 1 }
     }
 
-    /// Bytes of memory that it takes when all is made, with the pictures made of it.
+    /// Returns the peak memory in bytes, including the pictures made from it.
     pub fn bytes_needed(job: &Job, shard: Shard) -> u64 {
         let share = if shard.by == ShardBy::Tiles { u64::from(shard.count) } else { 1 };
         let (pixels, rays) = (job.window().pixels(), job.ray_window().pixels());
         let sums = if job.wants_samples() { Packed::pixel_bytes(job.sampling.samples()) } else { 0 };
-        // How many samples each pixel gets, and what that follows from.
+        // Sample counts and variances of the pixels.
         let sums = if job.adaptive { sums + 24 } else { sums };
         let values = 12 * job.ray_aovs().count() as u64 + 1;
-        // Numbers and coverage, eight bits, and the file; other pictures than the colours have both
-        // values and colours.
+        // Colours with coverage, eight-bit copy, and file; AOVs have both values and colours.
         let pictures = 24 * u64::from(job.color) + 40 * job.aovs.len() as u64;
         let kept = pixels.saturating_mul(sums).saturating_add(rays.saturating_mul(values));
         (kept / share).saturating_add(pixels.saturating_mul(pictures))
     }
 }
 
-/// The job as text: what is hashed, saved, and told in pictures.
+/// Serialises the job, for hashing, saving and picture attributes.
 pub(super) fn job_text(job: &Job) -> String {
     serde_json::to_string(job).unwrap_or_default()
 }
@@ -351,13 +349,13 @@ fn check_shard(job: &Job, shard: Shard, blocks: usize) -> Result<(), RenderError
     }
 }
 
-/// A black film of a part of a picture.
+/// Returns a black film of a part of a picture.
 pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
-/// so each is a pass.
+/// Returns the passes of a shard, by their ends. With photons, each sample is a pass, since it
+/// traces its own photons.
 pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
@@ -372,6 +370,6 @@ pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = 
         None => Box::new(passes::ends(samples)),
     };
     let ends = ends.filter(move |&end| end > from && end < to).chain((to > from).then_some(to));
-    // Where noise decides, it does so at the end of each.
+    // A noise threshold is evaluated at the end of each pass.
     Passes::new(ends, from, !singly && job.noise.is_none(), decides.unwrap_or_default())
 }

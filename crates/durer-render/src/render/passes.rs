@@ -1,44 +1,44 @@
-//! In which order samples are taken, and when there are enough.
+//! Order of samples, and stopping criteria.
 
 use super::crop::Crop;
 use crate::clock::{Duration, Instant};
 use crate::film::{Film, luminance_of};
 use std::iter::Peekable;
 
-/// Samples before which nothing is decided about a block.
+/// Minimum number of samples before a block may stop.
 pub const LEAST: u32 = 16;
 
-/// The numbers of samples that every pixel has after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
-/// and so on, up to all.
+/// Returns the number of samples of every pixel after each pass: 1, 2, 4, 8, 16, 24, 32, 48, 64, 96
+/// and so on, up to `samples`.
 ///
-/// They depend on nothing but the number of samples, so decisions at the ends of passes are the
-/// same for all ways of making the picture.
+/// They depend on the number of samples only, so decisions at the ends of passes do not depend on
+/// how the picture is rendered.
 pub fn ends(samples: u32) -> impl Iterator<Item = u32> {
     let powers = (0..32).flat_map(|k| {
         let power = 1_u32 << k;
-        // Halfway to the next power of two, where steps are large.
+        // Halfway to the next power of two, for large steps.
         [Some(power), (power >= LEAST).then(|| power.saturating_add(power / 2))]
     });
     powers.flatten().take_while(move |&end| end < samples).chain([samples])
 }
 
-/// Passes one after the other. If it changes nothing what they are, those that would end before
-/// somebody could see it are joined: a pass packs and unpacks every block.
+/// Iterator over passes. Joins passes that would end too soon to be seen, if that does not change
+/// the result: a pass packs and unpacks every block.
 pub struct Passes<I: Iterator<Item = u32>> {
     ends: Peekable<I>,
     joins: bool,
-    /// Ends that are kept, for something hangs on them.
+    /// Ends that must not be skipped.
     kept: [u32; 2],
-    /// Where the pass that was given last ends, how many samples it has, and when it began.
+    /// End and number of samples of the latest pass, and its start time.
     last: (u32, u32, Instant),
 }
 
-/// Passes that end sooner are joined.
+/// Duration below which passes are joined.
 const SOON: Duration = Duration::from_millis(100);
 
 impl<I: Iterator<Item = u32>> Passes<I> {
-    /// By their ends, the first from some sample on; none goes on beyond an end that is
-    /// kept.
+    /// Creates passes from their ends, starting at sample `from`; no pass extends beyond a kept
+    /// end.
     pub fn new(ends: I, from: u32, joins: bool, kept: [u32; 2]) -> Self {
         Passes { ends: ends.peekable(), joins, kept, last: (from, 0, Instant::now()) }
     }
@@ -65,13 +65,13 @@ impl<I: Iterator<Item = u32>> Iterator for Passes<I> {
     }
 }
 
-/// The estimated error of a block as it is seen: the root of the mean square over its pixels of the
-/// standard error of sqrt(Y).
+/// Estimates the visible error of a block: the root mean square over its pixels of the standard
+/// error of sqrt(Y).
 ///
-/// Y is a pixel's luminance, at least 1/256, and 1 is white. The error of sqrt(Y), which is about
-/// what the eye sees, is that of Y divided by 2 sqrt(Y), as in Dammertz et al., *A Hierarchical
-/// Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG 2010. All is computed
-/// from exact sums in a fixed order.
+/// Y is a pixel's luminance, at least 1/256, where 1 is white. The error of sqrt(Y), which
+/// approximates perception, is the error of Y divided by 2 sqrt(Y), as in Dammertz et al., *A
+/// Hierarchical Automatic Stopping Condition for Monte Carlo Global Illumination*, WSCG 2010.
+/// Computed from exact sums in a fixed order.
 pub fn error(film: &Film, rect: Crop, gain: f32) -> f64 {
     let square = |(x, y)| {
         let luminance = luminance_of(film.resolve(x, y)).max(1.0 / 256.0);
@@ -99,7 +99,7 @@ mod tests {
     fn short_passes_are_joined_unless_they_decide_something() {
         let of = |joins| Passes::new(ends(100), 0, joins, [0; 2]).collect::<Vec<_>>();
         assert_eq!(of(false), ends(100).collect::<Vec<_>>());
-        // Nothing is done in them.
+        // The passes do no work.
         assert_eq!(of(true), [1, 100]);
         assert_eq!(Passes::new(ends(100), 0, true, [8, 24]).collect::<Vec<_>>(), [1, 8, 24, 100]);
         let mut slow = Passes::new(ends(8), 0, true, [0; 2]);
@@ -110,7 +110,7 @@ mod tests {
         assert_eq!([next(), next(), next(), next(), next()], [Some(1), Some(2), Some(4), Some(8), None]);
     }
 
-    /// The estimate against the truth: the mean of n uniform numbers has the variance 1 / (12 n).
+    /// Compares the estimate with the truth: the mean of n uniform numbers has variance 1 / (12 n).
     #[test]
     fn the_error_is_that_of_the_mean() {
         let rect = Crop { left: 0, top: 0, width: 8, height: 8 };
@@ -120,7 +120,7 @@ mod tests {
             (0..n).for_each(|s| film.add(x, y, s, Vec3::splat(random_2d(1, x, y, s, 0).x), 1.0));
         }
         let (estimate, truth) = (error(&film, rect, 1.0), (1.0 / (12.0 * f64::from(n)) / (4.0 * 0.5)).sqrt());
-        // 64 estimates of 63 degrees of freedom each: a standard error of about 1 %.
+        // 64 estimates with 63 degrees of freedom each: a standard error of about 1 %.
         assert!((estimate / truth - 1.0).abs() < 0.05, "{estimate} {truth}");
         let mut flat = Film::new(8, 8);
         for (x, y) in rect.places() {

@@ -1,4 +1,4 @@
-//! From sums and values to pictures.
+//! Conversion of sums and values to pictures.
 
 use super::error::RenderError;
 use super::part::{PartialRender, PrimaryHit, State, Statistics, job_text};
@@ -13,28 +13,26 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// So many rows of blocks for each thread have their colours in memory at once where they are
-/// offered in strips.
+/// Number of rows of blocks per thread that are held in memory when pictures are written in strips.
 const AT_ONCE: usize = 4;
 
-/// Pictures and what was counted on the way.
+/// Pictures and counters.
 #[derive(Debug)]
 pub struct Rendered {
-    /// Colour first, if wanted; then the others in the job's order.
+    /// Colour first, if wanted; then the AOVs in the job's order.
     ///
-    /// Values are as files of floating point have them; [`Rendered::pictures`] has those for eight
-    /// bits.
+    /// Values as in floating-point files; [`Rendered::pictures`] has display values.
     pub layers: Vec<Layer>,
-    /// The same as pictures between 0 and 1.
+    /// Pictures with display values from 0 to 1.
     pub pictures: Vec<Layer>,
-    /// What was counted.
+    /// Counters.
     pub statistics: Statistics,
-    /// What files can tell of the pictures beside them: names and texts.
+    /// Attributes for files: names and texts.
     pub attributes: Vec<(&'static str, String)>,
 }
 
 impl PartialRender {
-    /// The pictures of what is made so far. Pixels of which nothing is made are black.
+    /// Returns the pictures so far. Pixels without samples are black.
     ///
     /// # Errors
     /// [`RenderError::Image`].
@@ -78,7 +76,7 @@ impl PartialRender {
         Ok(rendered)
     }
 
-    /// What files can tell of the picture: nothing that depends on how it was made.
+    /// Returns attributes for files, which do not depend on how the picture was rendered.
     fn attributes(&self, statistics: &Statistics) -> Vec<(&'static str, String)> {
         let Statistics { samples, rays, rejected, .. } = statistics;
         vec![
@@ -89,11 +87,11 @@ impl PartialRender {
         ]
     }
 
-    /// Writes the colours of what is made so far, row by row, for formats that are written so: no
-    /// picture of all of them is in memory. `look` is offered all of them, some rows at a time.
+    /// Writes the colours so far, row by row, for formats that support it: the whole picture is
+    /// never in memory. `look` is called with all of them, some rows at a time.
     ///
     /// # Errors
-    /// Those of the file, and [`BandsError::Image`] for formats that take all rows at once.
+    /// Those of the file, and [`BandsError::Image`] for formats that need all rows at once.
     pub fn write_colors(
         &self,
         format: &Format,
@@ -116,12 +114,11 @@ impl PartialRender {
         state.samples.iter().all(|block| block.film.as_ref().is_some_and(|film| film.is_covered()))
     }
 
-    /// Offers the colours of what is made so far, some whole rows at a time, with the share of each
-    /// pixel that is seen (empty where all is); the lowest rows first if `bottom_up`. What is not
-    /// made yet is transparent.
+    /// Passes on the colours so far, some whole rows at a time, with the coverage of each pixel
+    /// (empty if complete); bottom rows first if `bottom_up`. Missing pixels are transparent.
     ///
     /// # Errors
-    /// The first of `strip`.
+    /// The first error of `strip`.
     pub(super) fn try_strips<E>(
         &self,
         bottom_up: bool,
@@ -137,16 +134,15 @@ impl PartialRender {
         if bottom_up { parts.rev().try_for_each(&mut offer) } else { parts.try_for_each(&mut offer) }
     }
 
-    /// Colours and coverage; what is not made yet is transparent. Where all is seen, no coverage is
-    /// told.
+    /// Returns colours and coverage; missing pixels are transparent. Empty coverage means complete.
     fn colors(&self, state: &State) -> (Vec<Color>, Vec<f32>) {
         self.colors_of(state, &self.blocks.rows().collect::<Vec<_>>(), self.is_all_seen(state))
     }
 
-    /// The same of some rows of blocks.
+    /// Returns colours and coverage of some rows of blocks.
     fn colors_of(&self, state: &State, rows: &[Range<usize>], is_seen: bool) -> (Vec<Color>, Vec<f32>) {
         let window = self.job.window();
-        // A row of blocks is some whole rows of pixels.
+        // A row of blocks consists of whole rows of pixels.
         let pixels = |blocks: &Range<usize>| (self.blocks.rect(blocks.start).height * window.width) as usize;
         let count = rows.iter().map(pixels).sum();
         let (mut colors, mut coverage) = (vec![Color::ZERO; count], vec![0.0; if is_seen { 0 } else { count }]);
@@ -173,12 +169,12 @@ impl PartialRender {
         (colors, coverage)
     }
 
-    /// The colours, the coverage, and the variance of the luminance of each pixel.
+    /// Returns the colour, coverage and luminance variance of each pixel.
     pub(super) fn colors_and_variance(&self) -> (Vec<Color>, Vec<f32>, Vec<f32>) {
         let state = self.state();
         let (colors, coverage) = self.colors(&state);
         let variance = self.summed(&state, |sums| Vec3::splat(sums.variance() as f32));
-        // What has too few samples to know is as uncertain as it is bright.
+        // With too few samples, assume the pixel's own brightness as its error.
         let sure = |(value, color): (&(Vec3, PrimaryHit), &Color)| match value.0.x.is_finite() {
             true => value.0.x,
             false => color.max_element() * color.max_element(),
@@ -187,7 +183,7 @@ impl PartialRender {
         (colors, coverage, variance)
     }
 
-    /// The values of a picture that comes from the samples.
+    /// Returns the values of an AOV from samples.
     fn summed(&self, state: &State, value: fn(&Sums) -> Vec3) -> Vec<(Vec3, PrimaryHit)> {
         let (gain, lumens) = (self.gain(), self.look.lumens);
         let none = value(&Sums { pixel: None, gain, lumens });
@@ -206,7 +202,7 @@ impl PartialRender {
         }
     }
 
-    /// The pixels of a block that has samples.
+    /// Visits the pixels of a block that has samples.
     fn each_of_block(&self, state: &State, index: usize, mut visit: impl FnMut(&Film, u32, u32)) {
         let rect = self.blocks.rect(index);
         if let Some(film) = state.samples[index].film(rect) {
@@ -214,7 +210,7 @@ impl PartialRender {
         }
     }
 
-    /// The values of one of the pictures that come from rays.
+    /// Returns the values of an AOV from centre rays.
     fn traced(&self, state: &State, number: usize) -> Vec<(Vec3, PrimaryHit)> {
         let (window, blocks): (Crop, &Blocks) = (self.job.ray_window(), &self.ray_blocks);
         let mut pixels = vec![(Vec3::ZERO, PrimaryHit::Blind); window.pixels() as usize];
@@ -228,7 +224,7 @@ impl PartialRender {
         pixels
     }
 
-    /// Values as colours, and what false colours stand for.
+    /// Converts values to colours; also returns the scale of false colours.
     fn shown(&self, aov: &Aov, values: &[(Vec3, PrimaryHit)]) -> (Vec<Color>, LightScale) {
         let light = aov.unit.map_or(&[][..], |_| values);
         let display = Display {
@@ -251,7 +247,7 @@ impl PartialRender {
     }
 }
 
-/// The part of a picture that covers more.
+/// Crops a picture.
 fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
     if from == to { pixels } else { to.places().map(|(x, y)| pixels[from.index(x, y)]).collect() }
 }

@@ -1,5 +1,4 @@
-//! What the time of a picture goes into: a few of its samples are taken again, and then their rays
-//! alone.
+//! Profiling: takes a few samples again, and then their rays alone.
 
 use super::samples::Samples;
 use super::{Job, RenderError};
@@ -13,20 +12,20 @@ use durer_scene::sampler::SampleId;
 use std::hint::black_box;
 use std::sync::atomic::AtomicBool;
 
-/// What some samples of a picture took.
+/// Cost of some samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
-    /// How many they are.
+    /// Number of samples.
     pub samples: u64,
-    /// Their rays, by what sent them out; the last are shadow rays.
+    /// Number of rays by kind; the last are shadow rays.
     pub rays: [(&'static str, u64); 5],
-    /// The time of one thread for them.
+    /// Time on one thread.
     pub time: Duration,
-    /// The part of it in which rays look for what they hit.
+    /// Part of the time that intersects rays.
     pub kernel: Duration,
 }
 
-/// Remembers the rays that an integrator tells of.
+/// Records the rays that an integrator reports.
 #[derive(Default)]
 struct RayLog(Vec<(Option<RayKind>, RayRecord)>);
 
@@ -47,11 +46,11 @@ impl TraceListener for RayLog {
     }
 }
 
-/// Takes the first sample of up to `most` pixels of a job, evenly spread, twice: as a whole, and
-/// their rays alone. `None` where samples count for several pixels.
+/// Takes the first sample of up to `most` evenly spread pixels of a job twice: completely, and
+/// their rays alone. `None` if samples affect several pixels.
 ///
 /// # Errors
-/// [`RenderError`] for a job that is not possible.
+/// [`RenderError`] for invalid jobs.
 pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, RenderError> {
     super::PartialRender::new(world, job, super::Shard::WHOLE)?;
     if !job.sampling.is_local() || !job.color {
@@ -60,7 +59,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     let never = AtomicBool::new(false);
     let samples = Samples::without_quirks(world, job, &never);
     samples.integrator.prepare(0);
-    // A step that has no factor in common with the width goes through all columns.
+    // An odd step rarely shares a factor with the width, so it visits all columns.
     let step = (job.window().pixels() / most.max(1)).max(1) | 1;
     let pixels: Vec<(u32, u32)> = job.window().places().step_by(step as usize).collect();
     let mut log = RayLog::default();
@@ -104,7 +103,7 @@ pub fn profile(world: &World, job: &Job, most: u64) -> Result<Option<Profile>, R
     }))
 }
 
-/// The least time of three: what disturbs adds to it.
+/// Returns the minimum time of three runs; disturbances only add time.
 fn fastest(work: impl Fn()) -> Duration {
     let time = || {
         let start = Instant::now();

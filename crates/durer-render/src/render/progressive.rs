@@ -1,4 +1,4 @@
-//! A picture pass by pass, for callers that show it while it is made.
+//! Progressive rendering, for callers that display intermediate pictures.
 
 use super::control::Until;
 use super::part::passes_of;
@@ -6,20 +6,19 @@ use super::{Control, Job, PartialRender, RenderError, RenderOutcome, Shard};
 use crate::world::World;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// How far a picture is after a pass over all pixels.
+/// Progress after a pass over all pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Progress {
-    /// Samples that each pixel has; fewer where a noise threshold was met.
+    /// Samples a pixel so far; fewer where a noise threshold was met.
     pub samples: u32,
-    /// Samples that each pixel gets at most.
+    /// Maximum samples a pixel.
     pub all_samples: u32,
-    /// Rays traced so far.
+    /// Number of rays traced so far.
     pub rays: u64,
 }
 
-/// A picture that is made pass by pass. Its passes are those of [`PartialRender::render`], and so are
-/// its bits.
+/// A render pass by pass, with the passes and the bits of [`PartialRender::render`].
 pub struct ProgressiveRender<'w> {
     world: &'w World,
     part: PartialRender,
@@ -34,7 +33,7 @@ impl std::fmt::Debug for ProgressiveRender<'_> {
 }
 
 impl<'w> ProgressiveRender<'w> {
-    /// Begins with a picture of which nothing is made.
+    /// Starts a render.
     ///
     /// # Errors
     ///
@@ -44,13 +43,13 @@ impl<'w> ProgressiveRender<'w> {
         Ok(ProgressiveRender { world, part, ends: Box::new(passes_of(job, Shard::WHOLE)), is_over: false })
     }
 
-    /// Makes the next pass; `None` once the picture is finished, or a pass took longer than
+    /// Renders the next pass; `None` once the picture is finished, or a pass took longer than
     /// [`Control::time`].
     ///
     /// # Errors
     ///
     /// [`RenderError::Cancelled`] once [`Control::cancel`] is set, [`RenderError::Memory`], and
-    /// [`RenderError::Panic`]. What was made before is kept, and a later call goes on with it.
+    /// [`RenderError::Panic`]. Earlier work is kept, and a later call continues it.
     pub fn next_pass(&mut self, control: &Control) -> Result<Option<Progress>, RenderError> {
         if self.is_over {
             return Ok(None);
@@ -72,13 +71,13 @@ impl<'w> ProgressiveRender<'w> {
             RenderOutcome::Cancelled => RenderError::Cancelled,
             RenderOutcome::Panicked(panicked) => panicked.into(),
         };
-        // The pass is repeated for the blocks that lack it.
+        // Repeat the pass for the blocks that lack it.
         let rest = std::mem::replace(&mut self.ends, Box::new(std::iter::empty()));
         self.ends = Box::new(std::iter::once(samples).chain(rest));
         Err(failed)
     }
 
-    /// What is made so far.
+    /// Returns the work so far.
     pub fn part(&self) -> &PartialRender {
         &self.part
     }

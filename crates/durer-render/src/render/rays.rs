@@ -1,4 +1,4 @@
-//! The values that come from one ray through each pixel's centre.
+//! AOVs from one ray through each pixel's centre.
 
 use super::part::{BlockAovs, PrimaryHit};
 use super::samples::{SampleCursor, Samples, Stopped};
@@ -10,7 +10,7 @@ use durer_bvh::{RayCount, TraversalStats};
 use durer_scene::math::Vec3;
 use durer_scene::sampler::SampleId;
 
-/// Traces the rays of a block.
+/// Traces the centre rays of a block.
 pub(super) fn trace(
     world: &World,
     job: &Job,
@@ -39,7 +39,7 @@ pub(super) fn trace(
         let albedo = hit.map_or(Vec3::ZERO, |at| samples.whitted.albedo(&at));
         let illuminance = match &hit {
             Some(at) if illuminance_wanted => {
-                // On the side that is seen.
+                // On the visible side.
                 let side = if at.inside() { -at.surface.n_shade } else { at.surface.n_shade };
                 let (mut sum, count) = (Vec3::ZERO, job.sampling.samples().max(1));
                 for sample in 0..count {
@@ -54,7 +54,7 @@ pub(super) fn trace(
         seen.push(AovInput { covered: true, hit, albedo, counts, illuminance });
     }
     samples.check()?;
-    // What is no number is shown as nothing.
+    // Replace NaN and infinity by 0.
     let finite = |value: Vec3| if value.is_finite() { value } else { Vec3::ZERO };
     let values = job.ray_aovs().flat_map(|(_, value)| seen.iter().map(value).map(finite)).collect();
     let found = |seen: &AovInput| match (seen.covered, seen.hit.is_some()) {

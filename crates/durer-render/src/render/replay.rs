@@ -1,4 +1,4 @@
-//! One pixel or sample alone: to look into an error in this program, or a sample that was left out.
+//! Replays a single pixel or sample, to debug a panic or a rejected sample.
 
 use super::allocation::most;
 use super::error::RenderError;
@@ -11,13 +11,13 @@ use durer_scene::math::Color;
 use std::cell::Cell;
 use std::sync::atomic::AtomicBool;
 
-/// The colour of one sample of a job, by itself, if the camera sees anything there. `None`: what a
-/// pixel has beside samples of its own, or instead of them.
+/// Returns the colour of one sample of a job, if the camera sees anything there. With `None` for
+/// `sample`, replays what a pixel has besides individual samples.
 ///
-/// A panic comes through.
+/// Panics if the sample panics.
 ///
 /// # Errors
-/// [`RenderError`], among them [`RenderError::Shard`] where there is no such pixel or sample.
+/// [`RenderError`], including [`RenderError::Shard`] for pixels or samples outside the job.
 pub fn replay(
     world: &World,
     job: &Job,
@@ -25,7 +25,7 @@ pub fn replay(
     (x, y): (u32, u32),
     sample: Option<u32>,
 ) -> Result<Option<Color>, RenderError> {
-    // Refuses impossible jobs.
+    // Validate the job.
     PartialRender::new(world, job, Shard::WHOLE)?;
     if !job.window().holds(x, y) {
         return Err(RenderError::Shard(format!("the pixel {x},{y} is not in the picture")));

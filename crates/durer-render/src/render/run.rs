@@ -1,4 +1,4 @@
-//! The work itself: tiles on threads, pass after pass, until all is made or something stops it.
+//! Execution: tiles on threads, pass after pass, until the end or a stop.
 
 use super::allocation::{half, pilot, variances};
 use super::control::Until;
@@ -19,8 +19,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
-/// Pixels across and down a tile; where samples around a tile are taken for it alone, tiles are
-/// larger, as long as what is kept for one takes at most so many bytes.
+/// Side of a tile in pixels. Tiles are larger if they need samples around them, up to a memory
+/// limit for each.
 const TILE: u32 = 16;
 const TILE_WITH_BORDER: u32 = 64;
 const MAX_BYTES: u64 = 64 << 20;
@@ -33,40 +33,40 @@ fn usual_tile(job: &Job) -> u32 {
     sides.chain([BLOCK]).find(|&side| kept_bytes(job, side) <= MAX_BYTES).unwrap_or(BLOCK)
 }
 
-/// How often it is looked whether to stop.
+/// Poll interval for cancellation.
 const LOOK: Duration = Duration::from_millis(5);
 
-/// Why the work ended.
+/// Reason why a render ended.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum RenderOutcome {
-    /// All is made.
+    /// The work is done.
     Finished,
-    /// The caller wanted it.
+    /// The caller cancelled it.
     Cancelled,
-    /// Its time was over.
+    /// The time limit was reached.
     OutOfTime,
     /// A thread panicked.
     Panicked(Panicked),
 }
 
-/// What the caller may want to do with the part that is being made.
+/// Event for the callback of a render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RenderEvent {
     /// Every pixel has the samples of a pass.
     PassDone,
-    /// It was not saved for as long as [`Control::save_every`] says.
+    /// The interval [`Control::save_every`] has passed since the last save.
     SaveDue,
 }
 
-/// Makes the job's pictures of a world.
+/// Renders the job's pictures of a world.
 ///
 /// # Errors
-/// [`RenderError`]; nothing is kept then.
+/// [`RenderError`]; partial results are dropped.
 pub fn render(world: &World, job: &Job, control: &Control) -> Result<Rendered, RenderError> {
     whole(world, job, control)?.pictures()
 }
 
-/// The same before it becomes pictures.
+/// Renders a job without converting it to pictures.
 pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<PartialRender, RenderError> {
     let part = PartialRender::new(world, job, Shard::WHOLE)?;
     match part.render(world, control, &mut |_, _| {})? {
@@ -77,7 +77,7 @@ pub(super) fn whole(world: &World, job: &Job, control: &Control) -> Result<Parti
 }
 
 impl PartialRender {
-    /// Numbers of samples with which passes end.
+    /// Returns the ends of the passes.
     fn ends(&self, until: Until) -> Box<dyn Iterator<Item = u32>> {
         match until {
             Until::End => Box::new(passes_of(&self.job, self.shard)),
@@ -86,11 +86,10 @@ impl PartialRender {
         }
     }
 
-    /// Goes on with the work until it is finished or stopped. What is made is kept, tile by tile.
+    /// Continues the work until it is finished or stopped. Results are kept tile by tile.
     ///
-    /// `watch` is called in the calling thread at the end of each pass and when it is time to save,
-    /// while the work goes on. After it took some time, ends of passes are passed over until
-    /// ten times as long has gone by.
+    /// Calls `watch` in the calling thread at the end of each pass and when a save is due, while
+    /// the work continues. After a slow call, skips ends of passes for ten times as long.
     ///
     /// # Errors
     /// [`RenderError::OtherScene`], [`RenderError::Memory`].
@@ -103,7 +102,7 @@ impl PartialRender {
         self.render_to(world, control, watch, Until::End)
     }
 
-    /// Goes on with the work until some moment: see [`PartialRender::render`].
+    /// Continues the work up to some point: see [`PartialRender::render`].
     pub(super) fn render_to(
         &self,
         world: &World,
@@ -150,11 +149,11 @@ impl PartialRender {
                     work.rays(None);
                     for end in self.ends(until) {
                         work.pass(end, None);
-                        // Nobody listens after the end.
+                        // The receiver may be gone already.
                         let _ = finished.send(());
                     }
                 });
-                // The sender is dropped with the last pass.
+                // The last pass drops the sender.
                 loop {
                     match passes.recv_timeout(LOOK) {
                         Ok(()) => clock.passed(self, watch),
@@ -163,7 +162,7 @@ impl PartialRender {
                     }
                 }
             }),
-            // The calling thread does it all, and looks up between tiles.
+            // Without threads, the calling thread does all work, and polls between tiles.
             None => {
                 work.rays(Some(&mut || clock.look(self, watch)));
                 for end in self.ends(until) {
@@ -182,15 +181,15 @@ impl PartialRender {
     }
 }
 
-/// What the calling thread does while others work: it stops them, and calls the watcher.
+/// Work of the calling thread while others render: stopping them, and calling the callback.
 struct Clock<'a> {
     start: Instant,
-    /// When the watcher was last called, and how long it is not called for a pass.
+    /// Time of the last callback, and pause before the next one for a pass.
     last: Instant,
     pause: Duration,
     control: &'a Control,
     stop: &'a AtomicBool,
-    /// Whether every pixel has a sample, or gets all of them at once: before, a picture would have
+    /// True if every pixel has a sample, or gets all of them at once: before that, the picture has
     /// holes.
     whole: bool,
     out_of_time: bool,
@@ -219,7 +218,7 @@ impl Clock<'_> {
     }
 
     fn call(&mut self, part: &PartialRender, watch: &mut dyn FnMut(&PartialRender, RenderEvent), moment: RenderEvent) {
-        // Who wants to stop does not want to wait for this; all is saved in the end.
+        // Skip callbacks once cancelled; the caller saves the final state.
         if self.stop.load(Relaxed) {
             return;
         }
@@ -230,10 +229,10 @@ impl Clock<'_> {
     }
 }
 
-/// What a thread that has no others does between tiles.
+/// Poll function to call between tiles if the caller's thread is the only one.
 type Alone<'a> = Option<&'a mut dyn FnMut()>;
 
-/// What the working threads share.
+/// State shared by the working threads.
 struct Work<'a> {
     part: &'a PartialRender,
     world: &'a World,
@@ -241,13 +240,13 @@ struct Work<'a> {
     samples: Samples<'a>,
     stop: &'a AtomicBool,
     tile: u32,
-    /// Tiles that were begun.
+    /// Number of tiles that were started.
     tiles: AtomicU64,
     panicked: Mutex<Option<Panicked>>,
 }
 
 impl Work<'_> {
-    /// Traces the rays through the centres of pixels where that was not done.
+    /// Traces missing centre rays.
     fn rays(&self, alone: Alone) {
         let part = self.part;
         let open = |(index, block): (usize, &Option<Box<BlockAovs>>)| {
@@ -270,7 +269,7 @@ impl Work<'_> {
         });
     }
 
-    /// Takes samples until each pixel that still needs some has as many as this.
+    /// Takes samples until each pixel that needs more has this many.
     fn pass(&self, end: u32, alone: Alone) {
         if !self.stop.load(Relaxed) {
             self.samples.integrator.prepare(end - 1);
@@ -316,8 +315,8 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// Makes the finished pixels of a tile, where samples count for several pixels: at once if it
-    /// is a rectangle, else block by block.
+    /// Computes finished pixels of a tile for samplings that affect several pixels: at once if it
+    /// is a rectangle, otherwise block by block.
     fn finish(&self, tile: &[usize], at: &SampleCursor) -> Result<(), Stopped> {
         let blocks = &self.part.blocks;
         let rects: Vec<_> = tile.iter().map(|&index| blocks.rect(index)).collect();
@@ -345,7 +344,7 @@ impl Work<'_> {
         Ok(())
     }
 
-    /// The blocks of a tile as they are.
+    /// Returns copies of a tile's blocks.
     fn taken(&self, tile: &[usize]) -> Vec<BlockSamples> {
         let state = self.part.state();
         tile.iter().map(|&index| state.samples[index].clone()).collect()
@@ -356,7 +355,7 @@ impl Work<'_> {
         for (&index, block) in tile.iter().zip(&mut made) {
             std::mem::swap(&mut state.samples[index], block);
         }
-        // What was replaced is freed without the lock.
+        // Free the replaced blocks without the lock.
         drop(state);
         self.count(done, rays);
     }
@@ -366,8 +365,8 @@ impl Work<'_> {
         self.control.rays.fetch_add(rays, Relaxed);
     }
 
-    /// Makes tiles in parallel or alone, until something stops it. A panic becomes an error that
-    /// knows its sample.
+    /// Renders tiles, in parallel if there are threads, until something stops it. A panic becomes
+    /// an error with its sample.
     fn each(
         &self,
         tiles: &[Vec<usize>],
@@ -390,7 +389,7 @@ impl Work<'_> {
                 Err(Stopped)
             })
         };
-        // An error ends the work early; why it ended is known elsewhere.
+        // The error only ends the loop; its cause is stored elsewhere.
         let _ = match alone {
             None => tiles.par_iter().with_max_len(1).try_for_each(one),
             Some(look) => tiles.iter().try_for_each(|tile| {

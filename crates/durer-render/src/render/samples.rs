@@ -1,4 +1,4 @@
-//! How the samples of a block are taken, for each way of sampling.
+//! Sampling of a block, for each kind of sampling.
 
 use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, Several};
 use super::error::center;
@@ -19,11 +19,11 @@ use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Stopped;
 
-/// Column, row and number of the sample that a thread is at.
+/// Column, row and index of a thread's current sample.
 pub(super) type SampleCursor = Cell<(u32, u32, Option<u32>)>;
 
-/// Offers where the samples of a pixel go: in the picture, in the lens, and how much each counts.
-/// Of samples that count for other pixels too only the pixel's own are offered.
+/// Visits the samples of a pixel: position in the picture, position on the lens, and weight. For
+/// samples that affect other pixels too, visits only the pixel's own.
 pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnMut(Vec2, Vec2, f32)) + Sync {
     let (aperture, seed, sampling) = (world.camera().has_aperture(), job.seed, job.sampling);
     let warp = match sampling {
@@ -54,28 +54,27 @@ pub fn sample_places(world: &World, job: &Job) -> impl Fn(u32, u32, &mut dyn FnM
     }
 }
 
-/// Samples of a pixel that were aimed, one after the other.
+/// Consecutive generated samples of a pixel.
 struct Run {
     x: u32,
     y: u32,
-    /// The pixel's first sample.
+    /// Id of the pixel's first sample.
     id: SampleId,
-    /// The number of the first that was aimed, and where its weight is.
+    /// Index of the first generated sample, and of its weight.
     first: u32,
     start: usize,
 }
 
-/// At most so many samples are aimed before their light is asked for.
+/// Maximum number of samples that are generated before they are traced.
 const ROOM: usize = TOGETHER + BATCH;
 
-/// Samples that were aimed.
+/// Generated samples.
 struct Aimed {
     runs: Vec<Run>,
-    /// How many there are, and their weights.
+    /// Number of samples, and their weights.
     count: usize,
     weights: [f32; ROOM],
-    /// How many of them the camera sees anything at: their rays, and of each the number of its run
-    /// and that of its sample.
+    /// Number of samples with a camera ray: the rays, and for each the index of its run and sample.
     seen: usize,
     rays: [Ray64; ROOM],
     of: [(u32, u32); ROOM],
@@ -103,7 +102,7 @@ impl Aimed {
         (self.count, self.seen) = (0, 0);
     }
 
-    /// The run that a sample belongs to, whose weight will be at a place.
+    /// Returns the run of a sample whose weight will be at index `place`.
     fn run_of(&mut self, pixel: &Pixel, number: u32, place: usize) -> u32 {
         let goes_on = |run: &Run| (run.x, run.y, run.first + (place - run.start) as u32) == (pixel.x, pixel.y, number);
         if !self.runs.last().is_some_and(goes_on) {
@@ -125,7 +124,7 @@ pub(super) struct Samples<'a> {
     pub(super) aim: Aim<'a>,
     pub(super) whitted: Whitted<'a>,
     pub(super) integrator: Integrator<'a>,
-    /// What [`stale`] adds to each pixel of the whole picture; empty where it does not apply.
+    /// Contribution of [`stale`] to each pixel of the whole picture; empty if it does not apply.
     stale: Vec<Color>,
     stop: &'a AtomicBool,
 }
@@ -139,14 +138,14 @@ impl<'a> Samples<'a> {
         samples
     }
 
-    /// As [`Samples::new`], without the [`stale`] pass over the whole image.
+    /// [`Samples::new`] without the [`stale`] pass over the whole image.
     pub(super) fn without_quirks(world: &'a World, job: &'a Job, stop: &'a AtomicBool) -> Self {
         let whitted = Whitted { world, settings: job.settings, cancel: Some(stop) };
         let integrator = job.integrator(world, Some(stop));
         Samples { world, job, aim: Aim::new(world, job), whitted, integrator, stale: Vec::new(), stop }
     }
 
-    /// The size of a sample's weight.
+    /// Returns the magnitude of a sample's weight.
     pub(super) fn gain(&self) -> f32 {
         self.aim.gain()
     }
@@ -155,7 +154,7 @@ impl<'a> Samples<'a> {
         if self.stop.load(Relaxed) { Err(Stopped) } else { Ok(()) }
     }
 
-    /// Adds samples of every pixel of a film's part, whose pixels are numbered row by row.
+    /// Adds samples to the pixels of a film's part, which are numbered row by row.
     pub(super) fn add(
         &self,
         film: &mut Film,
@@ -173,7 +172,7 @@ impl<'a> Samples<'a> {
                 let first = numbers.start;
                 at.set((x, y, Some(first)));
                 if batch.len() == 0 && numbers.len() >= BATCH {
-                    // What samples of one pixel have in common is worked with once.
+                    // Fast path: consecutive samples of one pixel share its data.
                     self.aim_several(&Row { pixel: &pixel, first }, &mut aimed);
                     numbers.start += BATCH as u32;
                 } else {
@@ -192,11 +191,11 @@ impl<'a> Samples<'a> {
         self.aim_several(&batch, &mut aimed);
         self.add_aimed(film, &mut aimed, at, rays)?;
         AIMED.set(Some(aimed));
-        // What was made after a cancel means nothing.
+        // Results after a cancel are meaningless.
         self.check()
     }
 
-    /// Aims some samples.
+    /// Generates camera rays for some samples.
     fn aim_several(&self, of: &impl Several, aimed: &mut Aimed) {
         let (start, mut runs) = (aimed.count, [0; BATCH]);
         for (i, run) in runs[..of.len()].iter_mut().enumerate() {
@@ -213,7 +212,7 @@ impl<'a> Samples<'a> {
         aimed.count += of.len();
     }
 
-    /// Adds samples that were aimed, of which there are none left then.
+    /// Traces and adds the generated samples, and clears them.
     fn add_aimed(
         &self,
         film: &mut Film,
@@ -255,7 +254,8 @@ impl<'a> Samples<'a> {
         Ok(())
     }
 
-    /// One sample of a pixel: its colour, if the camera sees anything there, and its weight.
+    /// Takes one sample of a pixel: returns its colour, if the camera sees anything there, and its
+    /// weight.
     pub(super) fn sample(&self, x: u32, y: u32, sample: u32, rays: &mut RayCount) -> (Option<Color>, f32) {
         let pixel = self.aim.pixel(x, y);
         let PixelSample { ray, weight, .. } = self.aim.sample(&pixel, sample);
@@ -268,7 +268,7 @@ impl<'a> Samples<'a> {
         stale.map_or(color, |&stale| color + stale)
     }
 
-    /// Where a sample of a pixel goes, for samplings whose samples count for their own pixel alone.
+    /// Generates a sample, for samplings whose samples affect their own pixel only.
     pub(super) fn aim(&self, x: u32, y: u32, sample: u32) -> PixelSample {
         self.aim.sample(&self.aim.pixel(x, y), sample)
     }

@@ -1,4 +1,4 @@
-//! Parts as files: one format for checkpoints, shards and what is merged of them.
+//! File format of partial renders: checkpoints, shards and merged pictures.
 //!
 //! | bytes | what |
 //! | --- | --- |
@@ -7,13 +7,13 @@
 //! | text | version of Dürer |
 //! | 32 | hash of the scene |
 //! | text, text, text | job, shard and look, as JSON |
-//! | for each block with samples | its number + 1; first sample, end, rays; of an adaptive job, from the end of its pilot on, variances; sums |
+//! | per block with samples | index + 1; first sample, end, rays; variances (adaptive); sums |
 //! | number | 0 |
 //! | for each block with rays | its number + 1; rays; a byte a pixel: what was found; values |
 //! | number | 0 |
 //! | 32 | BLAKE3 of everything before |
 //!
-//! Numbers are those of [`crate::film::bytes`]; a text is its length and its bytes.
+//! Numbers are encoded as in [`crate::film::bytes`]; a text is its length and its bytes.
 
 use super::allocation::{half, most, pilot};
 use super::part::{BlockAovs, BlockSamples, PartialRender, PrimaryHit, film_of, job_text};
@@ -31,28 +31,28 @@ use std::sync::Arc;
 const FORMAT: u32 = 1;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// Why bytes are no part that can be used.
+/// An error of reading or combining parts.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
-    /// They are something else.
+    /// The bytes are something else.
     #[error("it is no part of a picture")]
     NotAPart,
-    /// They end too early, or were changed.
+    /// The bytes are truncated or damaged.
     #[error("it is torn or damaged: its checksum is wrong")]
     Damaged,
-    /// Another version made them.
+    /// Another version wrote them.
     #[error("it was made by Dürer {0}, and this is {VERSION}: pictures may differ")]
     OtherVersion(String),
-    /// The checksum is right, but not what it covers.
+    /// The checksum is valid, but the content is not.
     #[error("it is malformed: {0}")]
     Malformed(String),
-    /// The job in it is impossible.
+    /// The job is invalid.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// It is of another scene.
+    /// The part belongs to another scene.
     #[error("it is of another scene, or a file of the scene was changed")]
     OtherScene,
-    /// It is of another job.
+    /// The part belongs to another job.
     #[error("it is of another job: {0}")]
     OtherJob(String),
 }
@@ -67,12 +67,11 @@ fn text<'a>(bytes: &mut Bytes<'a>) -> Option<&'a str> {
     std::str::from_utf8(bytes.take(length)?).ok()
 }
 
-/// Blocks that are written at once: what works meanwhile waits for no more.
+/// Number of blocks that are written at once, which limits how long the lock is held.
 const CHUNK: usize = 256;
 
 impl Content for PartialRender {
-    /// Its bytes, made a few at a time: a second copy of all of them would need as much memory
-    /// again.
+    /// Writes the bytes in chunks; a complete copy would double the memory.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()> {
         let (mut hasher, mut bytes) = (blake3::Hasher::new(), self.head());
         let mut flush = |bytes: &mut Vec<u8>| {
@@ -81,7 +80,7 @@ impl Content for PartialRender {
             bytes.clear();
             io::Result::Ok(())
         };
-        // One after the other: both at once would wait for each other.
+        // Separate locks: taking both at once would deadlock.
         let samples = self.state().samples.len();
         let rays = self.state().rays.len();
         let chunks = |count: usize| (0..count).step_by(CHUNK).map(move |start| start..count.min(start + CHUNK));
@@ -107,10 +106,10 @@ impl Content for &PartialRender {
 }
 
 impl PartialRender {
-    /// How files of parts begin.
+    /// First bytes of a file.
     pub const MAGIC: &[u8; 8] = b"DURERPRT";
 
-    /// Its bytes, as they are saved. The same work gives the same bytes.
+    /// Serialises the part. Equal work gives equal bytes.
     pub fn write(&self) -> Vec<u8> {
         let mut out = Vec::new();
         self.write_to(&mut out).expect("there is always room in memory");
@@ -128,7 +127,7 @@ impl PartialRender {
         out
     }
 
-    /// The samples of some blocks.
+    /// Writes the samples of some blocks.
     fn put_samples(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -145,7 +144,7 @@ impl PartialRender {
         }
     }
 
-    /// What the rays through the centres of some blocks' pixels saw.
+    /// Writes the centre-ray results of some blocks.
     fn put_rays(&self, blocks: Range<usize>, out: &mut Vec<u8>) {
         let state = self.state();
         for index in blocks {
@@ -161,7 +160,7 @@ impl PartialRender {
     /// Reads a part.
     ///
     /// # Errors
-    /// [`PartError`] for anything but what [`PartialRender::write`] of this version gives.
+    /// [`PartError`] for anything except the output of [`PartialRender::write`] of this version.
     pub fn read(bytes: &[u8]) -> Result<PartialRender, PartError> {
         if !bytes.starts_with(PartialRender::MAGIC) {
             return Err(if PartialRender::MAGIC.starts_with(bytes) { PartError::Damaged } else { PartError::NotAPart });
@@ -185,13 +184,13 @@ impl PartialRender {
         let job: Job = serde_json::from_str(job).map_err(wrong)?;
         let shard: Shard = serde_json::from_str(shard).map_err(wrong)?;
         let look = serde_json::from_str(look).map_err(wrong)?;
-        // A picture for which there are too few bytes would take memory for nothing.
+        // Reject jobs that would allocate far more than the bytes justify.
         let part = PartialRender::empty(job, shard, Digest(scene), look)?;
         part.read_blocks(rest).ok_or(malformed("its blocks"))?;
         if part.job.adaptive {
             part.allocate();
         }
-        // Numbers, texts and orders of blocks could be written in other ways, but never are.
+        // Reject alternative encodings.
         if part.write() != bytes {
             return Err(malformed("it is not as Dürer writes it"));
         }
@@ -238,7 +237,7 @@ impl PartialRender {
         rest.0.is_empty().then_some(())
     }
 
-    /// Whether a part that was read goes on with this one's work: the same scene, job and shard.
+    /// Checks that a part continues this one's work: same scene, job and shard.
     ///
     /// # Errors
     /// [`PartError::OtherScene`], [`PartError::OtherJob`].
@@ -250,7 +249,7 @@ impl PartialRender {
         Ok(())
     }
 
-    /// Whether another part belongs to the same picture.
+    /// Checks that another part belongs to the same picture.
     pub(super) fn same_picture(&self, other: &PartialRender) -> Result<(), PartError> {
         if self.scene != other.scene || self.look != other.look {
             return Err(PartError::OtherScene);
@@ -260,7 +259,7 @@ impl PartialRender {
     }
 }
 
-/// The first field in which two jobs differ.
+/// Describes the first field in which two jobs differ.
 fn first_difference(own: &str, other: &str) -> String {
     let fields = |text: &str| serde_json::from_str::<serde_json::Map<_, _>>(text).unwrap_or_default();
     let (own, other) = (fields(own), fields(other));

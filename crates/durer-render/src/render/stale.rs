@@ -1,4 +1,4 @@
-//! A quirk of Fall 2012: on a texture, ambient light is that of the pixel shaded before with the
+//! A quirk of Fall 2012: on a texture, ambient light uses the texel of the previous pixel with the
 //! same material, in rows from the bottom.
 
 use super::{Job, Sampling, center_ray};
@@ -6,20 +6,20 @@ use crate::world::{Material, World};
 use durer_scene::camera::Raster;
 use durer_scene::math::Color;
 
-/// Whether a job has the quirk: one ray a pixel, in a world whose rules have it.
+/// Returns true if the quirk applies: one ray a pixel, in a dialect with the quirk.
 pub(super) fn applies(world: &World, job: &Job) -> bool {
     job.sampling == Sampling::Center && world.shading_rules().stale_texels
 }
 
-/// A material's number, and the colour of its texture, noise or plain surface.
+/// Index of a material, and the colour of its texture, noise or plain surface.
 struct Texel {
     material: u32,
     color: Color,
-    /// The colour of the material where nothing was shaded before.
+    /// Colour of the material if no pixel came before.
     plain: Color,
 }
 
-/// The texel at a pixel's centre; `None` where nothing is hit, or a pattern of materials.
+/// Returns the texel at a pixel's centre; `None` for misses and solid patterns.
 fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
     let ray = center_ray(world, raster, pixel)?;
     let at = world.intersect(&ray, &mut ())?;
@@ -28,8 +28,8 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
     Some(Texel { material: at.material, color, plain: phong.diffuse })
 }
 
-/// What the quirk adds to each pixel of the whole picture. `stops` is asked before each pixel; once
-/// it says so, the rest is 0.
+/// Returns the quirk's contribution to each pixel of the whole picture. Calls `stops` before each
+/// pixel; once it returns true, the rest is 0.
 pub(super) fn differences(world: &World, job: &Job, raster: &Raster, stops: impl Fn() -> bool) -> Vec<Color> {
     let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
     let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
@@ -44,10 +44,10 @@ pub(super) fn differences(world: &World, job: &Job, raster: &Raster, stops: impl
     differences
 }
 
-/// What the quirk adds to one pixel.
+/// Returns the quirk's contribution to one pixel.
 pub(super) fn difference(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let own = texel(world, raster, (x, y))?;
-    // In rows from the bottom: first those of this row to the left, from right to left, then the
+    // Rows from the bottom: first the pixels of this row to the left, from right to left, then the
     // rows below.
     let row = |y: u32, end: u32| (0..end).rev().map(move |x| (x, y));
     let mut before = row(y, x).chain((y + 1..job.height).flat_map(|y| row(y, job.width)));

@@ -1,5 +1,4 @@
-//! The sub-pixels of Fall 2012, assignment 5: three by three to a pixel, moved at random, blurred,
-//! averaged.
+//! The sub-pixels of Fall 2012, assignment 5: 3 x 3 jittered sub-pixels, blurred and averaged.
 
 use super::{Crop, Job, raster};
 use crate::film::course::{average_3x3, blur, jittered_position};
@@ -8,18 +7,18 @@ use durer_scene::camera::Raster;
 use durer_scene::math::{Color, Vec2};
 use serde::Serialize;
 
-/// The sub-pixels that a part of a picture is made of.
+/// The sub-pixels of a part of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SubPixels {
-    /// Whether there are three by three to a pixel; else a pixel is its own only one.
+    /// True for 3 x 3 sub-pixels a pixel, false for one.
     pub jitter: bool,
-    /// Whether they are blurred.
+    /// True if they are blurred.
     pub blurred: bool,
-    /// Those in the part itself.
+    /// Sub-pixels inside the part.
     pub inner: Crop,
-    /// Those that count for it.
+    /// Sub-pixels that affect it.
     pub around: Crop,
-    /// Those of the whole picture.
+    /// Sub-pixels of the whole picture.
     pub whole: Crop,
 }
 
@@ -37,34 +36,35 @@ impl SubPixels {
         SubPixels { jitter, blurred, inner, around, whole }
     }
 
-    /// The sub-pixels on the square that a world's camera covers.
+    /// Returns the raster of the sub-pixels in the camera's square.
     pub(super) fn raster(&self, world: &World) -> Raster {
         raster(world, self.whole.width, self.whole.height)
     }
 
-    /// How many there are across a pixel.
+    /// Returns the number of sub-pixels across a pixel.
     pub(super) fn scale(&self) -> u32 {
         if self.jitter { 3 } else { 1 }
     }
 
-    /// The pixel of one of them.
+    /// Returns the pixel of a sub-pixel.
     pub(super) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
         (x / self.scale(), y / self.scale())
     }
 
-    /// The number of a sub-pixel in its pixel.
+    /// Returns the index of a sub-pixel in its pixel.
     pub(super) fn number(&self, (x, y): (u32, u32)) -> u32 {
         y % self.scale() * self.scale() + x % self.scale()
     }
 
-    /// Where the ray of one goes, in sub-pixels from the upper left corner of the picture.
+    /// Returns the position of a sub-pixel's ray, in sub-pixels from the upper left corner of the
+    /// picture.
     pub(super) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
         let corner = if self.jitter { jittered_position(seed, x, y) } else { Vec2::new(x as f32, y as f32) };
         corner + 0.5
     }
 
-    /// The pixels of the part, from the colours of all sub-pixels that count for it, in reading
-    /// order.
+    /// Returns the pixels of the part in reading order, from the colours of all sub-pixels that
+    /// affect it.
     pub(super) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {

@@ -1,4 +1,4 @@
-//! One film, however it is made; and what happens when something goes wrong.
+//! Tests that the film does not depend on how it is rendered, and of errors.
 
 use super::verify::{Way, compare};
 use super::*;
@@ -40,7 +40,7 @@ fn filtered(samples: u32) -> Sampling {
     Sampling::Filtered { samples, filter: Filter::default() }
 }
 
-/// Jobs of every kind of sampling.
+/// Returns jobs with every kind of sampling.
 fn jobs() -> Vec<Job> {
     let (sampler, filter) = (Sampler::Jittered, Some(CourseFilter::Tent { radius: 1.5 }));
     let samplings = [
@@ -82,7 +82,7 @@ fn every_way_gives_one_film() {
             let other = way.make(&world, &job, &AtomicBool::new(false)).unwrap();
             let difference = compare(&plain, &other);
             assert!(difference.is_none(), "{:?}, {way}: {difference:?}", job.sampling);
-            // Not only the sums: the pictures and what is told beside them.
+            // Compare the pictures and attributes too, not only the sums.
             let (a, b) = (plain.pictures().unwrap(), other.pictures().unwrap());
             assert_eq!((a.statistics, &a.attributes), (b.statistics, &b.attributes), "{way}");
             let bits = |layers: &[durer_image::Layer]| -> Vec<u32> {
@@ -94,7 +94,7 @@ fn every_way_gives_one_film() {
     assert_ne!(one_ray(1), one_ray(2));
 }
 
-/// Samples are aimed and shaded with their neighbours, and explained and replayed one by one.
+/// Samples are generated and shaded in batches, but explained and replayed one by one.
 #[test]
 fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
     let folder = tempfile::tempdir().unwrap();
@@ -112,7 +112,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
         "Transform { Translate 0 0.5 0 TriangleMesh { obj_file ball.obj } }",
         &format!("Sphere {{ center 0 0.5 0 radius 0.9 }} {balls}"),
     );
-    // So many that there is a tree over them.
+    // Enough objects for a tree.
     let many = |i: u8| {
         let [x, y] = [f32::from(i % 5) - 2.0, f32::from(i / 5) - 1.0];
         format!("MaterialIndex {} Sphere {{ center {x} {y} 1 radius 0.4 }} ", i % 4)
@@ -128,7 +128,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
     let mut deep = Settings { bounces: 7, ..through };
     (deep.reflection, deep.refraction) = (true, true);
     let sane = || Dialect::Durer.rules();
-    // It sees nothing at the corners.
+    // No camera rays at the corners.
     let blind = TEXT.replace("PerspectiveCamera", "FisheyeCamera").replace("angle 40", "angle 180");
     let worlds = [
         (TEXT.to_string(), sane(), small().settings),
@@ -156,7 +156,7 @@ fn a_film_is_the_sum_of_its_samples_taken_one_by_one() {
             let films = [(); 2].map(|()| Film::window(part.left, part.top, part.width, part.height));
             let [mut together, mut alone] = films;
             let (at, mut rays) = (Cell::new((0, 0, None)), [RayCount::default(); 2]);
-            // Of some pixels less than are aimed side by side, of others more.
+            // Some pixels have fewer samples than a batch, others more.
             let all = |pixel: usize| match job.sampling {
                 Sampling::Filtered { .. } => 1..[3, 9, 7, 21][pixel % 4],
                 sampling => 1..sampling.samples().clamp(2, 7),
@@ -192,8 +192,8 @@ fn a_crop_is_cut_from_the_whole_picture() {
         let job = Job { light_scale: Some(scale), ..job };
         let whole = all(&world, &job).pictures().unwrap();
         let part = all(&world, &Job { crop: Some(crop), ..job.clone() }).pictures().unwrap();
-        // The greatest number of samples is known of the crop alone; here all pixels have as many.
-        // So is the greatest luminance.
+        // Maximum sample count and luminance are known for the crop alone; here all pixels have the
+        // same count.
         for (whole, part) in whole.pictures.iter().zip(&part.pictures) {
             for ((x, y), pixel) in crop.places().zip(&part.image.pixels) {
                 assert_eq!(whole.image.get(x, y), Some(*pixel), "{} {:?} {x},{y}", whole.name, job.sampling);
@@ -212,7 +212,7 @@ fn noise_decides_where_samples_are_taken() {
     let counts: Vec<f32> = part.pictures().unwrap().layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == passes::LEAST as f32 && most >= 3.0 * least, "{least} {most}");
-    // The error is what was asked for: against a picture of many more samples, pixel by pixel in
+    // The true error is as requested, against a picture with many more samples, pixel by pixel in
     // sqrt(Y).
     let truth = all(&world, &Job { sampling: filtered(1024), noise: None, ..job.clone() }).pictures().unwrap();
     let (ours, truth) = (&part.pictures().unwrap().layers[0].image, &truth.layers[0].image);
@@ -278,7 +278,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
     let bytes = part.write();
     let back = PartialRender::read(&bytes).unwrap();
     assert_eq!((back.hash(), back.write() == bytes, back.identity()), (part.hash(), true, part.identity()));
-    // Cut or changed anywhere, the checksum tells.
+    // The checksum detects any truncation or change.
     for length in 0..bytes.len() {
         assert!(matches!(PartialRender::read(&bytes[..length]), Err(PartError::Damaged)), "{length}");
     }
@@ -288,7 +288,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
         assert!(matches!(PartialRender::read(&changed), Err(PartError::Damaged)), "{at}");
     }
     assert!(matches!(PartialRender::read(b"P6 1 1 255 ..."), Err(PartError::NotAPart)));
-    // With a right checksum, anything may be in it: an error, or a part as it is always written,
+    // With a valid checksum the content is arbitrary: reading gives an error, or a canonical part
     // whose pictures can be made.
     for at in (8..bytes.len() - 32).filter(|at| *at < 1500 || at % 7 == 0) {
         for new in [0, 0x80, 0xff, bytes[at] ^ 4] {
@@ -297,7 +297,7 @@ fn parts_come_back_from_bytes_and_no_bytes_harm() {
             changed.extend(Digest::of(&changed).0);
             if let Ok(read) = PartialRender::read(&changed) {
                 assert!(read.write() == changed, "{at}: written in another way");
-                // But for the estimate of what one sample cannot tell, all is finite.
+                // Everything is finite, except the variance of a single sample.
                 let rendered = read.pictures().unwrap();
                 let finite =
                     |layer: &durer_image::Layer| layer.name == "variance" || layer.image.first_non_finite().is_none();
@@ -321,7 +321,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
     assert!(matches!(other(&world, &more, Shard::WHOLE), Err(PartError::OtherJob(why)) if why.contains("sampling")));
     let half = Shard { index: 1, count: 2, by: ShardBy::Tiles };
     assert!(matches!(other(&world, &job, half), Err(PartError::OtherJob(why)) if why.contains("1/2")));
-    // Another version writes another number at the same place.
+    // Another version writes another number at this place.
     let mut bytes = part.write();
     let version = env!("CARGO_PKG_VERSION").len();
     bytes[9 + version] = b'x';
@@ -334,7 +334,7 @@ fn work_is_gone_on_with_only_where_it_is_the_same() {
 #[test]
 fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     let mut broken = world();
-    // A tree that names an object which is not there: what meets the sphere's box panics.
+    // A tree that refers to a missing object: rays that hit the sphere's bounds panic.
     let mut boxes = vec![Aabb::EMPTY; 1000];
     boxes[999] = broken.objects()[0].bounds().unwrap();
     broken.accel = crate::world::Accel::Bvh(durer_bvh::Bvh::build(&boxes));
@@ -347,14 +347,14 @@ fn a_panic_is_an_error_that_knows_its_sample_and_the_rest_is_kept() {
     };
     assert_eq!(panicked.sample, Some(0), "{panicked}");
     assert!(panicked.message.contains("index out of bounds") && panicked.to_string().contains("pixel "), "{panicked}");
-    // The same sample alone panics too, its neighbours far away do not.
+    // Replaying the sample panics too; distant neighbours do not.
     let alone = |x, y| {
         let one = || replay(&broken, &job, &Control::default(), (x, y), Some(0)).map(|color| color.is_some());
         std::panic::catch_unwind(std::panic::AssertUnwindSafe(one))
     };
     assert!(alone(panicked.x, panicked.y).is_err());
     assert!(alone(0, 0).unwrap().unwrap());
-    // Tiles before it are kept; with the error mended, the film is as it should be.
+    // Earlier tiles are kept; with the bug fixed, the film is correct.
     assert!(part.work().1 > 0);
     let mended = PartialRender::read(&part.write()).unwrap();
     mended.render(&world(), &control, &mut |_, _| {}).unwrap();
@@ -377,7 +377,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
     }
     assert!(passes > 0 && saves > 0, "{passes} {saves}");
     assert!(part.is_whole() && !part.is_finished());
-    // No time at all is enough for a picture without holes, and for no more.
+    // A time limit of zero suffices for a picture without holes, and no more.
     let hasty = PartialRender::new(&world, &job, Shard::WHOLE).unwrap();
     let control = Control { time: Some(Duration::ZERO), ..Control::default() };
     assert_eq!(hasty.render(&world, &control, &mut |_, _| {}).unwrap(), RenderOutcome::OutOfTime);
@@ -392,7 +392,7 @@ fn time_and_cancel_stop_soon_and_the_watcher_is_called() {
         (stop, after.saturating_duration_since(before))
     });
     assert_eq!(stopped.0, RenderOutcome::Cancelled);
-    // 100 ms are the promise (`cargo xtask cost` measures it); a busy machine has other work too.
+    // The goal is 100 ms (`cargo xtask cost` measures it); allow for a busy machine.
     assert!(stopped.1 < Duration::from_secs(2), "{:?}", stopped.1);
 }
 
@@ -403,10 +403,10 @@ fn memory_is_estimated_before_it_is_taken() {
     let control = Control { memory: Some(1 << 30), ..Control::default() };
     let error = part.render(&world, &control, &mut |_, _| {}).unwrap_err();
     assert!(matches!(error, RenderError::Memory { needed, .. } if needed > 1 << 30), "{error}");
-    // Of a shard by tiles only the sums of its own pixels are kept.
+    // A shard by tiles only stores the sums of the pixels in its tiles.
     let shard = Shard { index: 1, count: 100, by: ShardBy::Tiles };
     assert!(PartialRender::bytes_needed(&job, shard) < PartialRender::bytes_needed(&job, Shard::WHOLE));
-    // What is kept of the course's samples counts too.
+    // The stored samples of the course count too.
     let filter = Some(CourseFilter::Gaussian { sigma: 30.0 });
     let course = Sampling::Course2004 { sampler: Sampler::Random, samples: 65536, filter };
     let part = PartialRender::new(&world, &Job { sampling: course, ..small() }, Shard::WHOLE).unwrap();
@@ -451,7 +451,7 @@ fn a_picture_made_in_bands_is_the_same() {
             PartialRender::bytes_needed(&Job { crop: Some(Crop { height: 1, ..window }), ..job.clone() }, Shard::WHOLE);
         let whole = all(&world, &job);
         let layer = whole.pictures().unwrap().pictures;
-        // Two rows of blocks, and all at once.
+        // Two rows of blocks, and everything at once.
         for memory in [16 * one, u64::MAX] {
             let bands = Bands::new(&job, memory).unwrap();
             for format in FORMATS.iter().filter(|format| format.rows.is_some()) {
@@ -460,7 +460,7 @@ fn a_picture_made_in_bands_is_the_same() {
                 let made = bands.write(&world, &Control::default(), format, &options, &mut in_bands).unwrap();
                 format.write(&layer, &options, &mut at_once).unwrap();
                 let name = format!("x.{}", format.extensions[0]);
-                // PNG packs otherwise, and OpenEXR not at all.
+                // PNG compresses differently, and OpenEXR not at all.
                 assert_eq!(read(&in_bands, &name).unwrap(), read(&at_once, &name).unwrap(), "{name} {memory}");
                 assert!(matches!(format.name, "PNG" | "OpenEXR") || in_bands == at_once, "{name} {memory}");
                 assert_eq!(made.0, whole.statistics());
@@ -483,7 +483,7 @@ fn colours_written_row_by_row_are_the_file_of_their_picture() {
         (TEXT, small(), None),
         (TEXT, Job { sampling: filtered(3), crop, ..small() }, None),
         (TEXT, tall, None),
-        // Some pixels see nothing, and some are not made.
+        // Some pixels see nothing, and some are not rendered.
         (&fisheye, Job { sampling: filtered(4), ..small() }, None),
         (TEXT, small(), Some(2)),
     ] {
@@ -501,7 +501,7 @@ fn colours_written_row_by_row_are_the_file_of_their_picture() {
             format.write(&layers, &WriteOptions::default(), &mut at_once).unwrap();
             let name = format!("x.{}", format.extensions[0]);
             assert_eq!(read(&by_rows, &name).unwrap(), read(&at_once, &name).unwrap(), "{name}");
-            // OpenEXR is packed where all of it is there.
+            // OpenEXR compresses only complete pictures.
             assert!(format.name == "OpenEXR" || by_rows == at_once, "{name}");
             assert_eq!(seen.len() as u64, job.window().pixels());
         }

@@ -1,4 +1,4 @@
-//! One picture made in many ways: threads, tiles, shards, interruptions, structures.
+//! Renders a picture in many ways: threads, tiles, shards, interruptions, acceleration structures.
 
 use super::{Control, Job, MergeError, PartError, PartialRender, RenderError, RenderOutcome, Shard, ShardBy, merge};
 use crate::world::World;
@@ -7,22 +7,22 @@ use durer_scene::source::Digest;
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// A way to make a picture.
+/// A way to render a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Way {
-    /// Number of the world, among those of one scene that differ by how hits are found.
+    /// Index among worlds of the same scene with different acceleration structures.
     pub world: usize,
-    /// Threads.
+    /// Number of threads.
     pub threads: usize,
-    /// Pixels across and down a tile.
+    /// Side of a tile in pixels.
     pub tile: u32,
-    /// How many shards.
+    /// Number of shards.
     pub shards: u32,
-    /// How it is split.
+    /// Division into shards.
     pub by: ShardBy,
-    /// How often each shard is interrupted, saved, and read again.
+    /// Number of times each shard is interrupted, saved, and read again.
     pub interruptions: u32,
-    /// Decides where it is interrupted, and in what order shards are merged.
+    /// Seed for the points of interruption and the order of merging.
     pub seed: u64,
 }
 
@@ -34,29 +34,29 @@ impl fmt::Display for Way {
     }
 }
 
-/// Why a way gave no film to compare.
+/// An error of rendering in some way.
 #[derive(Debug, thiserror::Error)]
 pub enum WayError {
-    /// It could not be rendered.
+    /// The render failed.
     #[error(transparent)]
     Render(#[from] RenderError),
-    /// What was saved could not be read.
+    /// The saved part could not be read.
     #[error("what was saved cannot be read: {0}")]
     PartialRender(#[from] PartError),
-    /// Shards could not be merged.
+    /// The shards could not be merged.
     #[error("shards cannot be merged: {0}")]
     Merge(#[from] MergeError),
-    /// It was cancelled.
+    /// The render was cancelled.
     #[error("cancelled")]
     Cancelled,
 }
 
 impl Way {
-    /// All at once, in one thread.
+    /// Everything at once, on one thread.
     pub const PLAIN: Way =
         Way { world: 0, threads: 1, tile: 16, shards: 1, by: ShardBy::Tiles, interruptions: 0, seed: 0 };
 
-    /// A way by number: the same for the same job and number of worlds.
+    /// Returns a numbered way, determined by the job and the number of worlds.
     pub fn numbered(number: u64, job: &Job, worlds: usize) -> Way {
         let pick = |dimension: u32, count: u64| hash(number, 0, 0, 0, dimension) % count.max(1);
         let samples = u64::from(job.sampling.samples());
@@ -68,7 +68,7 @@ impl Way {
             world: pick(0, worlds as u64) as usize,
             threads: [1, 2, 3, 4, 7][pick(1, 5) as usize],
             tile: [8, 16, 24, 32, 64, 200][pick(2, 6) as usize],
-            // Half of them are not split.
+            // Half of them have a single shard.
             shards: if pick(4, 2) == 0 { 1 } else { 1 + pick(5, most.min(7)) as u32 },
             by,
             interruptions: [0, 0, 1, 3][pick(6, 4) as usize],
@@ -76,7 +76,7 @@ impl Way {
         }
     }
 
-    /// Makes the job's picture in this way.
+    /// Renders the job's picture in this way.
     ///
     /// # Errors
     /// [`WayError`].
@@ -91,8 +91,8 @@ impl Way {
         Ok(if self.shards == 1 { parts.swap_remove(0).1 } else { merge(&parts)? })
     }
 
-    /// Makes a shard, stopped a few times after some tiles, and goes on each time with what was
-    /// saved.
+    /// Renders a shard with interruptions after some tiles, and continues each time from the saved
+    /// part.
     fn shard(&self, world: &World, job: &Job, shard: Shard, cancel: &AtomicBool) -> Result<PartialRender, WayError> {
         let mut part = PartialRender::new(world, job, shard)?;
         for round in (0..=self.interruptions).rev() {
@@ -116,14 +116,14 @@ impl Way {
     }
 }
 
-/// A way whose film is another.
+/// A way that gives another film.
 #[derive(Clone, Debug)]
 pub struct Difference {
-    /// The hash that it should have.
+    /// Expected hash.
     pub expected: Digest,
-    /// The hash that it has.
+    /// Actual hash.
     pub found: Digest,
-    /// The first pixel that differs, if a picture shows it.
+    /// Description of the first pixel that differs, if a picture shows it.
     pub place: String,
 }
 

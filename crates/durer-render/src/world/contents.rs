@@ -1,4 +1,4 @@
-//! What a world is made of, and its identity.
+//! Contents of a world, and its identity.
 
 use super::{DisplayRules, Geometry, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
@@ -12,63 +12,61 @@ use durer_scene::texture::{CubeMap, Environment, Texture};
 use std::fmt::Write;
 use std::sync::Arc;
 
-/// What the description says: it may be [changed](World::edit).
+/// Data from the description, which may be [edited](World::edit).
 #[derive(Clone, Debug)]
 pub struct Contents {
-    /// Whence it is seen.
+    /// Camera.
     pub camera: Camera,
-    /// The camera's axes.
+    /// Camera basis.
     pub frame: CameraBasis,
-    /// Colour of rays that hit nothing.
+    /// Colour of rays that miss.
     pub background: Color,
-    /// Light that is everywhere.
+    /// Ambient light.
     pub ambient: Color,
     /// Lights.
     pub lights: Vec<Light>,
-    /// Materials, by number.
+    /// Materials, by index.
     pub materials: Vec<Material>,
-    /// Everything that a ray can hit, by number.
+    /// Objects, by index.
     pub objects: Vec<Object>,
-    /// Rules of the camera and of pixels.
+    /// Rules of the camera and the raster.
     pub camera_rules: CameraRules,
     /// Rules of hits and of Whitted's integrator.
     pub shading: ShadingRules,
-    /// Rules of pictures of values.
+    /// Rules for displaying AOVs.
     pub display: DisplayRules,
-    /// The dialect that all these were resolved from. Rendering does not ask it; checks, lessons
-    /// and mistakes of the course do.
+    /// The dialect's rules that all these were resolved from. Rendering does not use them; checks,
+    /// lessons and the student's tracer do.
     pub(crate) rules: Rules,
 }
 
-/// What the files became that it names.
+/// Data from files.
 #[derive(Clone, Debug, Default)]
 pub struct Assets {
-    /// Surroundings that replace the background's colour.
+    /// Cube map that replaces the background's colour.
     pub cube_map: Option<CubeMap>,
-    /// Light from all around, which replaces colour and cube map.
+    /// Environment light, which replaces colour and cube map.
     pub environment: Option<Environment>,
-    /// What is in the air, if light loses something there.
+    /// Medium of the air, if there is fog.
     pub fog: Option<Medium>,
-    /// How strong each light shines in each direction, where that was measured; by number, those
-    /// behind the last have none.
+    /// Intensity profile of each light, if measured; by index, missing at the end.
     pub profiles: Vec<Option<Arc<Profile>>>,
-    /// The measured spectrum of each light, if it has one; by number, those behind the last have
-    /// none.
+    /// Measured spectrum of each light, if it has one; by index, missing at the end.
     pub illuminants: Vec<Option<Arc<Curve>>>,
-    /// Decoded pictures, by number.
+    /// Textures, by index.
     pub textures: Vec<Texture>,
 }
 
 impl World {
-    /// Changes what the description said. The world has another [identity](World::digest) then;
-    /// what was found about its objects stays as it was found.
+    /// Edits the description's data. Changes the world's [identity](World::digest); data derived
+    /// from objects, such as the acceleration structure, stay.
     pub fn edit(&mut self) -> &mut Contents {
         self.edited = true;
         self.extents.clear();
         &mut self.contents
     }
 
-    /// The hash of all that it holds. As it was compiled, that is the hash of what it was made of:
+    /// Returns the hash of the contents. For a world as compiled, it is the hash of its sources:
     /// description, files, rules.
     pub fn digest(&self) -> Digest {
         if !self.edited {
@@ -83,95 +81,94 @@ impl World {
                 Geometry::Mesh(tree) => tree.mesh.digest().to_string(),
                 other => format!("{other:?}"),
             };
-            // Text can always be written into text.
+            // Writing to a string cannot fail.
             let _ = write!(text, "{:?}", (geometry, to_world, center, material, normal_length));
         }
         Digest::of(text.as_bytes())
     }
 
-    /// Whence it is seen.
+    /// Returns the camera.
     pub fn camera(&self) -> &Camera {
         &self.contents.camera
     }
 
-    /// The camera's axes.
+    /// Returns the camera basis.
     pub fn camera_frame(&self) -> &CameraBasis {
         &self.contents.frame
     }
 
-    /// Colour of rays that hit nothing.
+    /// Returns the colour of rays that miss.
     pub fn background(&self) -> Color {
         self.contents.background
     }
 
-    /// Light that is everywhere.
+    /// Returns the ambient light.
     pub fn ambient(&self) -> Color {
         self.contents.ambient
     }
 
-    /// Lights.
+    /// Returns the lights.
     pub fn lights(&self) -> &[Light] {
         &self.contents.lights
     }
 
-    /// Materials, by number.
+    /// Returns the materials, by index.
     pub fn materials(&self) -> &[Material] {
         &self.contents.materials
     }
 
-    /// Everything that a ray can hit, by number.
+    /// Returns the objects, by index.
     pub fn objects(&self) -> &[Object] {
         &self.contents.objects
     }
 
-    /// Rules of the camera and of pixels.
+    /// Returns the rules of the camera and the raster.
     pub fn camera_rules(&self) -> CameraRules {
         self.contents.camera_rules
     }
 
-    /// Rules of hits and of Whitted's integrator.
+    /// Returns the rules of hits and of Whitted's integrator.
     pub fn shading_rules(&self) -> &ShadingRules {
         &self.contents.shading
     }
 
-    /// Rules of pictures of values.
+    /// Returns the rules for displaying AOVs.
     pub fn display_rules(&self) -> DisplayRules {
         self.contents.display
     }
 
-    /// The rules of the dialect that it was compiled with: for checks, lessons and mistakes.
+    /// Returns the dialect's rules that it was compiled with, for checks, lessons and the student's
+    /// tracer.
     pub fn rules(&self) -> &Rules {
         &self.contents.rules
     }
 
-    /// Surroundings that replace the background's colour.
+    /// Returns the cube map that replaces the background's colour.
     pub fn cube_map(&self) -> Option<&CubeMap> {
         self.assets.cube_map.as_ref()
     }
 
-    /// Light from all around, which replaces colour and cube map.
+    /// Returns the environment light, which replaces colour and cube map.
     pub fn environment(&self) -> Option<&Environment> {
         self.assets.environment.as_ref()
     }
 
-    /// What is in the air, if light loses something there.
+    /// Returns the medium of the air, if there is fog.
     pub fn fog(&self) -> Option<&Medium> {
         self.assets.fog.as_ref()
     }
 
-    /// How strong each light shines in each direction, where that was measured; by number, those
-    /// behind the last have none.
+    /// Returns the intensity profile of each light, if measured; by index, missing at the end.
     pub fn profiles(&self) -> &[Option<Arc<Profile>>] {
         &self.assets.profiles
     }
 
-    /// The measured spectrum of each light, if it has one; by number, those behind the last have
-    /// none.
+    /// Returns the measured spectrum of each light, if it has one; by index, missing at the end.
     pub fn illuminants(&self) -> &[Option<Arc<Curve>>] {
         &self.assets.illuminants
     }
 
-    /// Decoded pictures, by number.
+    /// Returns the textures, by index.
     pub fn textures(&self) -> &[Texture] {
         &self.assets.textures
     }

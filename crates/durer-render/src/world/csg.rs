@@ -1,23 +1,23 @@
-//! How a ray meets a solid of several parts (constructive solid geometry).
+//! Intersection of rays with solids of several parts (constructive solid geometry).
 //!
-//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Going
-//! along the line, each crossing turns one part's inside bit, and with it the counts of the
-//! operations above it; where the bit of the whole changes, the line goes in or out of the solid.
-//! Source: Roth, *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18,
-//! 1982; with counts for the operations, so that an operation of many parts costs no more.
+//! All crossings of the ray's line with the surfaces of the parts are collected and sorted. Along
+//! the line, each crossing toggles one part's inside bit, and with it the counts of the operations
+//! above it. Where the bit of the whole changes, the line enters or leaves the solid. Source: Roth,
+//! *Ray Casting for Modeling Solids*, Computer Graphics and Image Processing 18, 1982; with counts
+//! for the operations, so that an operation of many parts costs no more.
 //!
-//! Faces that coincide: crossings of different parts count as one where the faces lie alike and
-//! their distance across the surfaces is no more than single precision can tell there, some 2^-19
-//! of the coordinates. All their bits turn together: so no skin is left, or appears, where two faces
-//! share a plane. If the bit of the whole changes, the surface is that of the part written first of
-//! those that could have made the change: alone, or as the last.
+//! Coincident faces: crossings of different parts count as one if the faces are nearly parallel and
+//! their distance across the surfaces is at most what single precision can resolve there, some
+//! 2^-19 of the coordinates. All their bits toggle together, so no thin skin is left, or appears,
+//! where two faces share a plane. If the bit of the whole changes, the surface belongs to the first
+//! part in the file that could have made the change: alone, or as the last.
 //!
 //! Faces that meet at an angle, as at an edge, count as one only within the rounding of the
-//! crossings, which is of the parts' own size however far away they are: what is nearer to the edge
-//! than that could not be told to be in the corner, and light would leak in there.
+//! crossings, which is proportional to the parts' own size however far away they are. A larger
+//! tolerance would lose corners near the edge, and light would leak in.
 //!
-//! The `part` of a hit is the number of a triangle or shape among those of all parts, with two
-//! bits: whether the surface is turned inside out, and whether the ray enters the solid.
+//! The `part` of a hit is the index of a triangle or shape among those of all parts, with two flag
+//! bits: the surface is inverted, and the ray enters the solid.
 
 use super::solid::{BoolOp, Solid};
 use super::{Geometry, Object, ShadingRules};
@@ -27,29 +27,29 @@ use durer_scene::shape::{Axis, Shape, ShapeHit, Surface};
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Set in a hit's part where the surface is turned inside out, as that of what is cut away.
+/// Flag in a hit's part: the surface is inverted, as for subtracted parts.
 pub const TURNED: u32 = 1 << 31;
-/// Set in a hit's part where the ray enters the solid.
+/// Flag in a hit's part: the ray enters the solid.
 pub const ENTERS: u32 = 1 << 30;
 
-/// Up to so many parts, each is asked; more have a tree of their own.
+/// Number of parts up to which all are tested; more have their own tree.
 const FEW: usize = 8;
 
 /// A solid of several parts.
 #[derive(Debug)]
 pub struct Csg {
     leaves: Vec<Leaf>,
-    /// The operations; the whole is the first.
+    /// Operations; the first one is the root.
     joins: Vec<Join>,
-    /// How many of its edges hold at the start, for each operation.
+    /// Initial count for each operation: its edges that hold outside all parts.
     start: Vec<u32>,
-    /// Parts without end.
+    /// Unbounded parts.
     unbounded: Vec<u32>,
-    /// Numbers of the parts with an end, and the tree over them, if they are many.
+    /// Indices of the bounded parts, and a tree over them if there are many.
     bounded: Vec<u32>,
     bvh: Option<Bvh>,
     bounds: Option<Aabb>,
-    /// The greatest slack of two parts.
+    /// Largest tolerance of two parts.
     slack: f32,
 }
 
@@ -57,22 +57,22 @@ pub struct Csg {
 #[derive(Debug)]
 struct Leaf {
     object: Arc<Object>,
-    /// Its own, worked out once.
+    /// The part's axis, computed once.
     axis: Option<Axis>,
     edge: Edge,
-    /// Number of its first triangle.
+    /// Index of its first triangle.
     first: u32,
-    /// How far its surface may be off, at least.
+    /// Minimum tolerance for the position of its surface.
     slack: f32,
-    /// How far a crossing may be off from where the surface is.
+    /// Bound of the error of a crossing.
     rounding: f32,
 }
 
 #[derive(Clone, Copy, Debug)]
 struct Edge {
-    /// Number of the operation above.
+    /// Index of the parent operation.
     join: u32,
-    /// Whether the edge holds where the part is not.
+    /// True for a subtracted part, whose edge holds outside of it.
     cut: bool,
 }
 
@@ -80,7 +80,7 @@ struct Edge {
 struct Join {
     rule: BoolOp,
     edges: u32,
-    /// `None` for the whole.
+    /// `None` for the root.
     edge: Option<Edge>,
 }
 
@@ -94,7 +94,7 @@ impl Join {
     }
 }
 
-/// A crossing of one part's surface.
+/// A crossing of a part's surface.
 #[derive(Clone, Copy, Debug)]
 struct Event {
     t: f64,
@@ -103,32 +103,32 @@ struct Event {
     uv: Vec2,
 }
 
-/// What is used anew for each ray, one a thread.
+/// Thread-local buffers, reused for each ray.
 #[derive(Default)]
 struct Scratch {
     events: Vec<Event>,
     state: State,
 }
 
-/// What the present place is inside of.
+/// Containment of the current point.
 #[derive(Default)]
 struct State {
     counts: Vec<u32>,
     inside: Vec<bool>,
-    /// For each part, which crossings that coincide one of its own was last among: by a number that
-    /// no others ever have.
+    /// For each part, id of the last group of coincident crossings that includes one of the part.
+    /// Ids are never reused.
     groups: Vec<u64>,
     last_group: u64,
 }
 
 impl State {
-    /// Begins outside of all parts.
+    /// Starts outside of all parts.
     fn begin(&mut self, parts: usize, start: &[u32]) {
         self.counts.clear();
         self.counts.extend_from_slice(start);
         self.inside.clear();
         self.inside.resize(parts, false);
-        // What other rays and solids left there is of no group to come.
+        // Stale entries of other rays and solids match no future group id.
         self.groups.resize(self.groups.len().max(parts), 0);
     }
 }
@@ -138,10 +138,10 @@ thread_local! {
 }
 
 impl Csg {
-    /// More triangles and shapes than this, in all parts together, cannot be told apart.
+    /// Maximum number of triangles and shapes in all parts together.
     pub const MAX_PARTS: u64 = ENTERS as u64 - 1;
 
-    /// Prepares a solid for rays.
+    /// Prepares a solid for ray queries.
     pub fn new(solid: Solid) -> Self {
         let bounds = solid.bounds();
         let mut csg = Csg {
@@ -154,14 +154,15 @@ impl Csg {
             bounds,
             slack: 0.0,
         };
-        // A single part is a join of one.
+        // A single part becomes a join of one.
         let solid = match solid {
             Solid::Operand(_) => Solid::Join { rule: BoolOp::Any, parts: vec![solid], cut: Vec::new() },
             join => join,
         };
         csg.add(solid, None);
         csg.slack = csg.leaves.iter().map(|leaf| 2.0 * leaf.slack).fold(0.0, f32::max);
-        // Beyond the box of the whole, no part changes it; but those may coincide with what does.
+        // Parts do not matter beyond the bounds of the whole, except that they may coincide with
+        // parts that do.
         let margin = GRAZING as f32 * csg.slack;
         let matters = bounds.map(|whole| Aabb { min: whole.min - margin, max: whole.max + margin });
         let mut boxes = Vec::new();
@@ -191,7 +192,7 @@ impl Csg {
             (Solid::Join { rule, parts, cut }, edge) => {
                 let join = self.joins.len() as u32;
                 self.joins.push(Join { rule, edges: (parts.len() + cut.len()) as u32, edge });
-                // At the start nothing is inside of anything, and only what is cut away holds.
+                // Initially, only edges of subtracted parts hold.
                 self.start.push(cut.len() as u32);
                 parts.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: false })));
                 cut.into_iter().for_each(|part| self.add(part, Some(Edge { join, cut: true })));
@@ -199,27 +200,27 @@ impl Csg {
         }
     }
 
-    /// The box around it.
+    /// Returns the bounds.
     pub fn bounds(&self) -> Option<Aabb> {
         self.bounds
     }
 
-    /// Its parts.
+    /// Iterates over the parts.
     pub fn parts(&self) -> impl Iterator<Item = &Object> {
         self.leaves.iter().map(|leaf| &*leaf.object)
     }
 
-    /// The part that a hit's `part` names.
+    /// Returns the part of a hit.
     pub fn part(&self, part: u32) -> &Object {
         &self.leaves[self.leaf_of(part)].object
     }
 
-    /// The number of the triangle in that part, or 0.
+    /// Returns the index of the triangle in that part, or 0.
     pub fn triangle(&self, part: u32) -> u32 {
         (part & !(TURNED | ENTERS)) - self.leaves[self.leaf_of(part)].first
     }
 
-    /// Bytes in memory, meshes not counted.
+    /// Returns the size in bytes, without meshes.
     pub fn bytes(&self) -> usize {
         let lists = size_of_val(&*self.leaves) + size_of_val(&*self.joins) + size_of_val(&*self.start);
         lists
@@ -230,7 +231,7 @@ impl Csg {
 
     fn leaf_of(&self, part: u32) -> usize {
         let number = part & !(TURNED | ENTERS);
-        // Where only shapes, of one part each, are before it, it is at the place of its number.
+        // Fast path: with only shapes before it, the index is the position.
         let begins = |place: usize| self.leaves.get(place).is_some_and(|leaf| leaf.first == number);
         if begins(number as usize) && !begins(number as usize + 1) {
             return number as usize;
@@ -238,12 +239,12 @@ impl Csg {
         self.leaves.partition_point(|leaf| leaf.first <= number).saturating_sub(1)
     }
 
-    /// The surface at a hit, in world space; its normals point out of the solid.
+    /// Computes the surface at a hit in world space; its normals point out of the solid.
     pub fn surface(&self, ray: &Ray64, crossing: &ShapeHit, part: u32, rules: &ShadingRules) -> Surface {
         let (leaf, number) = (&self.leaves[self.leaf_of(part)], self.triangle(part));
         let point = leaf.object.local_line(ray).at(f64::from(crossing.t));
         let surface = leaf.object.surface(ray, point, crossing, number, rules);
-        // A mesh may be inside out by itself: what counts is the ray's way.
+        // A mesh may be inverted itself, so use the ray's direction of crossing.
         let turned = match leaf.object.geometry {
             Geometry::Mesh(_) => (surface.n_geo.dot(ray.dir()) < 0.0) != (part & ENTERS != 0),
             _ => part & TURNED != 0,
@@ -255,8 +256,8 @@ impl Csg {
         Surface { n_geo: -surface.n_geo, n_shade: -surface.n_shade, shadow_offsets: [back, front], ..surface }
     }
 
-    /// The first hit in the ray's interval, and its part. `inside`: whether a ray that leaves the
-    /// solid starts in it, as its surface knows.
+    /// Returns the first hit in the ray's interval, and its part. `inside`: for a ray that leaves
+    /// the solid's surface, true if it starts inside.
     pub(super) fn closest<T: TraversalCounter>(
         &self,
         ray: &Ray64,
@@ -269,8 +270,8 @@ impl Csg {
         SCRATCH.with_borrow_mut(|scratch| {
             let complete = self.collect(ray, true, scratch, counter);
             let found = self.sweep(ray, inside, scratch);
-            // From inside of all that was merged, the way out may be farther than the next part's
-            // way in.
+            // If the ray starts inside of a merge, the exit may be farther than the next part's
+            // entry.
             if complete < f32::INFINITY && found.is_none_or(|(crossing, _)| crossing.t > complete) {
                 self.collect(ray, false, scratch, counter);
                 return self.sweep(ray, inside, scratch);
@@ -281,9 +282,9 @@ impl Csg {
 
     /// Collects the crossings of all parts that may matter up to the first hit.
     ///
-    /// Whoever comes from outside a merge is in it at the first way into a part: with `shrink`,
-    /// parts beyond such a place may be left out. Gives up to where the crossings are complete:
-    /// infinity, if they are.
+    /// A ray from outside a merge enters it at the first entry into a part: with `shrink`, parts
+    /// beyond such an entry may be omitted. Returns the `t` up to which the crossings are complete,
+    /// or infinity.
     fn collect<T: TraversalCounter>(&self, ray: &Ray64, shrink: bool, scratch: &mut Scratch, counter: &mut T) -> f32 {
         let Scratch { events, .. } = scratch;
         events.clear();
@@ -298,12 +299,12 @@ impl Csg {
             events.sort_unstable_by(order);
             return f32::INFINITY;
         };
-        // What begins or ends within the slack of the interval's ends matters too.
+        // Crossings within the tolerance of the interval's ends matter too.
         let reach = self.slack + 4.0 * f32::EPSILON * ray.rounded.origin.abs().max_element();
-        // No direction is shorter than its greatest part, which takes no root.
+        // Largest component as a lower bound of the direction's length, without a square root.
         let pad = GRAZING as f32 * reach / ray.dir().abs().max_element();
-        // From a place so far back, for rays that begin at their origin are walked faster. What
-        // that place is off by is a thousandth of the pad.
+        // Move the origin back, because traversal is faster for rays that start at their origin.
+        // The rounding of the origin is a thousandth of the pad.
         let Ray { origin, dir, t_min, t_max } = ray.rounded;
         let wide = Ray { origin: origin - pad * dir, dir, t_min, t_max: t_max + 2.0 * pad };
         let shrink = shrink && self.joins[0].rule == BoolOp::Any;
@@ -315,7 +316,7 @@ impl Csg {
                 return t_max;
             }
             let own = &mut events[from..];
-            // What was just written is not moved: who did would wait for it.
+            // Skip the sort for one or two events, which would stall on the fresh writes.
             if own.len() > 2 {
                 own.sort_unstable_by(order);
             }
@@ -332,12 +333,12 @@ impl Csg {
         complete
     }
 
-    /// Goes along the sorted crossings to the first in the interval at which the whole changes.
+    /// Walks the sorted crossings to the first in the interval at which the whole changes.
     ///
-    /// A ray that leaves the solid knows on which side it starts. Where crossings say otherwise,
-    /// it starts nearer to an edge than single precision can tell, and a face of that lies on the
-    /// wrong side of its origin: one that the ray should meet, it meets at once; one that it should
-    /// have behind it, it does not meet.
+    /// A ray that leaves the solid knows its starting side. If the crossings disagree, it starts
+    /// closer to an edge than single precision can resolve, and a face is on the wrong side of its
+    /// origin. A face that the ray should hit, it hits at once; a face that should be behind it, it
+    /// ignores.
     fn sweep(&self, ray: &Ray64, inside: Option<bool>, scratch: &mut Scratch) -> Option<(ShapeHit, u32)> {
         let Scratch { events, state } = scratch;
         if events.is_empty() {
@@ -355,13 +356,13 @@ impl Csg {
             let t = f32::MIN_POSITIVE;
             ray.rounded.contains(t).then_some((ShapeHit { t, ..crossing }, part))
         };
-        // The last crossing behind the origin that leads to the other side.
+        // Last crossing behind the origin that leads to the other side.
         let mut behind: Option<(ShapeHit, u32)> = None;
         let mut known = inside;
         let (apart, speed) = self.apart(ray, events);
         let mut from = 0;
         while from < events.len() {
-            // Most crossings are alone.
+            // Fast path: most crossings are isolated.
             let to = match events.get(from + 1) {
                 Some(next) if (next.t - events[from].t) * speed > apart => from + 1,
                 _ => self.coincident(ray, events, from, state),
@@ -397,7 +398,7 @@ impl Csg {
         behind.filter(|_| known.is_some_and(|inside| inside != whole)).and_then(at_once)
     }
 
-    /// The hit at a crossing after which the whole is there or not.
+    /// Returns the hit at a crossing after which the whole is present or not.
     fn change(&self, event: &Event, state: &State, whole: bool) -> (ShapeHit, u32) {
         let turned = state.inside[event.leaf as usize] != whole;
         let bits = if turned { TURNED } else { 0 } | if whole { ENTERS } else { 0 };
@@ -405,7 +406,8 @@ impl Csg {
         (ShapeHit { t: event.t as f32, uv: event.uv }, part)
     }
 
-    /// Whether a part, as it is now, makes the whole more: in it, or out of what is cut away.
+    /// Returns true if a part in its current state adds to the whole: inside it, or outside of a
+    /// subtracted part.
     fn adds(&self, leaf: u32, state: &State) -> bool {
         let mut adds = state.inside[leaf as usize];
         let mut edge = Some(self.leaves[leaf as usize].edge);
@@ -416,7 +418,7 @@ impl Csg {
         adds
     }
 
-    /// Turns a part's inside bit; gives whether the bit of the whole turned with it.
+    /// Toggles a part's inside bit; returns true if the bit of the whole changed.
     fn toggle(&self, leaf: u32, state: &mut State) -> bool {
         let bit = &mut state.inside[leaf as usize];
         *bit = !*bit;
@@ -437,18 +439,18 @@ impl Csg {
         }
     }
 
-    /// Of crossings of a ray that coincide, no two are farther apart than this, by
-    /// [`Csg::coincide`]; then how far the ray gets in a unit of `t`, at least.
+    /// Returns an upper bound of the distance of coincident crossings, see [`Csg::coincide`], and a
+    /// lower bound of the ray's speed.
     fn apart(&self, ray: &Ray64, events: &[Event]) -> (f64, f64) {
         let (line, speed) = (ray.line(), f64::from(ray.dir().abs().max_element()));
         let farthest = events.first().map_or(0.0, |e| e.t.abs()) + events.last().map_or(0.0, |e| e.t.abs());
         let reach = line.origin.abs().max_element() + farthest * speed;
-        // A little more, for what is rounded otherwise there.
+        // A margin for different rounding there.
         (1.001 * GRAZING * (f64::from(self.slack) + 4.0 * f64::from(f32::EPSILON) * reach), speed)
     }
 
-    /// The end of the crossings that coincide with one, each of another part: see the head of this
-    /// file.
+    /// Returns the end of the group of crossings that coincide with one, each of another part: see
+    /// the head of this file.
     fn coincident(&self, ray: &Ray64, events: &[Event], from: usize, state: &mut State) -> usize {
         state.last_group += 1;
         let State { groups, last_group: group, .. } = state;
@@ -480,22 +482,22 @@ impl Csg {
             let at = object.local_line(ray).at(event.t);
             object.surface(ray, at, &crossing, event.part, &ShadingRules::default()).n_geo.as_dvec3()
         });
-        // A grazing ray runs farther between faces at the same distance.
+        // A grazing ray travels farther between faces at the same distance.
         let cosine = m.dot(line.dir).abs().max(n.dot(line.dir).abs()) / speed;
         m.dot(n).abs() >= ALIKE && gap * cosine <= slack
     }
 
-    /// Of crossings that have changed the whole together, the one whose surface is seen.
+    /// Returns the crossing whose surface is visible, of a group that changed the whole together.
     fn choose<'e>(&self, events: &'e [Event], state: &mut State) -> &'e Event {
         let mut could: Vec<&Event> = Vec::new();
-        // Which would, undone, undo the change?
+        // Crossings whose undoing would undo the change.
         for event in events {
             if self.toggle(event.leaf, state) {
                 could.push(event);
             }
             self.toggle(event.leaf, state);
         }
-        // And which would make it alone? For this, all are undone, and done again.
+        // Crossings that would make the change alone: undo all, and redo each.
         for event in events {
             self.toggle(event.leaf, state);
         }
@@ -515,18 +517,18 @@ impl Csg {
     }
 }
 
-/// The sine at which rays graze: flatter ones are off by more than the slack covers.
+/// Reciprocal sine of grazing rays: flatter ones exceed the tolerance.
 const GRAZING: f64 = 1000.0;
 
-/// The cosine of the angle up to which faces lie alike, 3.6 degrees: as far as faces of size 1 that
-/// should share a plane may be turned by the rounding of their corners at 10^6.
+/// Cosine of the largest angle between coincident faces, 3.6 degrees: the rotation that rounding of
+/// corners at 10^6 can cause for faces of size 1 that should share a plane.
 const ALIKE: f64 = 0.998;
 
 fn order(a: &Event, b: &Event) -> std::cmp::Ordering {
     a.t.total_cmp(&b.t).then(a.leaf.cmp(&b.leaf)).then(a.part.cmp(&b.part))
 }
 
-/// Two roundings of an object's coordinates, in world and in object space.
+/// Returns two roundings of an object's coordinates, in world and in object space.
 fn slack_of(object: &Object) -> f32 {
     let (Some(world), Some(local)) = (object.bounds(), object.local_bounds()) else { return 0.0 };
     let reach = |b: Aabb| b.min.abs().max(b.max.abs());

@@ -1,27 +1,27 @@
-//! What a ray met, and the surface there.
+//! Surface interactions of rays.
 
 use super::{Geometry, Hit, World};
 use durer_bvh::TraversalCounter;
 use durer_scene::math::{Ray, Ray64, Side, Vec2, Vec3};
 use durer_scene::shape::{ShapeHit, Surface};
 
-/// What a ray met: made once, by [`World::interaction`], and asked by all that shades it.
+/// Surface point hit by a ray, computed once by [`World::interaction`] for all shading.
 #[derive(Clone, Copy, Debug)]
 pub struct Interaction {
-    /// What the thing is like there, in world space.
+    /// Surface at the hit, in world space.
     pub surface: Surface,
     /// The ray.
     pub ray: Ray64,
-    /// Where it met what.
+    /// The hit.
     pub hit: Hit,
-    /// The number of the material there.
+    /// Index of the material.
     pub material: u32,
-    /// How wide what a sample stands for is there, across the ray; 0 where nobody knows.
+    /// Width of a sample's footprint across the ray; 0 if unknown.
     pub width: f32,
 }
 
 impl Interaction {
-    /// Nothing yet.
+    /// Placeholder without a hit.
     pub(crate) const NOWHERE: Interaction = Interaction {
         surface: Surface::NOWHERE,
         ray: Ray64 {
@@ -34,25 +34,25 @@ impl Interaction {
         width: 0.0,
     };
 
-    /// Whether the ray comes from the side that the true normal does not point to.
+    /// Returns true if the ray hits the side opposite to the geometric normal.
     pub fn inside(&self) -> bool {
         self.ray.dir().dot(self.surface.n_geo) > 0.0
     }
 }
 
 impl World {
-    /// What a ray meets first in its interval.
+    /// Finds the first hit in the ray's interval, with its surface.
     pub fn intersect<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Interaction> {
         let ray = ray.into();
         self.closest(ray, counter).map(|hit| self.interaction(ray, hit))
     }
 
-    /// What a ray met at a hit of its. The official programs take the point from the ray as it is.
+    /// Computes the interaction at `hit`. Official programs take the point from the rounded ray.
     pub fn interaction(&self, ray: impl Into<Ray64>, hit: Hit) -> Interaction {
         self.interaction_along(&ray.into(), hit)
     }
 
-    /// The same with one copy of the ray.
+    /// Computes the interaction without copying the ray twice. See [`World::interaction`].
     #[inline]
     pub(crate) fn interaction_along(&self, ray: &Ray64, hit: Hit) -> Interaction {
         let mut at = Interaction::NOWHERE;
@@ -60,7 +60,7 @@ impl World {
         at
     }
 
-    /// The same, in its place: a copy of what was just written would take long.
+    /// Writes the interaction at a hit into `at`, without a copy. See [`World::interaction`].
     #[inline]
     pub(crate) fn meet(&self, ray: &Ray64, hit: Hit, at: &mut Interaction) {
         let object = &self.objects()[hit.object as usize];
@@ -79,7 +79,7 @@ impl World {
         }
     }
 
-    /// The number of the material at a hit.
+    /// Returns the index of the material at a hit.
     #[inline]
     pub(crate) fn material_of(&self, hit: &Hit) -> u32 {
         let object = &self.objects()[hit.object as usize];

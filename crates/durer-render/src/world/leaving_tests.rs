@@ -1,4 +1,4 @@
-//! Rays that start on a surface do not meet it where they start.
+//! Tests that rays that start on a surface do not hit it at their start.
 
 use crate::compile::{AccelKind, testing};
 use crate::integrator::spawn::spawn_ray;
@@ -9,9 +9,9 @@ use durer_scene::shape::testing::{distance, near_edge, samples, surface_point, t
 use durer_scene::shape::{Primitive, Shape, Surface, Triangle};
 use glam::{DAffine3, DVec3};
 
-/// A hit of the world's only object, by a ray from somewhere around it.
+/// Shoots a ray at the world's only object from a random point around it.
 fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random) -> Option<(Ray, Hit)> {
-    // Both ends in object space, so that thin things are hit as well.
+    // Both ends in object space, so that thin objects are hit as well.
     let (local, _) = surface_point(shape, random, 1.0, 1.0)?;
     let origin = affine.transform_point3(local.origin.as_dvec3()).as_vec3();
     let target = affine.transform_point3(local.at(1.0).as_dvec3()).as_vec3();
@@ -19,8 +19,8 @@ fn hit(world: &World, shape: &Primitive, affine: &DAffine3, random: &mut Random)
     world.closest(&ray, &mut ()).map(|hit| (ray, hit))
 }
 
-/// Whether a ray ends on another side of the same closed shape: one from inside on its way out, one
-/// from outside, where the shape is not convex, on its way in.
+/// Returns true if a ray hits another side of the same closed shape: an exit for a ray from inside,
+/// or an entry for a ray from outside of a shape that is not convex.
 fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64, hit: &Hit) -> bool {
     let bent = matches!(shape, Primitive::Torus(_) | Primitive::Quadric(_));
     let (from_inside, goes_out) = (ray.dir().dot(start.n_geo) < 0.0, world.interaction(ray, *hit).inside());
@@ -31,16 +31,15 @@ fn is_other_side(shape: &Primitive, world: &World, start: &Surface, ray: &Ray64,
 fn no_ray_meets_the_surface_that_it_leaves() {
     let mut random = Random(5);
     let mut counts = [0; 11];
-    // (stretch of the transform, distance of the object)
+    // Stretch of the transform, distance of the object.
     for (stretch, distance) in [(1.0, 0.0), (1.0, 100.0), (10.0, 0.0), (10.0, 1e4), (100.0, 1e3), (1.0, 1e4)] {
         for round in 0..rounds(600) {
             let mut affine = random.affine(stretch, distance);
-            // Everything from a millionth to a million.
+            // Scales from a millionth to a million.
             let scale = [1.0, 1e-6, 1e6, 1e-3, 1e3][round % 5];
             affine = DAffine3::from_scale(DVec3::splat(scale)) * affine;
             if round % 4 == 0 {
-                // Along an axis the point's other coordinates are small, and known better than that
-                // one.
+                // On an axis, the point's other coordinates are small and more precise.
                 affine.translation *= glam::DVec3::X;
             }
             for (kind, shape) in samples(&mut random, 1.0, 1.0).into_iter().enumerate() {
@@ -48,24 +47,23 @@ fn no_ray_meets_the_surface_that_it_leaves() {
                 for _ in 0..10 {
                     let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
                     let surface = world.interaction(ray, first).surface;
-                    // The tip of a stretched ball may be sharper than coordinates are fine: the
-                    // least radius of curvature of an ellipsoid is its least half axis squared over
-                    // the largest.
+                    // The tip of a stretched sphere may be sharper than the resolution of
+                    // coordinates: the smallest radius of curvature of an ellipsoid is its smallest
+                    // half axis squared over the largest.
                     let off = surface.error.length() / scale as f32;
                     let tip = surface.curvature.recip() / (stretch * stretch * stretch);
                     if tip < 10.0 * off {
                         continue;
                     }
-                    // Nor is it known on which side of an edge a point is that is nearer to it than
-                    // its error.
+                    // Closer to an edge than its error, a point's side of the edge is unknown.
                     let at = affine.inverse().transform_point3(surface.point());
                     if near_edge(&shape, at, f64::from(10.0 * stretch * off)) {
                         continue;
                     }
                     for _ in 0..40 {
                         let dir = random.between(0.01, 100.0) * random.direction();
-                        // A ray that lies in the surface to within the rounding of its direction,
-                        // which a shear enlarges by the ratio of its factors, is on neither side.
+                        // A ray within the rounding of its direction along the surface is on
+                        // neither side; a shear amplifies the rounding by the ratio of its factors.
                         let in_it = 2.0 * f32::EPSILON * stretch * stretch;
                         if dir.normalize().dot(surface.n_geo).abs() < in_it {
                             continue;
@@ -98,7 +96,7 @@ fn rays_start_so_near_that_a_plane_a_thousandth_away_is_met() {
             let normal = side * surface.n_geo;
             let away = spawn_ray(&surface, normal, f32::INFINITY, None);
             let lifted = (away.origin() - surface.point()).dot(normal.as_dvec3());
-            // What an unbounded plane shows may be far away.
+            // Points of an unbounded plane may be far away.
             let far = surface.position.abs().max_element() > 500.0;
             assert!(far || (0.0..1e-3).contains(&lifted), "{lifted} {shape:?} {affine:?} {surface:?}");
         }
@@ -114,7 +112,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let world = testing::shapes(&[(shape.clone(), affine)], AccelKind::Bvh);
             let Some((ray, first)) = hit(&world, &shape, &affine, &mut random) else { continue };
             let surface = world.interaction(ray, first).surface;
-            // The same surface in world space: where the distance of the point moved back is zero.
+            // The same surface in world space: where the distance of the inversely transformed
+            // point is zero.
             let inverse = affine.inverse();
             let field = |p: DVec3| distance(&shape, inverse.transform_point3(p));
             let p = surface.point();
@@ -127,8 +126,8 @@ fn a_mirrored_and_a_sheared_normal_is_that_of_the_moved_surface() {
             let difference = |v: DVec3| (field(p + step * v) - field(p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
             assert!(field(p).abs() <= f64::from(bound) * gradient.length() * 1.01, "{shape:?} {affine:?}");
-            // The matrix is rounded to single precision and stretches by up to 25 more in one axis
-            // than another; the point of a small ball is known to 1e-6 of its radius.
+            // The matrix is rounded to single precision and stretches one axis up to 25 times more
+            // than another; a point of a small sphere has a precision of 1e-6 of its radius.
             let n = surface.n_geo.as_dvec3();
             assert!((gradient.normalize() - n).length() < 1e-4, "{shape:?} {affine:?} {surface:?} {gradient}");
             // t is the same in both spaces.
@@ -161,7 +160,7 @@ fn a_floor_in_a_coordinate_plane_is_left() {
         let floor = Triangle { vertex0: corner(-1.0, -1.0), vertex1: corner(1.0, -1.0), vertex2: corner(0.0, 1.0) };
         let ray = Ray::new(Vec3::Y, 0.1 * random.point() - Vec3::Y);
         let surface = floor.surface(DVec3::ZERO, &floor.intersect(&ray).unwrap());
-        // No coordinate of the point is off the floor, and no offset is needed; also for low rays.
+        // All coordinates of the point are on the floor, so no offset is needed; also for low rays.
         let dir = random.direction() * Vec3::new(1.0, [1.0, 0.1, 1e-3][round % 3], 1.0);
         let away = spawn_ray(&surface, dir, f32::INFINITY, None);
         assert_eq!(floor.intersect(&away.rounded), None, "{floor:?} {away:?}");

@@ -1,4 +1,4 @@
-//! What the pictures on a surface and the colours of its vertices make of a material in layers.
+//! Evaluation of the textures and vertex colours of layered materials.
 
 use super::material::{Maps, Principled};
 use super::{Geometry, Interaction, World};
@@ -10,8 +10,8 @@ use durer_scene::texture::{Channel, Mapping, Texture};
 use std::borrow::Cow;
 
 impl World {
-    /// The parameters of a material in layers at a hit. Where the surface has no texture
-    /// coordinates, pictures are left out.
+    /// Evaluates the parameters of a layered material at a hit. Without texture coordinates,
+    /// textures are ignored.
     pub fn parameters_at<'a>(&self, own: &'a Principled, at: &Interaction) -> Cow<'a, Parameters> {
         let [r, g, b, _] = at.surface.color;
         if own.maps.parameters.is_empty() && [r, g, b] == [1.0; 3] {
@@ -19,7 +19,7 @@ impl World {
         }
         let mut here = own.parameters;
         here.base_color *= Vec3::new(r, g, b);
-        // Pictures that change several parameters are looked up once.
+        // Textures that change several parameters are looked up once.
         let mut last: Option<(u32, [f32; 4])> = None;
         for map in &own.maps.parameters {
             let known = last.filter(|(number, _)| *number == map.texture).map(|(_, texel)| texel);
@@ -38,19 +38,19 @@ impl World {
         Cow::Owned(if own.maps.parameters.is_empty() { here } else { here.within_bounds() })
     }
 
-    /// The number from 0 to 1 that a picture has at a hit; 1 where it has no coordinates.
+    /// Returns the number from 0 to 1 of a texture at a hit; 1 without texture coordinates.
     pub(super) fn number_at(&self, map: u32, at: &Interaction) -> f32 {
         let Some(texel) = self.texel(Some(map), at) else { return 1.0 };
         let mapping = self.textures()[map as usize].mapping().copied().unwrap_or_default();
         mapping.ranged(mapping.channel.unwrap_or(Channel::Red).of(texel)).clamp(0.0, 1.0)
     }
 
-    /// What a picture makes of a surface's own light.
+    /// Returns the factor of a texture on the emission.
     pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
         self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))
     }
 
-    /// The share of a surface that is there, by number, vertices and picture.
+    /// Returns the opacity of a surface, from parameter, vertices and texture.
     pub(super) fn opacity_at(&self, own: &Principled, at: &Interaction) -> f32 {
         let alpha = self.texel(own.maps.base_color, at).map_or(1.0, |texel| texel[3]);
         let share = own.maps.opacity.and_then(|map| {
@@ -62,12 +62,13 @@ impl World {
         own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0)
     }
 
-    /// Whether a material in layers may be there in part only. Vertices may say so of any.
+    /// Returns true if a layered material may be partly transparent by opacity. Vertex colours may
+    /// add opacity to any material.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
         own.written.opacity < 1.0 || self.has_holes(own)
     }
 
-    /// Whether a picture says what of a material is there.
+    /// Returns true if a texture defines the opacity.
     pub(super) fn has_holes(&self, own: &Principled) -> bool {
         own.maps.opacity.is_some() || own.maps.base_color.is_some_and(|map| self.textures()[map as usize].has_alpha())
     }
@@ -78,8 +79,8 @@ impl World {
         Some(texture.texel(&mapping, self.coordinates(texture, at)?, self.texels_seen(texture, &mapping, at)))
     }
 
-    /// How many texels along a side a sample stands for, in the direction in which they are fewest.
-    /// In the other there are more where a surface is seen from the side; there samples have to do.
+    /// Returns the width of a sample's footprint in texels, in its narrow direction. At grazing
+    /// angles the other direction is wider, which is left to supersampling.
     fn texels_seen(&self, texture: &Texture, mapping: &Mapping, at: &Interaction) -> f32 {
         if at.width <= 0.0 || !texture.has_levels() {
             return 0.0;
@@ -88,7 +89,7 @@ impl World {
         texture.texels_in(mapping, at.width / u.cross(v).length().sqrt())
     }
 
-    /// The texture coordinates of a hit that count for a texture.
+    /// Returns the texture coordinates of a hit for a texture.
     fn coordinates(&self, texture: &Texture, at: &Interaction) -> Option<Vec2> {
         let Interaction { hit, surface, .. } = at;
         match (texture.mapping().is_some_and(|mapping| mapping.second), &self.objects()[hit.object as usize].geometry) {
@@ -98,25 +99,23 @@ impl World {
         }
     }
 
-    /// The normal that a bump map and then a normal map make of that for shading; `None` where
-    /// there are none.
+    /// Applies a bump map and then a normal map to the shading normal; `None` if there are none.
     pub(super) fn mapped_normal(&self, maps: &Maps, at: &Interaction) -> Option<Vec3> {
         let bumped = maps.bump.and_then(|map| self.bumped(map, maps.bump_height, at));
         let normal = bumped.unwrap_or(at.surface.n_shade);
         maps.normal.and_then(|map| self.leaning(map, at, normal)).or(bumped)
     }
 
-    /// The normal that a picture of normals says: x along the direction in which the picture's u
-    /// grows, y along its v upwards.
+    /// Evaluates a normal map: x along increasing u of the picture, y along increasing v, upwards.
     fn leaning(&self, map: u32, at: &Interaction, normal: Vec3) -> Option<Vec3> {
         let texture = &self.textures()[map as usize];
         let mapping = texture.mapping().copied().unwrap_or_default();
         let object = &self.objects()[at.hit.object as usize];
-        // A mean of normals would be that of a smoother surface.
+        // No filtering: an averaged normal would belong to a smoother surface.
         let [r, g, b, _] = texture.texel(&mapping, self.coordinates(texture, at)?, 0.0);
         let grow = match &object.geometry {
             Geometry::Mesh(tree) => {
-                // The tangents of the file are given about the object's own normal.
+                // Tangents in the file are relative to the object's own normal.
                 let own = object.to_world.as_ref().map_or(normal, |to_world| to_world.local_normal(normal));
                 let grow = tree.mesh.tangents(at.hit.part, at.surface.barycentric, own, mapping.second)?;
                 grow.map(|v| object.to_world.as_ref().map_or(v, |to_world| to_world.vector(v)))
@@ -125,7 +124,7 @@ impl World {
         };
         let [u, v] = mapping.directions(grow);
         let tangent = u.reject_from_normalized(normal).try_normalize()?;
-        // Perpendicular, on the side to which v grows.
+        // Perpendicular, on the side of increasing v.
         let across = normal.cross(tangent);
         let bitangent = if across.dot(v) < 0.0 { -across } else { across };
         let signed = |x: f32| 2.0 * x - 1.0;
@@ -133,7 +132,7 @@ impl World {
         (x * tangent + y * bitangent + signed(b) * normal).try_normalize()
     }
 
-    /// The normal of the surface raised by a picture of heights.
+    /// Evaluates a bump map.
     ///
     /// Source: James Blinn, *Simulation of Wrinkled Surfaces*, SIGGRAPH 1978, with the gradient of
     /// the height along the surface.
@@ -145,8 +144,8 @@ impl World {
         (at.surface.n_shade - slope.x * u - slope.y * v).try_normalize()
     }
 
-    /// How a point of the world moves as its texture coordinates grow by 1: those of the file on a
-    /// mesh, else by what they are beside the point.
+    /// Returns the derivatives of the world position by the texture coordinates: from the file for
+    /// a mesh, otherwise by finite differences.
     fn derivatives(&self, at: &Interaction, second: bool) -> Option<[Vec3; 2]> {
         let Interaction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -162,13 +161,13 @@ impl World {
         let size = shape.bounds().map_or(1.0_f32.max(point.length()), |bounds| bounds.size().max_element());
         let step = 1e-3 * size;
         let here = surface.uv.get()?;
-        // What the shape says where a ray against the normal meets it beside the point.
+        // Texture coordinates of a nearby point, hit by a ray against the normal.
         let beside = |way: Vec3| {
             let mut ray = Ray::new(point + step * (way + normal), -normal);
             ray.t_max = 2.0 * step;
             let crossing = shape.intersect(&ray)?;
             let uv = shape.surface(ray.at(crossing.t).as_dvec3(), &crossing).uv.get()?;
-            // Around a closed shape 1 is 0 again.
+            // On a closed shape, 1 wraps around to 0.
             let around = |x: f32| if x.abs() > 0.5 { x - x.round() } else { x };
             Some(Vec2::new(around(uv.x - here.x), around(uv.y - here.y)) / step)
         };
@@ -182,9 +181,9 @@ impl World {
         dual([along_a.x * a + along_b.x * b, along_a.y * a + along_b.y * b])
     }
 
-    /// The direction of the world in which u grows at a hit: that of the texture coordinates of a
-    /// mesh, the way around the axis of what is round, the first edge of a rectangle; else the
-    /// horizontal one.
+    /// Returns the world-space direction of increasing u at a hit: from the texture coordinates of
+    /// a mesh, around the axis of a round shape, along the first edge of a rectangle; otherwise
+    /// horizontal.
     pub(super) fn tangent(&self, at: &Interaction) -> Vec3 {
         let Interaction { hit, surface, .. } = at;
         let object = &self.objects()[hit.object as usize];
@@ -202,8 +201,8 @@ impl World {
     }
 }
 
-/// Two vectors in the same plane, each at right angles to one of two, whose product with the other
-/// is 1: gradients from derivatives, and the other way round.
+/// Returns the dual basis of two vectors in their plane: gradients from derivatives, and the
+/// reverse.
 fn dual([u, v]: [Vec3; 2]) -> Option<[Vec3; 2]> {
     let normal = u.cross(v);
     let duals = [v.cross(normal), normal.cross(u)].map(|dual| dual / normal.length_squared());

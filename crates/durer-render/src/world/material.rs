@@ -1,4 +1,4 @@
-//! Materials with the rules of their dialect worked in.
+//! Compiled materials, with the rules of their dialect applied.
 
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
@@ -15,78 +15,78 @@ use std::sync::Arc;
 /// A compiled material.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Material {
-    /// Numbers only.
+    /// A material of parameters.
     Phong(Phong),
-    /// Two materials mixed; the matrix leads from world to pattern space, and a picture by its
-    /// number multiplies the share of the first.
+    /// A mix of two materials; the matrix maps from world to pattern space, and a texture (by
+    /// index) multiplies the share of the first.
     Solid(Solid, glam::DAffine3, Option<u32>),
 }
 
-/// How a material's highlight is computed.
+/// Model of a highlight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum HighlightModel {
     /// max(0, N·H)^exponent where N·L > 0.
     Blinn,
     /// max(0, R·L)^exponent; `behind`: also where N·L <= 0.
     Phong {
-        /// Whether surfaces that face away have highlights too.
+        /// True if surfaces that face away have highlights too.
         behind: bool,
     },
 }
 
-/// The pictures of a material in layers, by their numbers in [`super::World::textures`].
+/// Textures of a layered material, by index in [`super::World::textures`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Maps {
-    /// Its alpha multiplies the opacity.
+    /// Base colour; its alpha multiplies the opacity.
     pub base_color: Option<u32>,
-    /// Multiplies the colour of emission.
+    /// Factor of the emission's colour.
     pub emission: Option<u32>,
-    /// Multiplies the opacity.
+    /// Factor of the opacity.
     pub opacity: Option<u32>,
     /// Normals in tangent space.
     pub normal: Option<u32>,
-    /// Heights.
+    /// Bump map.
     pub bump: Option<u32>,
-    /// How far their 1 lies above their 0, in units of the world.
+    /// Height of bump value 1 over 0, in units of the world.
     pub bump_height: f32,
-    /// What changes parameters.
+    /// Textures of parameters.
     pub parameters: Vec<Map>,
 }
 
-/// A picture that changes a parameter.
+/// A texture of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map {
-    /// What it does: the number of a row of [`TEXTURED`](durer_scene::material::parameters::TEXTURED).
+    /// Row in [`TEXTURED`](durer_scene::material::parameters::TEXTURED), which defines the
+    /// parameter.
     pub row: usize,
-    /// Its number.
+    /// Index of the texture.
     pub texture: u32,
-    /// What counts of it where a number is wanted; `None`: what its mapping says, or red.
+    /// Channel for numbers; `None`: as in its mapping, or red.
     pub channel: Option<Channel>,
 }
 
-/// A principled material with its files read and its tables worked out.
+/// A principled material with its files and tables loaded.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Principled {
-    /// As written.
+    /// Description.
     pub written: PrincipledMaterial,
-    /// Its pictures.
+    /// Textures.
     pub maps: Maps,
-    /// The same everywhere, where no picture says otherwise.
+    /// Parameters without textures.
     pub parameters: Parameters,
-    /// What its boundaries give back.
+    /// Reflectance tables of its boundaries.
     pub tables: Tables,
-    /// The spectrum of its own light.
+    /// Spectrum of its emission.
     pub illuminant: Option<Arc<Curve>>,
-    /// What the body is filled with, if that absorbs or scatters light.
+    /// Interior medium, if it absorbs or scatters.
     pub medium: Option<Medium>,
-    /// Whether the surface itself does nothing where what is around has the same index of
-    /// refraction: a body of smoke.
+    /// True if the surface has no effect between equal indices of refraction, as for smoke.
     pub interface: bool,
 }
 
 impl Principled {
-    /// Whether some of its layers mirror or refract into single directions. Roughness from pictures
-    /// is not looked at.
+    /// Returns true if some layer reflects or refracts into a single direction. Ignores roughness
+    /// textures.
     pub fn has_single_directions(&self) -> bool {
         let m = &self.written;
         let smooth = |roughness: f32| Ggx::new(roughness, 0.0).is_smooth();
@@ -95,51 +95,50 @@ impl Principled {
     }
 }
 
-/// The light of a surface's own.
+/// Emission of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Emission {
-    /// Its radiance, without texture.
+    /// Radiance, without texture.
     pub radiance: Color,
-    /// Whether a picture multiplies it.
+    /// True if a texture multiplies it.
     pub textured: bool,
-    /// Whether both sides shine, and not only that of the normal.
+    /// True if both sides emit, false for the side of the normal only.
     pub two_sided: bool,
 }
 
-/// A Phong material with the rules of its dialect worked in.
+/// A Phong material with the rules of its dialect applied.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Phong {
-    /// Share of light scattered evenly, where neither texture nor noise is.
+    /// Diffuse reflectance without texture and noise.
     pub diffuse: Color,
-    /// Number of a texture that replaces it.
+    /// Index of a texture that replaces the diffuse colour.
     pub texture: Option<u32>,
-    /// Whether the texture multiplies the diffuse colour, and the vertices' colours do too, as in
-    /// materials of layers.
+    /// True if texture and vertex colours multiply the diffuse colour, as in layered materials.
     pub tinted: bool,
-    /// Noise that replaces it.
+    /// Noise that replaces the diffuse colour.
     pub noise: Option<ColorNoise>,
-    /// What ambient light meets; `None`: the diffuse colour, texture or noise.
+    /// Ambient reflectance; `None`: the diffuse colour, texture or noise.
     pub ambient: Option<Color>,
-    /// Strength and sharpness of the highlight, if there is one.
+    /// Strength, exponent and model of the highlight, if there is one.
     pub highlight: Option<(Color, f32, HighlightModel)>,
-    /// Weight of the mirrored ray.
+    /// Weight of the reflected ray.
     pub reflective: Color,
     /// Weight of the transmitted ray.
     pub transparent: Color,
-    /// Index of refraction inside.
+    /// Index of refraction.
     pub ior: f32,
-    /// Whether Fresnel's law divides light between the two rays.
+    /// True if Fresnel's law splits the light between the two rays.
     pub fresnel: bool,
-    /// What a path tracer takes instead of all this.
+    /// Layered material, which path tracers use instead.
     pub principled: Option<Arc<Principled>>,
-    /// Or this.
+    /// Hair fibre, which path tracers use instead.
     pub fibre: Option<Arc<Fibre>>,
-    /// The light of its own, which path tracers see.
+    /// Emission, which only path tracers see.
     pub emission: Option<Emission>,
 }
 
 impl Phong {
-    /// Whether paths go into bodies of it.
+    /// Returns true if paths enter objects of this material.
     pub fn is_entered(&self) -> bool {
         match &self.principled {
             Some(own) => {
@@ -151,16 +150,16 @@ impl Phong {
     }
 }
 
-/// One of the materials that make up a surface point.
+/// One of the materials of a surface point.
 #[derive(Clone, Copy, Debug)]
 pub struct WeightedMaterial<'w> {
-    /// Its numbers.
+    /// The material.
     pub phong: &'w Phong,
-    /// Its share: those of all parts sum to 1.
+    /// Weight; the weights of a point sum to 1.
     pub share: f32,
 }
 
-/// All of them: mostly one.
+/// The materials of a surface point, usually one.
 pub type MaterialMix<'w> = SmallVec<[WeightedMaterial<'w>; 2]>;
 
 impl Default for Phong {

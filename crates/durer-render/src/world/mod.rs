@@ -1,4 +1,4 @@
-//! The compiled scene: immutable, with numbers instead of names, ready to be asked by many threads.
+//! The compiled scene: immutable, with indices instead of names, for queries from many threads.
 
 mod contents;
 pub mod csg;
@@ -31,66 +31,65 @@ pub use shading::Shading;
 use std::sync::OnceLock;
 pub(crate) use together::{Few, TOGETHER};
 
-/// A scene ready to be traced.
+/// A compiled scene, ready for ray tracing.
 #[derive(Clone, Debug)]
 pub struct World {
     contents: Contents,
     assets: Assets,
-    /// The hash of all that it was made of, and whether something was changed since.
+    /// Hash of its sources, and true if it was edited since.
     source: Digest,
     edited: bool,
     emitters: Emitters,
     has_cutouts: bool,
     hides_backs: bool,
     has_interfaces: bool,
-    /// Whether light goes straight through some sheet.
+    /// True if light passes straight through some thin sheet.
     has_sheets: bool,
-    /// What paths may begin in: bodies that they enter, where some is filled.
+    /// Objects with an interior medium; a camera may start inside one.
     bodies: Vec<u32>,
-    /// The extent of each object, found when it is first asked for; nothing where light goes into
-    /// no object.
+    /// Extent of each object, computed on first use; empty if light enters no object.
     extents: Vec<OnceLock<Option<f32>>>,
-    /// Simple shapes that stand outside the structure, tested eight at a time.
+    /// Simple shapes outside the structure, tested eight at a time.
     pub(crate) packs: PrimitivePacks,
-    /// All things, where they are a few: for rays that are asked about together.
+    /// The whole world in a form for batches of rays, if it has few objects.
     pub(crate) few: Option<Few>,
-    /// What else stands outside: objects without end, and all where they are so few that no tree
+    /// Other objects outside the structure: unbounded ones, and all if they are so few that no tree
     /// pays.
     pub(crate) loose: Vec<u32>,
     pub(crate) accel: Accel,
-    /// The spheres of the tree as they lie in its leaves, so that none has to be looked up. Other
-    /// things have a radius of 0 here; there is nothing where no thing is a sphere.
+    /// Spheres of the tree in the order of its leaves, which saves a lookup. Other objects have
+    /// radius 0; empty without spheres.
     pub(crate) spheres: Vec<Sphere>,
 }
 
-/// The structure over all bounded objects.
+/// Acceleration structure over all bounded objects.
 #[derive(Clone, Debug)]
 pub enum Accel {
-    /// A tree over objects; meshes have trees of their own.
+    /// A BVH over objects; meshes have their own trees.
     Bvh(Bvh),
     /// A grid over the parts of all objects.
     Grid {
         /// The cells.
         grid: Grid,
-        /// Object and part of each thing in the grid.
+        /// Object and part of each element of the grid.
         parts: Vec<(u32, u32)>,
     },
-    /// Every object and part is tested.
+    /// Brute force.
     None,
 }
 
-/// Where a ray hits the world.
+/// A hit of a ray.
 ///
-/// Hits are ordered: by `t`, then object, then part. All structures therefore name the same hit.
+/// Hits are ordered by `t`, then object, then part. All structures therefore return the same hit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Position along the ray.
+    /// Distance along the ray, in units of its direction's length.
     pub t: f32,
-    /// Coordinates on the part.
+    /// Surface coordinates on the part.
     pub uv: Vec2,
-    /// Number of the object.
+    /// Index of the object.
     pub object: u32,
-    /// Number of the triangle in a mesh; in a solid, what [`csg`] says of it; else 0.
+    /// Index of the triangle in a mesh; in a solid, as defined in [`csg`]; otherwise 0.
     pub part: u32,
 }
 
@@ -101,7 +100,7 @@ impl Hit {
 }
 
 impl World {
-    /// Of what it is made of, with its hash; without a structure over its objects.
+    /// Creates a world without an acceleration structure; `source` is the hash of its sources.
     pub(crate) fn new(contents: Contents, assets: Assets, source: Digest) -> Self {
         let mut world = World {
             contents,
@@ -131,49 +130,48 @@ impl World {
         world
     }
 
-    /// Lumens of a watt per colour channel, in a scene whose light is in watts.
+    /// Returns the luminous efficacy by colour channel, if light is in watts.
     pub fn lumens(&self) -> Option<Vec3> {
         self.contents.display.lumens
     }
 
-    /// What shines.
+    /// Returns the emitters.
     pub fn emitters(&self) -> &Emitters {
         &self.emitters
     }
 
-    /// Whether some surface is there in part only.
+    /// Returns true if some surface is partly transparent by opacity.
     pub fn has_cutouts(&self) -> bool {
         self.has_cutouts
     }
 
-    /// Whether cameras look through the backs of some faces.
+    /// Returns true if cameras see through the backs of some faces.
     pub fn hides_backs(&self) -> bool {
         self.hides_backs
     }
 
-    /// Whether some body has no skin, so that light goes straight into it.
+    /// Returns true if some object only bounds a medium, so that light enters it unrefracted.
     pub fn has_interfaces(&self) -> bool {
         self.has_interfaces
     }
 
-    /// Whether light may go straight through some sheet, such as a pane.
+    /// Returns true if light may pass straight through some thin sheet, such as a pane.
     pub fn has_sheets(&self) -> bool {
         self.has_sheets
     }
 
-    /// Whether some picture has smaller versions of itself, so that it matters how wide what a
-    /// sample stands for is.
+    /// Returns true if some texture has mipmaps, so that footprints of samples matter.
     pub fn has_mipmaps(&self) -> bool {
         self.textures().iter().any(Texture::has_levels)
     }
 
-    /// The first hit in the ray's interval.
+    /// Finds the first hit in the ray's interval.
     pub fn closest<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<Hit> {
         self.closest_along(&mut ray.into(), counter)
     }
 
-    /// The same of a ray that is made shorter while it is looked for, and is what it was then: a
-    /// copy of what was just written takes long.
+    /// Finds the first hit, shortening the ray meanwhile and restoring it at the end, which avoids
+    /// a slow copy.
     #[inline]
     pub(crate) fn closest_along<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         counter.ray();
@@ -188,7 +186,7 @@ impl World {
 
     fn nearest<T: TraversalCounter>(&self, ray: &mut Ray64, counter: &mut T) -> Option<Hit> {
         let mut best: Option<Hit> = None;
-        // A tie is decided by the order of hits, so a later ray may reach just to the present t.
+        // Ties are broken by the order of hits, so a later hit may be at the current t.
         let offer = |best: &mut Option<Hit>, ray: &mut Ray64, object: u32, found: Option<(ShapeHit, u32)>| {
             if let Some((ShapeHit { t, uv }, part)) = found {
                 let hit = Hit { t, uv, object, part };
@@ -237,7 +235,7 @@ impl World {
         best
     }
 
-    /// The number of a thing of the tree, and its first hit in the ray's interval.
+    /// Returns the index of an object of the tree, and its first hit in the ray's interval.
     #[inline(always)]
     fn closest_of<T: TraversalCounter>(
         &self,
@@ -255,12 +253,12 @@ impl World {
         (number, self.objects()[number as usize].closest(number, ray, any, counter))
     }
 
-    /// Whether anything is hit in the ray's interval; the first thing found will do.
+    /// Returns true if anything is hit in the ray's interval; ends at the first hit found.
     pub fn occluded<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
         self.occluded_along(&ray.into(), counter)
     }
 
-    /// The same without a copy of the ray.
+    /// Tests occlusion without copying the ray. See [`World::occluded`].
     pub(crate) fn occluded_along<T: TraversalCounter>(&self, ray: &Ray64, counter: &mut T) -> bool {
         counter.ray();
         let outer = &ray.rounded;
@@ -296,18 +294,19 @@ impl World {
         found
     }
 
-    /// The closed things of glass that a point is inside, with their indices of refraction.
+    /// Iterates over the closed glass objects that contain a point, with their indices of
+    /// refraction.
     pub fn glass_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.around(point, 0..self.objects().len() as u32, |glass| glass.transparent != Color::ZERO)
     }
 
-    /// The closed bodies that paths enter and that a point is inside, with their indices of
-    /// refraction; none where no body absorbs or scatters.
+    /// Iterates over the closed objects that paths enter and that contain a point, with their
+    /// indices of refraction; empty if no object absorbs or scatters.
     pub fn bodies_around(&self, point: Vec3) -> impl Iterator<Item = (u32, f32)> {
         self.around(point, self.bodies.iter().copied(), Phong::is_entered)
     }
 
-    /// What [`Object::extent`] says of an object.
+    /// Returns the cached [`Object::extent`] of an object.
     pub(crate) fn extent(&self, object: u32) -> Option<f32> {
         let find = || self.objects()[object as usize].extent();
         self.extents.get(object as usize).map_or_else(find, |extent| *extent.get_or_init(find))
@@ -334,7 +333,7 @@ impl World {
         })
     }
 
-    /// The number of the triangle at a hit in its mesh, else 0.
+    /// Returns the index of the triangle at a hit in its mesh, else 0.
     pub fn triangle(&self, hit: &Hit) -> u32 {
         match &self.objects()[hit.object as usize].geometry {
             Geometry::Solid(solid) => solid.triangle(hit.part),
@@ -342,7 +341,8 @@ impl World {
         }
     }
 
-    /// All hits in the ray's interval, from near to far; of several at the same `t` the first.
+    /// Iterates over all hits in the ray's interval, sorted by distance; only the first of several
+    /// at the same `t`.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let mut rest = ray.into();
         std::iter::from_fn(move || {
@@ -352,14 +352,14 @@ impl World {
         })
     }
 
-    /// The nearest hit of each object in the ray's interval, in the order in which they are
-    /// written.
+    /// Iterates over the nearest hit of each object in the ray's interval, in the order of the
+    /// objects.
     pub fn hits_of_each(&self, ray: impl Into<Ray64>) -> impl Iterator<Item = Hit> {
         let ray = ray.into();
         (0..self.objects().len() as u32).filter_map(move |object| self.hit_of(object, &ray))
     }
 
-    /// The nearest hit of one object, whatever is before it.
+    /// Returns the nearest hit of one object, ignoring all others.
     pub fn hit_of(&self, object: u32, ray: &Ray64) -> Option<Hit> {
         let sound = durer_bvh::internal::is_sound(&ray.rounded);
         let (crossing, part) =
@@ -367,11 +367,11 @@ impl World {
         Some(Hit { t: crossing.t, uv: crossing.uv, object, part })
     }
 
-    /// The light of a lamp, by number, that arrives at a point if nothing is in the way.
+    /// Returns the light of a light source that arrives at a point without occlusion.
     #[inline(always)]
     pub fn illuminate(&self, light: usize, point: DVec3) -> Illumination {
         let Illumination { to_light, distance, color } = match &self.lights()[light] {
-            // Nearly always; what is worked out stays in registers.
+            // Fast path: most lights are points; keeps the result in registers.
             Light::Point(lamp) => lamp.illuminate(point),
             lamp => lamp.illuminate(point),
         };
@@ -382,7 +382,7 @@ impl World {
         seen
     }
 
-    /// The colour that a ray sees that hits nothing.
+    /// Returns the colour of a ray that misses.
     pub fn sky(&self, direction: Vec3) -> Color {
         if let Some(environment) = self.environment() {
             return environment.at(direction);
@@ -390,12 +390,12 @@ impl World {
         self.cube_map().map_or(self.background(), |map| map.at(direction))
     }
 
-    /// The materials that make up a surface point, each with its share.
+    /// Returns the materials of a surface point with their shares.
     #[inline]
     pub fn parts(&self, at: &Interaction) -> MaterialMix<'_> {
         let mut parts = MaterialMix::new();
         match &self.materials()[at.material as usize] {
-            // Nearly always.
+            // Fast path: most materials are not mixed.
             Material::Phong(phong) => parts.push(WeightedMaterial { phong, share: 1.0 }),
             Material::Solid(..) => self.mix(at.material, at, 1.0, &mut parts),
         }
@@ -419,12 +419,12 @@ impl World {
         }
     }
 
-    /// The box around all bounded objects.
+    /// Returns the bounds of all bounded objects.
     pub fn bounds(&self) -> Aabb {
         self.objects().iter().filter_map(Object::bounds).fold(Aabb::EMPTY, Aabb::union)
     }
 
-    /// The structure over its objects.
+    /// Returns the acceleration structure.
     pub fn accel(&self) -> &Accel {
         &self.accel
     }

@@ -1,4 +1,4 @@
-//! The things in a world, and how a ray meets them.
+//! Objects of a world, and their intersection with rays.
 
 use super::ShadingRules;
 use super::csg::Csg;
@@ -9,33 +9,32 @@ use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface
 use glam::DVec3;
 use std::sync::{Arc, OnceLock};
 
-/// One thing in the world.
+/// An object of the world.
 #[derive(Clone, Debug)]
 pub struct Object {
-    /// What it is, in object space.
+    /// Geometry, in object space.
     pub geometry: Geometry,
-    /// From object to world space; `None` where they are the same.
+    /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`]
+    /// Offset by which its geometry was moved to the origin of object space; [`Object::to_world`]
     /// moves it back.
     pub center: Vec3,
-    /// Number of its material; the parts of a solid have their own.
+    /// Index of its material; the parts of a solid have their own.
     pub material: u32,
-    /// Length of its normals: other than 1 only under
-    /// [`ShadingRules::raw_normals`].
+    /// Length of its normals: not 1 only under [`ShadingRules::raw_normals`].
     pub normal_length: f32,
-    /// Where it is written.
+    /// Span in the scene file.
     pub span: durer_diag::Span,
 }
 
-/// The form of an object.
+/// Geometry of an object.
 #[derive(Clone, Debug)]
 pub enum Geometry {
     /// A shape of one part.
     Primitive(Primitive),
-    /// A mesh, shared by all objects that show it.
+    /// A mesh, shared by all its instances.
     Mesh(Arc<MeshTree>),
-    /// Closed shapes and meshes combined, whose parts are placed in world space.
+    /// Closed shapes and meshes combined; its parts are in world space.
     Solid(Arc<Csg>),
 }
 
@@ -44,43 +43,43 @@ pub enum Geometry {
 pub struct MeshTree {
     /// The mesh.
     pub mesh: Mesh,
-    /// Its triangles' tree.
+    /// BVH of its triangles.
     pub bvh: TriangleBvh,
-    /// Whether the mesh is closed, once somebody asked.
+    /// True if the mesh is closed; computed on first use.
     closed: OnceLock<bool>,
 }
 
 impl MeshTree {
-    /// Builds the tree.
+    /// Builds the tree of a mesh.
     pub fn new(mesh: Mesh, quality: BuildQuality) -> Self {
         let bvh = mesh.tree(quality);
         MeshTree { mesh, bvh, closed: OnceLock::new() }
     }
 
-    /// The same, blind to triangles seen from their sides: see `TriangleBvh::least_volume`.
+    /// Ignores triangles seen edge-on: see `TriangleBvh::least_volume`.
     pub fn least_volume(self, least_volume: f64) -> Self {
         MeshTree { bvh: self.bvh.least_volume(least_volume), ..self }
     }
 
-    /// The same tree of the same mesh with other normals.
+    /// Returns the tree of the mesh with other normals.
     pub fn with_normals(&self, rule: MeshNormals) -> Self {
         MeshTree { mesh: self.mesh.with_normals(rule), bvh: self.bvh.clone(), closed: self.closed.clone() }
     }
 
-    /// Bytes in memory.
+    /// Returns the size in bytes.
     pub fn bytes(&self) -> usize {
         self.mesh.bytes() + self.bvh.memory_usage()
     }
 
-    /// Whether the mesh has an inside.
+    /// Returns true if the mesh has an inside.
     pub fn is_closed(&self) -> bool {
         *self.closed.get_or_init(|| self.mesh.open_edge().is_none())
     }
 
-    /// Offers every crossing of a line, with the number of its triangle, in any order.
+    /// Visits every crossing of a line with the index of its triangle, in any order.
     ///
-    /// The line is taken from its place nearest to the mesh, so that only the mesh's own
-    /// coordinates round.
+    /// The line starts at its point nearest to the mesh, so that only the mesh's own coordinates
+    /// cause rounding.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         line: &Line,
@@ -95,7 +94,7 @@ impl MeshTree {
         }
     }
 
-    /// The first hit in the ray's interval; `any` ends at the first found.
+    /// Finds the first hit in the ray's interval; `any` stops at the first one found.
     #[inline]
     fn closest<T: TraversalCounter>(&self, ray: &Ray, any: bool, counter: &mut T) -> Option<(ShapeHit, u32)> {
         if any {
@@ -112,23 +111,23 @@ impl Object {
         self.to_world.as_ref().map_or_else(|| ray.rounded, |to_world| to_world.inverse_ray(ray))
     }
 
-    /// A ray in the space that the object is written in, where a transform applies.
+    /// Returns the ray in the object's written space, if there is a transform.
     pub fn own_ray(&self, ray: &Ray64) -> Option<Ray> {
         let local = self.to_world.as_ref()?.inverse_ray(ray);
         Some(Ray { origin: local.origin + self.center, ..local })
     }
 
-    /// The line through a ray in object space.
+    /// Returns the line of a ray in object space.
     pub(super) fn local_line(&self, ray: &Ray64) -> Line {
         self.to_world.as_ref().map_or(ray.line(), |to_world| to_world.inverse_line(ray))
     }
 
-    /// The axis of what is round about one, for [`Object::crossings`].
+    /// Returns the axis of a shape of revolution, for [`Object::crossings`].
     pub(super) fn axis(&self) -> Option<Axis> {
         if let Geometry::Primitive(shape) = &self.geometry { shape.axis() } else { None }
     }
 
-    /// Offers every crossing of the line through a ray, with the number of its part, in any order.
+    /// Visits every crossing of a ray's line with the index of its part, in any order.
     pub(super) fn crossings<T: TraversalCounter>(
         &self,
         axis: Option<&Axis>,
@@ -143,17 +142,17 @@ impl Object {
                 shape.crossings_about(axis, &line, &mut |t, uv| offer(t, uv, 0));
             }
             Geometry::Mesh(tree) => tree.crossings(&line, counter, offer),
-            // Solids in solids are one tree.
+            // Nested solids are flattened into one.
             Geometry::Solid(_) => {}
         }
     }
 
-    /// A point of object space in world space.
+    /// Transforms a point from object to world space.
     pub fn world_point(&self, p: Vec3) -> Vec3 {
         self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
     }
 
-    /// The surface in world space, at a crossing that is next to this point of object space.
+    /// Computes the surface in world space, at a crossing close to a point in object space.
     pub(super) fn surface(
         &self,
         ray: &Ray64,
@@ -168,7 +167,7 @@ impl Object {
         surface
     }
 
-    /// The same before it is placed: in object space, but for solids.
+    /// Computes the surface before the transform: in object space, except for solids.
     pub(super) fn own_surface(
         &self,
         ray: &Ray64,
@@ -178,7 +177,7 @@ impl Object {
         rules: &ShadingRules,
         surface: &mut Surface,
     ) {
-        // Each writes for itself: what all wrote to one place would be copied from there.
+        // Each arm writes directly into the result; a shared temporary would be copied.
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
@@ -188,8 +187,7 @@ impl Object {
         }
     }
 
-    /// Places such a surface in the world. It stays where it lies in memory, for a copy of what was
-    /// just written takes long.
+    /// Transforms a surface to world space in place, which avoids a slow copy.
     #[inline]
     pub(super) fn place(&self, surface: &mut Surface, ray: &Ray64, crossing: &ShapeHit, rules: &ShadingRules) {
         if matches!(self.geometry, Geometry::Solid(_)) {
@@ -214,7 +212,7 @@ impl Object {
             let point = to_world.point64(surface.position);
             surface.position = point.as_vec3();
             surface.rest = (point - surface.position.as_dvec3()).as_vec3();
-            // Beside the rounding itself, a bent surface leaves the tangent plane by its square.
+            // Besides rounding, a curved surface deviates from its tangent plane quadratically.
             surface.error = error + to_world.spread(surface.bulge(to_world.inverse_spread(error)));
             surface.n_geo = to_world.normal(surface.n_geo);
             surface.n_shade = shading(to_world, surface.n_shade);
@@ -224,7 +222,7 @@ impl Object {
         }
     }
 
-    /// The first hit of the object, by its number, in the ray's interval.
+    /// Finds the first hit of the object in the ray's interval; `number` is its index.
     #[inline]
     pub(super) fn closest<T: TraversalCounter>(
         &self,
@@ -251,8 +249,7 @@ impl Object {
         }
     }
 
-    /// The crossing with one part of the object, by both numbers, tested directly, and its part; a
-    /// solid is asked as a whole.
+    /// Intersects a single part of the object directly; a solid is tested as a whole.
     pub(super) fn part<T: TraversalCounter>(
         &self,
         (number, part): (u32, u32),
@@ -263,7 +260,7 @@ impl Object {
         let local = self.local_ray(ray);
         let crossing = match &self.geometry {
             Geometry::Primitive(shape) => shape.intersect(&local),
-            // Refused like by the tree: such a ray hits nothing.
+            // Reject the rays that the tree rejects: they hit nothing.
             Geometry::Mesh(_) if !durer_bvh::internal::is_sound(&local) => None,
             Geometry::Mesh(tree) => tree
                 .bvh
@@ -275,8 +272,8 @@ impl Object {
         crossing.map(|crossing| (crossing, part))
     }
 
-    /// Whether it can be tested together with others of its kind: a simple shape, where it is
-    /// written. And how long that takes, in spheres.
+    /// Returns the cost in spheres if the object is a simple shape without transform, which can be
+    /// tested in packs.
     pub(crate) fn simple(&self) -> Option<usize> {
         use Primitive::{Cuboid, Disc, Plane, Rectangle, Sphere};
         match &self.geometry {
@@ -286,17 +283,17 @@ impl Object {
         }
     }
 
-    /// The same where things lie side by side for one ray: of boxes, which take six divisions each, a
-    /// tree finds the right one sooner.
+    /// Returns the cost for packs with a single ray. Boxes take six divisions each, so a tree is
+    /// faster for them.
     pub(crate) fn simple_for_one_ray(&self) -> Option<usize> {
         self.simple().filter(|_| !matches!(&self.geometry, Geometry::Primitive(Primitive::Cuboid(_))))
     }
 
-    /// Its crossing with a ray that it is known to meet first at a place.
+    /// Returns the crossing at a known first hit distance.
     #[inline]
     pub(super) fn crossing_at(&self, t: f32, ray: &Ray64) -> ShapeHit {
         match &self.geometry {
-            // Of these a hit says more than where it is.
+            // The hits of these shapes have surface coordinates.
             Geometry::Primitive(shape @ (Primitive::Rectangle(_) | Primitive::Cuboid(_))) => {
                 shape.intersect(&ray.rounded).unwrap_or(ShapeHit { t, uv: Vec2::ZERO })
             }
@@ -304,7 +301,7 @@ impl Object {
         }
     }
 
-    /// The sphere that it is, where it is written; else one of radius 0.
+    /// Returns the untransformed sphere; otherwise one of radius 0.
     pub(crate) fn sphere(&self) -> Sphere {
         match &self.geometry {
             Geometry::Primitive(Primitive::Sphere(sphere)) if self.to_world.is_none() => sphere.clone(),
@@ -312,7 +309,7 @@ impl Object {
         }
     }
 
-    /// Adds it, which is [simple](Object::simple), under a number to those that are tested together.
+    /// Adds the object, which is [simple](Object::simple), to packs under an index.
     pub(crate) fn add_to(&self, packs: &mut PrimitivePacks, number: u32) {
         match &self.geometry {
             Geometry::Primitive(Primitive::Plane(plane)) => packs.push_plane(number, plane.normal, plane.offset),
@@ -326,7 +323,7 @@ impl Object {
         }
     }
 
-    /// Whether it is closed, so that a point is inside it or outside.
+    /// Returns true if the object is closed, so that containment is defined.
     fn is_closed(&self) -> bool {
         match &self.geometry {
             Geometry::Primitive(shape) => shape.inside(DVec3::ZERO).is_some(),
@@ -335,13 +332,13 @@ impl Object {
         }
     }
 
-    /// Half the area of the box around it, infinite for what has no end; `None` for what is not
-    /// closed.
+    /// Returns half the surface area of its bounds, infinite for unbounded objects; `None` for open
+    /// objects.
     pub fn extent(&self) -> Option<f32> {
         self.is_closed().then(|| self.bounds().map_or(f32::INFINITY, |bounds| bounds.half_area()))
     }
 
-    /// Whether it is closed and a point of world space is inside.
+    /// Returns true if the object is closed and contains a point in world space.
     pub fn contains(&self, point: Vec3) -> bool {
         if !self.is_closed() {
             return false;
@@ -350,14 +347,14 @@ impl Object {
             let local = self.to_world.as_ref().map_or(point, |to_world| to_world.inverse_point(point));
             return shape.inside(local.as_dvec3()) == Some(true);
         }
-        // Any line from inside crosses what is closed an odd number of times.
+        // Any line from inside crosses a closed surface an odd number of times.
         let mut ray = Ray64::from(Ray::new(point, Vec3::new(0.48, 0.6, 0.64)));
         let next =
             |ray: &mut Ray64| self.closest(0, ray, false, &mut ()).map(|(crossing, _)| ray.rounded.t_min = crossing.t);
         std::iter::from_fn(|| next(&mut ray)).count() % 2 == 1
     }
 
-    /// How many parts it has that can be tested directly.
+    /// Returns the number of parts that can be tested directly.
     pub fn parts(&self) -> u32 {
         match &self.geometry {
             Geometry::Primitive(_) | Geometry::Solid(_) => 1,
@@ -365,13 +362,13 @@ impl Object {
         }
     }
 
-    /// Bounds in world space; `None` for a shape without end.
+    /// Returns the bounds in world space; `None` for unbounded shapes.
     pub fn bounds(&self) -> Option<Aabb> {
         let local = self.local_bounds()?;
         Some(if let Geometry::Solid(_) = self.geometry { local } else { self.moved(local) })
     }
 
-    /// The same in object space; those of a solid, whose parts are placed, are of the world.
+    /// Returns the bounds in object space; for a solid, in world space.
     pub(super) fn local_bounds(&self) -> Option<Aabb> {
         match &self.geometry {
             Geometry::Primitive(shape) => shape.bounds(),
@@ -380,22 +377,23 @@ impl Object {
         }
     }
 
-    /// Bounds of one part in world space.
+    /// Returns the bounds of one part in world space.
     pub fn part_bounds(&self, part: u32) -> Option<Aabb> {
         match &self.geometry {
             Geometry::Primitive(_) | Geometry::Solid(_) => self.bounds(),
             Geometry::Mesh(tree) => {
                 let corners = tree.mesh.corners(part);
                 let Some(to_world) = &self.to_world else { return Some(Aabb::around(corners)) };
-                // Tighter than the box of the box, and padded for rounding by a box without size at
-                // each corner.
+                // Tighter than transforming the bounds; an empty box at each corner adds the
+                // padding for rounding.
                 let images = corners.map(|c| to_world.bounds(Aabb { min: c, max: c }));
                 Some(images.into_iter().fold(Aabb::EMPTY, Aabb::union))
             }
         }
     }
 
-    /// Bound on how far a ray may meet it beside where it is, by rounding of its own coordinates.
+    /// Bounds the distance between the true surface and traced hits, from rounding of its
+    /// coordinates.
     pub(super) fn rounding(&self) -> f32 {
         let reach = self.local_bounds().map_or(Vec3::ZERO, |b| b.min.abs().max(b.max.abs()));
         let error = match &self.to_world {
@@ -405,7 +403,7 @@ impl Object {
         error.max_element()
     }
 
-    /// Whether some of it may lie in a box of world space that overlaps its bounds.
+    /// Returns false if the object cannot be inside a world-space box that overlaps its bounds.
     pub fn overlaps(&self, cell: &Aabb) -> bool {
         match (&self.geometry, &self.to_world) {
             (Geometry::Primitive(shape), None) => shape.overlaps(cell),

@@ -1,4 +1,4 @@
-//! Simple shapes that are tested eight at a time are hit where each is hit alone.
+//! Tests that packs of simple shapes return the same hits as single shapes.
 
 use durer_bvh::PrimitivePacks;
 use durer_scene::math::random::{Random, rounds};
@@ -9,8 +9,8 @@ fn vector(random: &mut Random, size: f32) -> Vec3 {
     Vec3::new(random.between(-size, size), random.between(-size, size), random.between(-size, size))
 }
 
-/// 10^5 rays, in sets of up to 20 of each kind, many of them twice, and many of the rays along faces
-/// or edges: t and number have the same bits, also where eight rays are asked for together.
+/// Traces 10^5 rays through sets of up to 20 of each kind, with duplicates and rays along faces or
+/// edges: t and index are identical bit for bit, also for eight rays at once.
 #[test]
 fn packs_hit_as_shapes_do() {
     let mut random = Random(8);

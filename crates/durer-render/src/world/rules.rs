@@ -4,26 +4,27 @@ use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// How rays meet surfaces and how Whitted's integrator shades them. Plain values, the same for all
-/// of a world; the default is our own, without the bugs of old programs.
+/// Rules of hits and of Whitted's integrator. Plain values for the whole world; the default is our
+/// own, without the bugs of old programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadingRules {
-    /// Least `t` of secondary rays. `None`: rays start beside the surface, by the bound on its
-    /// error, and every hit counts.
+    /// Minimum `t` of secondary rays. `None`: rays start off the surface by a bound on its error,
+    /// and every hit counts.
     pub epsilon: Option<f32>,
     /// A hit's position is the rounded point of the ray, without a bound on its error.
     pub points_on_ray: bool,
     /// A ray carries one index of refraction, and behind glass is air. Otherwise media nest.
     pub one_medium: bool,
-    /// A ray's weight is multiplied by the length of a colour. Otherwise by its largest component.
+    /// A ray's throughput is multiplied by the length of a colour. Otherwise by its largest
+    /// component.
     pub weight_by_length: bool,
-    /// The shading normal decides which side of a surface is seen. Otherwise the geometric one.
+    /// The shading normal decides which side of a surface is visible. Otherwise the geometric one.
     pub shaded_sides: bool,
     /// A surface seen from behind is black, unless it is shaded on both sides.
     pub black_backs: bool,
-    /// Light falls on normals of unit length, whatever length the shading normal has.
+    /// Lighting uses normals of unit length, whatever the length of the shading normal.
     pub unit_light: bool,
-    /// Shading normals may have another length than 1, so mirrored directions are normalised.
+    /// Shading normals may not be unit length, so reflected directions are normalised.
     pub raw_normals: bool,
     /// A ray that leaves glass reflects as if R0 were 0.
     pub exit_r0: bool,
@@ -37,29 +38,28 @@ pub struct ShadingRules {
     pub moved_normals: bool,
     /// Rings of wood are cones, with the formula of the program of 2004.
     pub conic_rings: bool,
-    /// On a texture, ambient light is that of the pixel shaded before. Obeyed by
+    /// On a texture, ambient light uses the texel of the previous pixel. Implemented in
     /// `render::course`, not by integrators.
     pub stale_texels: bool,
 }
 
-/// How values are shown, resolved from a scene's dialect when it is compiled.
+/// Rules for displaying values, resolved from a scene's dialect at compilation.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct DisplayRules {
     /// Normals as colours.
     pub normals: NormalsPicture,
     /// Depth as grey.
     pub depth: DepthPicture,
-    /// A given range of depths is cut to whole numbers.
+    /// A given depth range is truncated to whole numbers.
     #[serde(default)]
     pub whole_depths: bool,
-    /// The background of a depth picture is black, also where far is white.
+    /// The background of a depth picture is black, even if far is white.
     #[serde(default)]
     pub black_sky: bool,
-    /// Where nothing is hit, a picture of normals shows the last normal hit, in rows from the
-    /// bottom.
+    /// For misses, a picture of normals shows the previous hit's normal, in rows from the bottom.
     #[serde(default)]
     pub stale_normals: bool,
-    /// What makes lumens of light, by colour, where that is in watts.
+    /// Luminous efficacy by colour channel, if light is in watts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumens: Option<Vec3>,
 }

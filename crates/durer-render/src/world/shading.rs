@@ -1,4 +1,4 @@
-//! How a surface point scatters light, and what it shines, as a path tracer sees it.
+//! Scattering and emission of surface points for path tracing.
 
 use super::{Geometry, Interaction, Material, Object, Phong, WeightedMaterial, World};
 use crate::world::HighlightModel;
@@ -16,23 +16,23 @@ use durer_scene::medium::Medium;
 use durer_scene::shape::Surface;
 use durer_scene::spectrum::{Curve, Lanes, Spectrum};
 
-/// A surface point as it is seen from one direction.
+/// Scattering at a surface point, seen from one direction.
 #[derive(Clone, Debug)]
 pub struct Shading<'w> {
-    /// Its frame; the side from which it is seen is above.
+    /// Shading frame; the visible side is up.
     pub frame: Frame,
-    /// The true normal on that side.
+    /// Geometric normal on that side.
     pub n_geo: Vec3,
-    /// The local direction from which it is seen.
+    /// Unit view direction in the frame.
     pub wo: Vec3,
-    /// How it scatters.
+    /// The BSDF.
     pub bsdf: Bsdf<'w>,
 }
 
 impl Shading<'_> {
-    /// The value times the cosine of a direction of the world, and the density with which that
-    /// would be chosen. Light that comes from behind the true surface and would be reflected, or
-    /// the other way round, is none: the normals for shading are only nearly right.
+    /// Returns BSDF · cosine for a world-space direction, and its density. Zero if `wi` is on
+    /// different sides of the shading and geometric normals, because shading normals are
+    /// approximate.
     pub fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let local = self.frame.to_local(wi);
         let (value, pdf) = self.bsdf.eval(self.wo, local);
@@ -41,12 +41,12 @@ impl Shading<'_> {
     }
 }
 
-/// A normal for shading, bent towards the true one until a mirror there throws what is seen against
-/// a direction to the outside. Interpolated normals and pictures of normals may point away from the
-/// ray; the surface itself does not.
+/// Bends a shading normal towards the geometric one until the mirror direction points outwards.
+/// Interpolated and mapped normals may face away from the ray; the geometric normal does not.
 ///
-/// With angles from the true normal, in the plane of both: of a direction (x, z) the mirror at an
-/// angle a shows x sin 2a + z cos 2a above the surface, which is to be as little as `least`.
+/// With angles from the geometric normal, in the plane of both: for a direction (x, z), a mirror at
+/// angle a reflects to height x sin 2a + z cos 2a above the surface, which should be at least
+/// `least`.
 fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
     let (cosine, z) = (n.dot(n_geo), wo.dot(n_geo).max(1e-6));
     let least = (0.9 * z).min(0.01);
@@ -54,7 +54,7 @@ fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
         return n;
     }
     let across = n - cosine * n_geo;
-    // What differs by rounding alone has no side.
+    // Differences from rounding have no direction.
     if across.length_squared() < 1e-8 {
         return n_geo;
     }
@@ -66,8 +66,8 @@ fn bent(n: Vec3, n_geo: Vec3, wo: Vec3) -> Vec3 {
 }
 
 impl World {
-    /// Noise, else texture, else the diffuse colour; or the diffuse colour times texture and
-    /// vertices' colours.
+    /// Returns noise, else texture, else the diffuse colour; or the diffuse colour times texture
+    /// and vertex colours.
     #[inline]
     pub fn diffuse_color(&self, phong: &Phong, surface: &Surface) -> Color {
         let texture = phong.texture.and_then(|i| Some(self.textures()[i as usize].at(surface.uv.get()?)));
@@ -79,13 +79,12 @@ impl World {
         noise.or(texture).unwrap_or(phong.diffuse)
     }
 
-    /// How a hit scatters light that is seen against a ray's direction. `inside`: it is seen from
-    /// the side that its normal does not point to; `eta` is the index behind the surface over
-    /// that before it.
+    /// Computes the BSDF at a hit for light towards the ray's origin; `eta` is the index behind the
+    /// surface over that in front.
     pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
-        // The first of a mixture that bends normals counts for all of it.
+        // In a mix, the first material with a normal or bump map determines the normal.
         let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
         let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
         let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
@@ -116,10 +115,10 @@ impl World {
         shading
     }
 
-    /// The frame around a normal: along u, and turned from there, where the highlight of a part is
-    /// longer than wide.
+    /// Returns the frame around a normal; for anisotropic materials along u, rotated by their
+    /// angle.
     fn frame(&self, parts: &[WeightedMaterial], at: &Interaction, n: Vec3) -> Frame {
-        // No picture makes anything of 0.
+        // A texture cannot change 0.
         if parts.iter().any(|part| part.phong.fibre.is_some()) {
             return Frame::along(n, self.tangent(at));
         }
@@ -132,8 +131,8 @@ impl World {
         Frame::along(n, cos as f32 * frame.tangent + sin as f32 * frame.bitangent)
     }
 
-    /// The light of a material's own, if points that shine can be chosen: the same everywhere, for
-    /// the share of it that is there.
+    /// Returns the emission of a material if light sampling is possible: uniform, multiplied by the
+    /// opacity.
     pub(super) fn emission_of(&self, material: u32) -> Option<Emission> {
         let Material::Phong(phong) = self.materials().get(material as usize)? else { return None };
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
@@ -143,8 +142,7 @@ impl World {
         chosen.then_some(Emission { radiance, ..*emission })
     }
 
-    /// The light that a surface sends towards one side: from where its normal points, or from
-    /// behind.
+    /// Returns the radiance emitted by a surface towards the ray's origin.
     pub fn emission(&self, at: &Interaction) -> Color {
         let inside = at.inside();
         let own = |phong: &Phong| {
@@ -159,7 +157,7 @@ impl World {
         parts.iter().filter_map(|part| own(part.phong).map(|light| part.share * light)).sum()
     }
 
-    /// The measured spectrum of what shines, if it has one.
+    /// Returns the measured spectrum of an emitter, if it has one.
     pub fn illuminant(&self, light: LightId) -> Option<&Curve> {
         match light {
             LightId::Light(number) => self.illuminants().get(number as usize)?.as_deref(),
@@ -168,7 +166,7 @@ impl World {
         }
     }
 
-    /// The measured spectrum of a material's own light, if it has one.
+    /// Returns the measured spectrum of a material's emission, if it has one.
     pub fn own_illuminant(&self, material: u32) -> Option<&Curve> {
         match &self.materials()[material as usize] {
             Material::Phong(phong) => phong.principled.as_ref()?.illuminant.as_deref(),
@@ -176,17 +174,17 @@ impl World {
         }
     }
 
-    /// Whether a material has a light of its own.
+    /// Returns true if a material may emit.
     pub fn may_shine(&self, material: u32) -> bool {
         matches!(&self.materials()[material as usize], Material::Phong(phong) if phong.emission.is_some())
     }
 
-    /// Whether a material that shines does so to both sides.
+    /// Returns true if an emissive material is two-sided; `None` if it does not emit.
     pub fn shines_to_both_sides(&self, material: u32) -> Option<bool> {
         self.emission_of(material).map(|emission| emission.two_sided)
     }
 
-    /// Whether a hit may shine: quickly known, for most materials.
+    /// Returns true if a hit may emit: a fast test for most materials.
     fn has_emission(&self, at: &Interaction) -> bool {
         match &self.materials()[at.material as usize] {
             Material::Phong(phong) => phong.emission.is_some(),
@@ -194,8 +192,8 @@ impl World {
         }
     }
 
-    /// The index of refraction of the body that a surface bounds, if light may go into it: that of
-    /// the part that weighs most.
+    /// Returns the index of refraction behind a surface that light can enter: that of the material
+    /// with the largest share.
     pub fn refracts(&self, at: &Interaction, lanes: &Lanes) -> Option<f32> {
         let of = |phong: &Phong| {
             let ior = || phong.principled.as_ref().map_or(phong.ior, |own| own.written.ior_at(lanes.hero()));
@@ -212,10 +210,10 @@ impl World {
         most.1
     }
 
-    /// The share of a surface that is there.
+    /// Returns the opacity of a surface.
     pub fn opacity(&self, at: &Interaction) -> f32 {
         let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
-            // All that light does in it is worked out where it comes in.
+            // The fibre's model computes all interior scattering at the entry point.
             (Some(_), _) => f32::from(u8::from(!at.inside())),
             (None, Some(own)) => self.opacity_at(own, at),
             (None, None) => 1.0,
@@ -223,18 +221,18 @@ impl World {
         self.parts(at).iter().map(|part| part.share * own(part.phong)).sum()
     }
 
-    /// Whether a face is looked through by a camera, or a light without extent, from where it is
-    /// seen in some direction: such see its back.
+    /// Returns true if a camera, or a light without extent, sees through a face from the direction
+    /// `dir`, because it is a hidden back.
     pub fn is_hidden(&self, dir: Vec3, at: &Interaction) -> bool {
         dir.dot(at.surface.n_geo) > 0.0 && self.parts(at).iter().all(|part| hides_backs(part.phong))
     }
 
-    /// Whether there are such faces.
+    /// Returns true if there are such faces.
     pub(crate) fn finds_hidden_backs(&self) -> bool {
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if hides_backs(phong)))
     }
 
-    /// Whether some material is there in part only.
+    /// Returns true if some material has partial opacity.
     pub(crate) fn finds_cutouts(&self) -> bool {
         let own =
             |phong: &Phong| phong.fibre.is_some() || phong.principled.as_ref().is_some_and(|own| self.is_cutout(own));
@@ -246,7 +244,7 @@ impl World {
             || self.objects().iter().any(clear)
     }
 
-    /// What fills the body of an object, or the air, if light loses something there.
+    /// Returns the medium inside an object, or of the air.
     pub fn medium(&self, object: Option<u32>) -> Option<&Medium> {
         let Some(object) = object else { return self.fog() };
         match &self.materials()[self.objects()[object as usize].material as usize] {
@@ -255,13 +253,13 @@ impl World {
         }
     }
 
-    /// Whether light goes straight through a medium with a lamp behind it: through the air, and
-    /// bodies without a skin.
+    /// Returns true if light from emitters passes straight into a medium: the air, and objects that
+    /// only bound a medium.
     pub fn is_open(&self, object: Option<u32>) -> bool {
         object.is_none_or(|object| self.has_no_skin(self.objects()[object as usize].material))
     }
 
-    /// Whether a surface does nothing where the index of refraction is the same on both sides.
+    /// Returns true if a surface has no effect between equal indices of refraction.
     pub fn is_interface(&self, at: &Interaction) -> bool {
         self.has_interfaces() && self.has_no_skin(at.material)
     }
@@ -271,12 +269,12 @@ impl World {
             Material::Phong(phong) if phong.principled.as_ref().is_some_and(|own| own.interface))
     }
 
-    /// Whether some body has no skin.
+    /// Returns true if some object only bounds a medium.
     pub(crate) fn finds_interfaces(&self) -> bool {
         (0..self.materials().len() as u32).any(|material| self.has_no_skin(material))
     }
 
-    /// The bodies that paths enter, if something that absorbs or scatters fills some material's.
+    /// Returns the objects that paths enter, if the interior of some material absorbs or scatters.
     pub(crate) fn finds_bodies(&self) -> Vec<u32> {
         let of = |number: u32| match &self.materials()[number as usize] {
             Material::Phong(phong) => Some(phong),
@@ -290,14 +288,14 @@ impl World {
         (0..).zip(self.objects()).filter(|(_, object)| enters(object)).map(|(number, _)| number).collect()
     }
 
-    /// Whether some material is a sheet through which light may go straight.
+    /// Returns true if some material is a thin sheet that transmits light straight.
     pub(crate) fn finds_sheets(&self) -> bool {
         let is_sheet = |m: &PrincipledMaterial| m.walls == Walls::Thin && m.transmission_weight > 0.0;
         let own = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| is_sheet(&own.written));
         self.materials().iter().any(|material| matches!(material, Material::Phong(phong) if own(phong)))
     }
 
-    /// Whether light may go into a thing at a hit: quickly known, for most materials.
+    /// Returns true if light may enter an object at a hit: a fast test for most materials.
     #[inline]
     pub fn may_enter(&self, at: &Interaction) -> bool {
         match &self.materials()[at.material as usize] {
@@ -309,16 +307,16 @@ impl World {
         }
     }
 
-    /// Whether colours are spread at a hit.
+    /// Returns true if the surface disperses light.
     pub fn disperses(&self, at: &Interaction) -> bool {
         let of = |phong: &Phong| phong.principled.as_ref().is_some_and(|own| own.written.disperses());
         self.may_enter(at) && self.parts(at).iter().any(|part| of(part.phong))
     }
 }
 
-/// The course's material under physical light: matte with `diffuseColor` over pi, Blinn's or
-/// Phong's highlight, and single directions for mirror and glass. What would give back more than it
-/// gets is scaled down as a whole.
+/// Adds the lobes of the course's material in physical units: matte with `diffuseColor` over pi,
+/// Blinn's or Phong's highlight, and delta lobes for mirror and glass. Scales the whole down if it
+/// would reflect more than it receives.
 fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: View) {
     let View { lanes, wo, normal, eta, .. } = view;
     let phong = part.phong;
@@ -329,7 +327,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
         true => fresnel::dielectric(wo.z, eta),
         false => 1.0,
     };
-    // Without Fresnel's law both rays have their whole weight.
+    // Without Fresnel's law both rays have full weight.
     let passing = if phong.fresnel { 1.0 - reflected } else { 1.0 };
     let (mirror, through) = (reflected * reflective, passing * transparent);
     let all = color + Blinn::bound(exponent) * strength + mirror + through;
@@ -346,7 +344,7 @@ fn phong_lobes(bsdf: &mut Bsdf, part: &WeightedMaterial, color: Color, view: Vie
     }
 }
 
-/// Whether cameras look through the backs of what is of a material.
+/// Returns true if cameras see through the backs of a material.
 fn hides_backs(phong: &Phong) -> bool {
     phong.principled.as_ref().is_some_and(|own| own.written.backs == Backs::Hidden)
 }

@@ -1,63 +1,63 @@
-//! Closed shapes combined by Boolean operations, as a tree; and how such a tree falls into pieces
-//! apart from each other, each as small as can be told from its parts' boxes.
+//! Trees of Boolean operations on closed shapes, and their division into disjoint pieces, judged by
+//! the bounds of the parts.
 //!
-//! Parts in boxes that do not touch cannot change each other. So a merge of many parts in space
-//! becomes many things, which the tree over the world's objects finds as fast as any others; and a
-//! cut concerns only what it touches.
+//! Parts with disjoint bounds do not affect each other. So a merge of many separate parts becomes
+//! many objects, which the world's tree finds as fast as any others, and a cut only affects the
+//! parts that it touches.
 
 use super::Object;
 use durer_scene::math::Aabb;
 use std::sync::Arc;
 
-/// When a point is inside, by how many parts it is inside of.
+/// Boolean rule by the number of parts that contain a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BoolOp {
     /// At least one.
     Any,
-    /// All of them, and none of those that are cut away.
+    /// Every part, and none of the subtracted ones.
     All,
     /// An odd number.
     Odd,
 }
 
-/// A closed shape, or some combined.
+/// A closed shape, or a combination.
 #[derive(Clone, Debug)]
 pub enum Solid {
     /// A closed shape or mesh, placed in the world.
     Operand(Arc<Object>),
-    /// Several of them.
+    /// A combination.
     Join {
-        /// How they are combined.
+        /// Boolean rule.
         rule: BoolOp,
-        /// In the order of writing.
+        /// Parts in the order of the file.
         parts: Vec<Solid>,
-        /// What is cut away; only of [`BoolOp::All`].
+        /// Subtracted parts; only for [`BoolOp::All`].
         cut: Vec<Solid>,
     },
 }
 
-/// Where more pairs of pieces than this would have to be looked at, they are left together.
+/// Number of pairs of pieces above which they are not divided.
 const MAX_PAIRS: usize = 1 << 22;
 
-/// And where more copies of parts than this would be made.
+/// Number of copies of parts above which pieces are not divided.
 const MAX_COPIES: usize = 1 << 18;
 
-/// A solid and the box around it; `None` where it has no end.
+/// A solid and its bounds; `None` if unbounded.
 type Piece = (Solid, Option<Aabb>);
 
 impl Solid {
-    /// What is in some solid of several. One without any is nothing.
+    /// Returns the union of solids; empty without parts.
     pub fn any(parts: Vec<Solid>) -> Solid {
         Solid::join(BoolOp::Any, parts)
     }
 
-    /// What is in an odd number of several.
+    /// Returns the points in an odd number of solids.
     pub fn odd(parts: Vec<Solid>) -> Solid {
         Solid::join(BoolOp::Odd, parts)
     }
 
-    /// What is in all of several, and in none of others. Neither "in all" nor "in none" changes by
-    /// nesting.
+    /// Returns the intersection of `parts` without `cut`. Nested intersections and subtractions are
+    /// flattened.
     pub fn all(parts: Vec<Solid>, cut: Vec<Solid>) -> Solid {
         let (mut flat, mut flat_cut) = (Vec::new(), Vec::new());
         for part in parts {
@@ -92,7 +92,7 @@ impl Solid {
         if flat.len() == 1 { flat.remove(0) } else { Solid::Join { rule, parts: flat, cut: Vec::new() } }
     }
 
-    /// The box around it, as tight as the operation tells: `None` where it has no end.
+    /// Returns the bounds, as tight as the operation allows: `None` if unbounded.
     pub fn bounds(&self) -> Option<Aabb> {
         match self {
             Solid::Operand(object) => object.bounds(),
@@ -103,7 +103,7 @@ impl Solid {
         }
     }
 
-    /// All shapes and meshes in it.
+    /// Returns the shapes and meshes in it.
     pub fn parts(&self) -> Vec<&Object> {
         match self {
             Solid::Operand(object) => vec![object],
@@ -111,8 +111,8 @@ impl Solid {
         }
     }
 
-    /// The same, as solids apart from each other, in the order of their first parts. None is left
-    /// of what is nowhere.
+    /// Divides the solid into disjoint pieces, in the order of their first parts. An empty solid
+    /// has no pieces.
     pub fn pieces(self) -> Vec<Solid> {
         self.boxed_pieces().into_iter().map(|piece| piece.0).collect()
     }
@@ -122,7 +122,7 @@ impl Solid {
             Solid::Operand(_) => vec![boxed(self)],
             Solid::Join { rule: BoolOp::All, parts, cut } => intersected(parts, cut),
             Solid::Join { rule, parts, .. } => {
-                // Each piece keeps the number of the part that it comes from.
+                // Each piece keeps the index of its part.
                 let pieces: Vec<(usize, Piece)> = parts
                     .into_iter()
                     .enumerate()
@@ -145,7 +145,7 @@ fn boxed(solid: Solid) -> Piece {
     (solid, bounds)
 }
 
-/// One solid of the pieces of several parts; pieces of the same part are apart from each other.
+/// Combines pieces of several parts into one solid; pieces of the same part are disjoint.
 fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
     let mut parts: Vec<(usize, Vec<Solid>)> = Vec::new();
     for (part, solid) in cluster {
@@ -157,12 +157,11 @@ fn rejoined(rule: BoolOp, cluster: Vec<(usize, Solid)>) -> Solid {
     Solid::join(rule, parts.into_iter().map(|(_, pieces)| Solid::any(pieces)).collect())
 }
 
-/// Pieces of the first part, each with those of the others that it touches.
+/// Intersects the pieces of the first part with those of the others that they touch.
 fn intersected(parts: Vec<Solid>, cut: Vec<Solid>) -> Vec<Piece> {
     let mut parts = parts.into_iter();
     let first = parts.next().map_or(Vec::new(), Solid::boxed_pieces);
-    // What is in all of several is joined in the end: to do it part by part would take the square of
-    // their number.
+    // Join the intersections at the end: doing it part by part would be quadratic.
     let mut found: Vec<(Vec<Solid>, Option<Aabb>)> =
         first.into_iter().map(|(solid, bounds)| (vec![solid], bounds)).collect();
     let whole = |pieces: Vec<Piece>| Solid::any(pieces.into_iter().map(|piece| piece.0).collect());
@@ -197,13 +196,12 @@ fn copies(pieces: &[Piece], which: &[usize]) -> Vec<Solid> {
     which.iter().map(|&i| pieces[i].0.clone()).collect()
 }
 
-/// What is in both of two boxes, of which one without end changes nothing.
+/// Intersects two boxes; an unbounded box has no effect.
 fn common(a: Option<Aabb>, b: Option<Aabb>) -> Option<Aabb> {
     a.zip(b).map(|(a, b)| Aabb { min: a.min.max(b.min), max: a.max.min(b.max) }).or(a).or(b)
 }
 
-/// For each box the pieces whose own boxes touch it; `None` where these are too many to be told
-/// apart.
+/// Returns for each box the pieces whose boxes touch it; `None` if there are too many.
 fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>> {
     if boxes.len() * others.len() > MAX_PAIRS {
         return None;
@@ -218,7 +216,7 @@ fn touching(boxes: &[Option<Aabb>], others: &[Piece]) -> Option<Vec<Vec<usize>>>
     boxes.iter().map(near).collect()
 }
 
-/// Whether two boxes touch, or nearly, for all that single precision can tell.
+/// Returns true if two boxes touch, within the precision of floats.
 fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     let (Some(a), Some(b)) = (a, b) else { return true };
     let reach = |b: &Aabb| b.min.abs().max(b.max.abs()).max_element();
@@ -226,11 +224,10 @@ fn touch(a: Option<Aabb>, b: Option<Aabb>) -> bool {
     (a.min - pad).cmple(b.max).all() && (b.min - pad).cmple(a.max).all()
 }
 
-/// For each box the number of its cluster: boxes that touch, directly or by others between them,
-/// are in one. Clusters are numbered by their first box.
+/// Returns for each box the index of its cluster: boxes that touch directly or through others.
+/// Clusters are numbered by their first box.
 fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
-    // The parent of each in a forest whose trees are the clusters; a root is the first of its
-    // cluster.
+    // Union-find forest; a root is the first box of its cluster.
     let mut parents: Vec<usize> = (0..boxes.len()).collect();
     fn root(parents: &mut [usize], mut i: usize) -> usize {
         while parents[i] != i {
@@ -239,8 +236,7 @@ fn clusters_of(boxes: &[Option<Aabb>]) -> Vec<usize> {
         }
         i
     }
-    // Sweeps over x: only what has begun and not ended yet may touch the next. What has no end
-    // never ends.
+    // Sweep over x: only active boxes may touch the next one. Unbounded boxes stay active.
     let mut order: Vec<usize> = (0..boxes.len()).collect();
     let begin = |i: usize| boxes[i].map_or(f32::NEG_INFINITY, |b| b.min.x);
     order.sort_by(|&a, &b| begin(a).total_cmp(&begin(b)).then(a.cmp(&b)));

@@ -1,4 +1,4 @@
-//! The three structures find the same hits, bit for bit.
+//! Tests that the three structures return the same hits, bit for bit.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -8,7 +8,7 @@ use durer_scene::math::random::{Random, rounds};
 use std::fmt::Write;
 use std::path::Path;
 
-/// A ball of 12 * 4^n triangles as an OBJ file: a cube whose faces are cut up, pushed outwards.
+/// Returns a sphere of 12 * 4^n triangles as an OBJ file: a subdivided cube, projected outwards.
 fn ball_file(cuts: usize) -> String {
     let mut text = String::new();
     let n = 1usize << cuts;
@@ -37,7 +37,8 @@ fn ball_file(cuts: usize) -> String {
 const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n\
     f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n";
 
-/// A scene of many shapes and meshes under nested groups and transforms, with things that coincide.
+/// Returns a scene of many shapes and meshes under nested groups and transforms, with coincident
+/// objects.
 fn scene(random: &mut Random, size: f32) -> String {
     let mut text = String::from("PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }\nGroup {\n");
     let words = |v: Vec3| format!("{:?} {:?} {:?}", v.x, v.y, v.z);
@@ -62,7 +63,8 @@ fn scene(random: &mut Random, size: f32) -> String {
                     || format!("Sphere {{ center {} radius {:?} }}", words(size * random.point()), size * 0.2);
                 format!("Merge {{ {} }}", (0..30).map(|_| ball()).collect::<String>())
             }
-            // A sheet in whole numbers, as floors are: its rays run in the faces of its box.
+            // An axis-aligned sheet at integers, like a floor: its rays run in the faces of its
+            // box.
             _ => "Triangle { vertex0 -2 0 -2 vertex1 2 0 -2 vertex2 -2 0 2 }".into(),
         };
         let object = match random.below(3) {
@@ -73,7 +75,7 @@ fn scene(random: &mut Random, size: f32) -> String {
                 format!("Transform {{ {a} Transform {{ Translate {} {b} {object} }} }}", words(random.point()))
             }
         };
-        // Some things are there twice or thrice.
+        // Some objects occur two or three times.
         for _ in 0..[1, 1, 1, 2, 3][random.below(5)] {
             text += &object;
             text.push('\n');
@@ -83,12 +85,12 @@ fn scene(random: &mut Random, size: f32) -> String {
             nested += 1;
         }
     }
-    // A group must not be empty.
+    // Groups must not be empty.
     text + "Sphere { center 0 0 0 radius 1 }" + &"}\n".repeat(nested + 1)
 }
 
-/// Rays of all kinds: anywhere, at corners, along axes and in faces of boxes, orthographic, from
-/// far away.
+/// Returns rays of all kinds: random, at corners, along axes and in faces of boxes, orthographic,
+/// from far away.
 fn ray(world: &World, random: &mut Random, size: f32) -> Ray {
     let object = &world.objects()[random.below(world.objects().len())];
     let bounds = object.bounds().unwrap_or(Aabb { min: Vec3::splat(-size), max: Vec3::splat(size) });
@@ -146,7 +148,7 @@ fn all_structures_name_the_same_hit() {
                 assert_eq!(world.occluded(&ray, &mut ()), expected.is_some(), "{kind:?} {ray:?}");
             }
             hits += usize::from(expected.is_some());
-            // Another object at the same t: the same ray, but for all things up to the named one.
+            // Ties: another object at the same t.
             ties += expected.map_or(0, |hit| {
                 let other = |i: &usize| *i != hit.object as usize;
                 let same = |i: usize| {
@@ -197,7 +199,7 @@ fn transforms_apply_from_the_last_written_to_the_first_and_keep_t() {
         Group { Transform { Translate 10 0 0 ZRotate 90 Scale 2 1 1
         Transform { Translate 1 0 0 Sphere { center 0 0 0 radius 1 } } } }";
     let world = testing::read(text);
-    // The ball at 1, stretched to 2, turned to +y, moved to (10, 2, 0): half axes 1, 2, 1.
+    // The sphere at 1, stretched to 2, rotated to +y, moved to (10, 2, 0): half axes 1, 2, 1.
     let hit =
         |origin: [f32; 3], dir: [f32; 3]| world.closest(&Ray::new(origin.into(), dir.into()), &mut ()).map(|h| h.t);
     assert_eq!(hit([10.0, -5.0, 0.0], [0.0, 1.0, 0.0]), Some(5.0));
@@ -233,8 +235,8 @@ fn a_changed_world_has_the_identity_of_what_it_holds() {
     assert_eq!(all.len(), 6);
 }
 
-/// Simple shapes, solids and meshes, some of them turned or far away, asked about by neighbours and
-/// by rays from anywhere, sound or not: as one by one, and as without a structure.
+/// Simple shapes, solids and meshes, some of them rotated or distant, with batches of coherent and
+/// random rays, valid or not: the same results as one by one, and as brute force.
 #[test]
 fn rays_that_are_asked_about_together_have_their_own_answers() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Rays that go nearly the same way, asked about together: with the answers that each has alone.
+//! Batches of coherent rays, with the same results as single rays.
 
 use super::{Geometry, Hit, Object, World};
 use durer_bvh::{PackHit, PrimitivePacks, TraversalCounter, TriangleHit};
@@ -6,27 +6,26 @@ use durer_scene::math::{Ray, Ray64, Vec3};
 use durer_scene::shape::ShapeHit;
 use std::array::from_fn;
 
-/// As many rays are asked about together at most.
+/// Maximum number of rays in a batch.
 pub(crate) const TOGETHER: usize = 64;
 
-/// A world of a few things, as rays see it that are asked about together: whatever structure others
-/// go through.
+/// A world of few objects in a form for batches of rays, independent of the acceleration structure.
 #[derive(Clone, Debug)]
 pub(crate) struct Few {
     /// Simple shapes, for eight rays at once.
     pub(crate) simple: PrimitivePacks,
-    /// The numbers of all others.
+    /// Indices of all other objects.
     pub(crate) others: Vec<u32>,
 }
 
-/// Fewer rays are traced one by one.
+/// Number of rays below which they are traced one by one.
 const FEWEST: usize = 3;
 
-/// A ray that meets nothing.
+/// A ray that hits nothing.
 const NOWHERE: Ray = Ray { t_max: 0.0, ..Ray::new(Vec3::ZERO, Vec3::X) };
 
 impl World {
-    /// The first hits of up to [`TOGETHER`] rays. Rays keep their values, but are written to.
+    /// Finds the first hits of up to [`TOGETHER`] rays. Modifies the rays temporarily.
     pub(crate) fn first_hits<T: TraversalCounter>(
         &self,
         rays: &mut [Ray64],
@@ -40,7 +39,7 @@ impl World {
         self.closest_together(rays, hits);
     }
 
-    /// Whether anything is hit by each of up to [`TOGETHER`] rays.
+    /// Tests occlusion of up to [`TOGETHER`] rays.
     pub(crate) fn any_hits<T: TraversalCounter>(&self, rays: &[Ray64], blocked: &mut [bool], counter: &mut T) {
         if T::COUNTS_WORK || rays.len() < FEWEST || self.few.is_none() {
             return blocked.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.occluded_along(ray, counter));
@@ -49,7 +48,8 @@ impl World {
         self.occluded_together(rays, blocked);
     }
 
-    /// The first hits of up to [`TOGETHER`] rays, as [`World::closest`] has them one by one.
+    /// Finds the first hits of up to [`TOGETHER`] rays, with the same results as
+    /// [`World::closest`].
     pub(crate) fn closest_together(&self, rays: &[Ray64], hits: &mut [Option<Hit>]) {
         let Some(few) = &self.few else {
             hits.iter_mut().zip(rays).for_each(|(hit, ray)| *hit = self.closest(ray, &mut ()));
@@ -67,7 +67,7 @@ impl World {
             if let Geometry::Mesh(tree) = &object.geometry {
                 let mut found = [const { None::<TriangleHit> }; TOGETHER];
                 let mut local = local_rays(object, rays.iter());
-                // A tie is decided by the order of hits, so a ray may reach just to what it met.
+                // Ties are broken by the order of hits, so a ray may reach exactly its current hit.
                 for (local, hit) in local.iter_mut().zip(&*hits) {
                     local.t_max = hit.map_or(local.t_max, |hit| hit.t.next_up());
                 }
@@ -84,8 +84,7 @@ impl World {
         }
     }
 
-    /// Whether anything is hit by each of up to [`TOGETHER`] rays, as [`World::occluded`] has it one
-    /// by one.
+    /// Tests occlusion of up to [`TOGETHER`] rays, with the same results as [`World::occluded`].
     pub(crate) fn occluded_together(&self, rays: &[Ray64], blocked: &mut [bool]) {
         let Some(few) = &self.few else {
             blocked.iter_mut().zip(rays).for_each(|(blocked, ray)| *blocked = self.occluded_along(ray, &mut ()));
@@ -93,7 +92,7 @@ impl World {
         };
         let sound = |i: usize| durer_bvh::internal::is_sound(&rays[i].rounded);
         few.meet(rays, |i, met| blocked[i] = met.is_some());
-        // Those that are in the dark already need not be asked about.
+        // Rays that are occluded already are skipped.
         let others = || few.others.iter().map(|&number| (number, &self.objects()[number as usize]));
         let is_mesh = |object: &Object| matches!(object.geometry, Geometry::Mesh(_));
         for (number, object) in others().filter(|(_, object)| !is_mesh(object)) {
@@ -115,7 +114,7 @@ impl World {
         }
     }
 
-    /// What a ray met of what is tested together.
+    /// Converts a hit of a pack.
     #[inline]
     fn hit_of_pack(&self, PackHit { t, number }: PackHit, ray: &Ray64) -> Hit {
         let ShapeHit { t, uv } = self.objects()[number as usize].crossing_at(t, ray);
@@ -124,7 +123,7 @@ impl World {
 }
 
 impl Few {
-    /// Offers the first hit of each ray with simple shapes, if there is one.
+    /// Passes on the first hit of each ray with simple shapes, if there is one.
     fn meet(&self, rays: &[Ray64], mut take: impl FnMut(usize, Option<PackHit>)) {
         if self.simple.is_empty() {
             return (0..rays.len()).for_each(|i| take(i, None));
@@ -137,7 +136,7 @@ impl Few {
     }
 }
 
-/// Rays in the space of an object.
+/// Transforms rays to an object's space.
 fn local_rays<'r>(object: &Object, rays: impl Iterator<Item = &'r Ray64>) -> [Ray; TOGETHER] {
     let mut local = [NOWHERE; TOGETHER];
     let rays = local.iter_mut().zip(rays);

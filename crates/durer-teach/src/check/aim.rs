@@ -1,29 +1,30 @@
-//! Where the beams of lights go.
+//! Checks of where the beam of a light points.
 
 use super::probes::{Probe, ProbeGrid, ProbeHit};
 use durer_render::world::World;
 use durer_scene::light::Emitter as _;
 use durer_scene::math::{Ray, Vec3};
 
-/// A beam that holds a smaller share of what is seen holds nothing of it.
+/// Largest share of the visible points in a beam that misses the scene.
 const NOTHING: f32 = 0.005;
-/// And one that may be in radians may hold a little more.
+/// Same limit for a beam narrow enough that its angle may be in radians by mistake.
 const LITTLE: f32 = 0.03;
-/// Beyond this share of its strongest light a point is in the beam.
+/// A point is in the beam if it gets more than this share of the light's peak intensity.
 const IN_BEAM: f32 = 0.02;
-/// Narrower cones than this, in degrees, are a pencil's.
+/// Cone angle in degrees at or below which the angle may be in radians by mistake.
 const PENCIL: f32 = 3.2;
 
-/// Where a beam goes.
+/// A beam that misses everything the camera sees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Aim {
-    /// Past all that is seen.
+    /// The beam points away from everything visible.
     Away,
-    /// At what is seen, but of that it holds next to nothing.
+    /// The beam points at the scene, but covers almost none of the visible points.
     Narrow,
 }
 
-/// What a light makes at a point of the most that it could make at that distance.
+/// Returns the light that arrives at a point, as a share of the most that the light can send that
+/// far.
 pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
     let lamp = &world.lights()[light];
     let Some((place, strongest)) = lamp.place() else { return 1.0 };
@@ -32,18 +33,18 @@ pub(super) fn share(world: &World, light: usize, point: Vec3) -> f32 {
     world.illuminate(light, point.as_dvec3()).color.max_element() / full.max(f32::MIN_POSITIVE)
 }
 
-/// The places that are seen.
+/// Returns the points of the scene that the probes hit, in world space.
 pub(super) fn places(grid: &ProbeGrid) -> Vec<Vec3> {
     grid.seen().map(|(probe, seen): (&Probe, &ProbeHit)| probe.ray.at(seen.t)).collect()
 }
 
-/// The share of them that is in the beam of a light.
+/// Returns the share of `places` that are in the beam of a light.
 pub(super) fn within(grid: &ProbeGrid, light: usize, places: &[Vec3]) -> f32 {
     let held = places.iter().filter(|place| share(grid.world(), light, **place) > IN_BEAM).count();
     held as f32 / places.len().max(1) as f32
 }
 
-/// Where the beam of a light goes, if it has one and misses what is seen.
+/// Returns how the beam of a light misses the visible points; `None` if it hits or has no cone.
 pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
     let angle = grid.world().lights()[light].cone()?;
     let places = places(grid);
@@ -54,7 +55,7 @@ pub(super) fn aim(grid: &ProbeGrid, light: usize) -> Option<Aim> {
     Some(if angle <= PENCIL && at_something(grid, light) { Aim::Narrow } else { Aim::Away })
 }
 
-/// Whether the middle of a beam meets the scene.
+/// Returns true if the axis of a beam hits the scene.
 fn at_something(grid: &ProbeGrid, light: usize) -> bool {
     let light = &grid.world().lights()[light];
     let (Some(position), Some(direction)) = (light.position(), light.direction()) else { return false };

@@ -1,4 +1,4 @@
-//! Fog: that lets nothing through, or has no end.
+//! Checks of fog: too dense, or without an end.
 
 use super::finding::{Finding, number, percent};
 use super::scene_probe::SceneProbe;
@@ -6,10 +6,10 @@ use durer_diag::Diagnostic;
 use durer_scene::light::Emitter as _;
 use durer_scene::math::{Color, fp};
 
-/// Where less than this is left of what is behind it, fog is a wall.
+/// Fog is opaque if it transmits less than this.
 const WALL: f32 = 0.01;
 
-/// Fog that keeps light off.
+/// Reports fog that blocks the light.
 pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (Some(fog), Some(written)) = (world.fog(), &scout.subject.scene.fog) else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Lights with a beam: spotlights and measured lamps that shine past all that is seen.
+//! Checks of lights with a beam: spotlights and photometric lights that miss the visible scene.
 
 use super::aim::{Aim, places, within};
 use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
@@ -10,18 +10,18 @@ use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 
-/// Beams that miss what is seen.
+/// Reports beams that miss everything visible.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Away, |diagnostic, light| {
         let place = light.value.place().map_or(Vec3::ZERO, |(place, _)| place);
-        // Of a plane the horizon is seen as well: things tell where to shine.
+        // The visible part of a plane reaches the horizon, so aim at bounded objects only.
         let things = scout.seen().filter(|(_, seen)| scout.world().objects()[seen.object as usize].bounds().is_some());
         let things: Vec<Vec3> = things.map(|(probe, seen)| probe.ray.at(seen.t)).collect();
         let all = if things.is_empty() { places(scout) } else { things };
         let middle = all.iter().sum::<Vec3>() / all.len().max(1) as f32;
         let (Some(direction), Some(_)) = (light.value.direction(), light.value.cone()) else { return diagnostic };
         let word = if light.value.profile().is_some() { "this measured lamp" } else { "this spotlight" };
-        // Turned round it is most often what was meant.
+        // The opposite direction is most often the intended one.
         let turned = -direction.normalize_or(Vec3::NEG_Y);
         let to = (middle - place).normalize_or(Vec3::NEG_Y);
         let aimed = if turned.dot(to) > 0.7 { -direction } else { middle - place };
@@ -31,13 +31,13 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = Diagnostic { message: format!("{word} shines past all that is seen"), ..diagnostic };
         match scout.value(light.span, &["direction"]) {
             Some(value) => diagnostic.at(value).help(help).fix(value, text),
-            // What is not written is straight down.
+            // The default direction is straight down.
             None => diagnostic.help(help),
         }
     })
 }
 
-/// Cones that hold next to nothing of what is seen.
+/// Reports cones that cover almost none of the visible points.
 pub(super) fn narrow(scout: &SceneProbe) -> Vec<Finding> {
     missing(scout, Aim::Narrow, |diagnostic, light| {
         let Some(spot) = spot(&light.value) else { return diagnostic };
@@ -72,7 +72,7 @@ fn missing(scout: &SceneProbe, wanted: Aim, say: impl Fn(Diagnostic, &Spanned<Li
     found
 }
 
-/// Spotlights whose inner cone is wider than the outer one.
+/// Reports spotlights whose inner cone is wider than the outer one.
 pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.iter().flatten();
     let say = |light: &Spanned<Light>| {
@@ -93,7 +93,8 @@ pub(super) fn inner_angle(scout: &SceneProbe) -> Vec<Finding> {
     lights.filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Lights so near to a surface that they light a spot of it, and little else: how near, and which.
+/// Returns the distance and the object if a light is so close to a surface that it lights little
+/// but a spot on it.
 fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     let point = point(&scout.world().lights()[light])?;
     point.attenuation.filter(|a| a.z > 0.0 || a.y > 0.0)?;
@@ -110,7 +111,7 @@ fn touching(scout: &SceneProbe, light: usize) -> Option<(f32, u32)> {
     hits.map(|hit| (hit.t, hit.object)).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// Fading lights just above a surface.
+/// Reports lights with attenuation just above a surface.
 pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
     let places = places(scout);
     let mut found = Vec::new();
@@ -124,7 +125,7 @@ pub(super) fn near(scout: &SceneProbe) -> Vec<Finding> {
         let lit: Vec<f32> =
             scout.seen().filter_map(|(_, seen)| seen.by(light)).map(|lit| lit.adds.max_element()).collect();
         let bright = lit.iter().filter(|adds| **adds > 0.04).count();
-        // Light along a large surface is what is lost: things that stand for lamps are small.
+        // Only a large surface loses light at grazing angles; light fixtures are small.
         let along: Vec<f32> = scout
             .seen()
             .filter(|(_, seen)| seen.object == object)

@@ -1,4 +1,4 @@
-//! How bright the picture is.
+//! Brightness of the picture.
 
 use super::probes::{Probe, ProbeGrid};
 use durer_render::integrator::{Integrate, Path};
@@ -6,12 +6,12 @@ use durer_scene::math::Color;
 use durer_scene::sampler::SampleId;
 use rayon::prelude::*;
 
-/// Of a path tracer's picture, so many pixels are looked at, by so many samples each.
+/// Number of pixels that a path tracer samples, and samples of each.
 const MAX_PIXELS: usize = 300;
 const SAMPLES: u32 = 16;
 
-/// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them, each
-/// the mean of a few samples.
+/// Returns the exposed colours of the picture: one for each probe, or with a path tracer the mean
+/// of `SAMPLES` samples for at most `MAX_PIXELS` of them.
 pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
     let exposure = grid.subject.exposure;
     let Some(transport) = grid.subject.job.method.transport() else {
@@ -20,7 +20,7 @@ pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
     let job = grid.subject.job;
     let path = Path::new(grid.world(), job.settings, transport);
     let step = grid.probes.len().div_ceil(MAX_PIXELS).max(1);
-    // Not one in each row: that would be the same column each time.
+    // An odd step avoids sampling the same column in each row.
     let chosen: Vec<&Probe> =
         grid.probes.iter().step_by(if step.is_multiple_of(2) { step + 1 } else { step }).collect();
     let mean = |probe: &&Probe| {
@@ -31,7 +31,7 @@ pub(super) fn light(grid: &ProbeGrid) -> Vec<Color> {
     chosen.par_iter().map(mean).collect()
 }
 
-/// The brightest that is seen, but for one bright speck.
+/// Returns the second largest value, so that one bright speck does not count.
 pub(super) fn brightest(light: &[Color]) -> f32 {
     let mut values: Vec<f32> = light.iter().map(|color| color.max_element()).collect();
     values.sort_by(f32::total_cmp);

@@ -1,4 +1,4 @@
-//! Colours: of materials that show nothing, and numbers that are none of a colour's.
+//! Checks of colours: materials that show nothing, and values out of range.
 
 use super::finding::{Finding, MAX_SOUGHT, counted, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -10,15 +10,15 @@ use durer_scene::material::Pattern;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as Written, Spanned};
 
-/// What gives back less of all light looks black.
+/// Materials that reflect less than this look black.
 const BLACK: f32 = 0.01;
-/// Colours that differ by less look alike.
+/// Colours that differ by less than this look the same.
 const ALIKE: f32 = 2.0 / 255.0;
 
-/// So many rays must have met a thing of the background's colour.
+/// Minimum number of rays that hit an object before it counts as lost in the background.
 const FEWEST_LOST: usize = 6;
 
-/// The Phong materials as written and as they are used, with their numbers.
+/// Iterates over the Phong materials: index, description and compiled material.
 fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<Written>, &'s Phong)> {
     let compiled = scout.world().materials().iter();
     let both = scout.subject.scene.materials.iter().zip(compiled).enumerate();
@@ -28,12 +28,12 @@ fn phongs<'s>(scout: &'s SceneProbe) -> impl Iterator<Item = (u32, &'s Spanned<W
     })
 }
 
-/// How many rays see a material, or one that is mixed of it.
+/// Returns the number of rays that see a material, directly or as part of a mix.
 fn rays(scout: &SceneProbe, material: u32) -> usize {
     scout.material_rays()[material as usize]
 }
 
-/// Whether nothing that is seen gives back any light.
+/// Returns true if no visible material reflects any light.
 pub(super) fn all_black(scout: &SceneProbe) -> bool {
     let shows = |(i, _, phong): (u32, &Spanned<Written>, &Phong)| !is_black(phong) && rays(scout, i) > 0;
     scout.seen().next().is_some() && !phongs(scout).any(shows)
@@ -47,14 +47,14 @@ fn is_black(phong: &Phong) -> bool {
         && shown.max_element() < BLACK
 }
 
-/// Materials that give back no light at all.
+/// Reports materials that reflect no light.
 pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return super::layers::black(scout);
     }
     let all = scout.seen().count();
     let whole = all_black(scout);
-    // A part of a pattern may be black, unless all of it is.
+    // A part of a pattern may be black, unless the whole pattern is.
     let shown = |i: u32| if whole { rays(scout, i) > 0 } else { scout.seen().any(|(_, seen)| seen.material == i) };
     let black: Vec<_> = phongs(scout).filter(|(i, _, phong)| is_black(phong) && shown(*i)).collect();
     let say = |(i, written, _): &(u32, &Spanned<Written>, &Phong)| {
@@ -68,17 +68,17 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     black.iter().take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Mirrors and glass in a picture without secondary rays.
+/// Reports mirrors and glass in a picture without secondary rays.
 pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let old = scout.world().rules().is_official();
     let counts = |color: Color| if old { color.length() } else { color.max_element() };
-    // What counts for too little from the first bounce on is never traced.
+    // A colour below the minimum throughput is never traced, not even at the first bounce.
     let cut = |phong: &Phong| counts(phong.reflective).max(counts(phong.transparent)) < settings.least_weight;
     let none = settings.bounces == 0;
     let bounces = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
-    // Where the highlight's colour is the mirror's too, only what would be black without mirroring
-    // is meant as a mirror.
+    // If the highlight's colour is also the mirror's, only a material that would be black without
+    // reflection is meant as a mirror.
     let shared = matches!(scout.world().rules().secondary, Secondary::Specular | Secondary::SpecularFresnel);
     let meant = |phong: &Phong| phong.fresnel || !shared || phong.diffuse.max_element() < 0.15;
     let all: Vec<_> =
@@ -106,7 +106,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
         .at(written.span)
         .effect(if diffuse < 0.15 { "it is black, or nearly so" } else { "only its own colour is seen" })
         .help(help);
-    // Where that year's program makes none unless it is asked, nobody has left them out.
+    // If that year's program traces no secondary rays by default, their absence is intended.
     let seen: usize = all.iter().map(|(i, ..)| rays(scout, *i)).sum();
     let black: usize =
         all.iter().filter(|(.., phong)| phong.diffuse.max_element() < 0.1).map(|(i, ..)| rays(scout, *i)).sum();
@@ -116,7 +116,7 @@ pub(super) fn no_bounces(scout: &SceneProbe) -> Vec<Finding> {
     vec![finding.whole(whole)]
 }
 
-/// Mirrors and glass whose rays the options leave out, or let end inside.
+/// Reports mirrors and glass whose rays the options switch off or cut inside the body.
 fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) -> Vec<Finding> {
     let settings = &scout.subject.job.settings;
     let dark = |phong: &Phong| phong.diffuse.max_element() < 0.15;
@@ -130,7 +130,7 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
                 format!("material {i} lets light through, but refracted rays are left out"),
                 "leave `--no-refraction` away",
             ),
-            // Light goes in by one bounce and out by another.
+            // Light needs one bounce to enter and one to leave.
             true if settings.bounces == 1 && phong.ior != 1.0 && dark(phong) => (
                 format!(
                     "material {i} is of glass, but there is 1 level of secondary rays: light does not come out again"
@@ -145,7 +145,7 @@ fn switched_off(scout: &SceneProbe, all: &[(u32, &Spanned<Written>, &Phong)]) ->
     all.iter().filter_map(say).take(1).collect()
 }
 
-/// Glass of an index that no glass has.
+/// Reports glass with an index of refraction that no glass has.
 pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = super::layers::odd_index(scout);
     let fields = ["indexOfRefraction", "refractionIndex"];
@@ -185,7 +185,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
                     })
                     .help("water has 1.33, glass 1.5, diamond 2.4")
             }
-            // Coloured foil is made so.
+            // This is correct for coloured foil.
             None if phong.ior == 1.0 && !phong.fresnel => Diagnostic::note(format!(
                 "material {i} lets light through and has no `{}`",
                 if scout.world().rules().secondary == Secondary::Colors { fields[0] } else { fields[1] }
@@ -199,12 +199,12 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// A colour in the scene, where it is, and what it is called.
+/// A colour of the scene, its block and its field names.
 struct Named {
     color: Color,
     block: Span,
     fields: [&'static str; 2],
-    /// Greatest value that makes sense.
+    /// Largest plausible value.
     most: f32,
 }
 
@@ -212,8 +212,8 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
     let mut colors = Vec::new();
     for (i, written, used) in phongs(scout) {
         let Written::Phong(phong, _) = &written.value else { continue };
-        // A surface gives back no more than it gets.
-        // What is hardly seen may stand for a lamp.
+        // A surface reflects at most what it receives, but a small bright object may stand for a
+        // light.
         let small = rays(scout, i) * 25 < scout.probes.len();
         let named = |color, fields, most: f32| {
             let most = if small { most.max(15.0) } else { most };
@@ -221,8 +221,8 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         };
         colors.extend(phong.diffuse_color.map(|color| named(color, ["diffuseColor", "diffuse"], 1.001)));
         let all = |color, fields, most: f32| Named { color, block: written.span, fields, most };
-        // A highlight may be a little stronger than white; a mirror gives back no more than it
-        // gets.
+        // A highlight may be a little stronger than white; a mirror reflects at most what it
+        // receives.
         let mirrors = used.reflective != Color::ZERO && phong.reflective_color == Color::ZERO;
         colors.push(all(phong.specular_color, ["specularColor", "specular"], if mirrors { 1.05 } else { 1.6 }));
         colors.push(all(phong.reflective_color, ["reflectiveColor", "reflectiveColor"], 1.001));
@@ -231,8 +231,8 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
     for (number, (written, light)) in
         scout.subject.scene.lights.iter().flatten().zip(scout.world().lights()).enumerate()
     {
-        // A light that fades may be as strong as it must, so that not too much of it arrives.
-        // Of lamps in candela nobody expects 1.
+        // A light with attenuation may be strong as long as not too much of it arrives. Lights in
+        // candela are rarely near 1.
         let (fades, candela) = match light {
             Light::Directional(_) => (false, false),
             Light::Point(point) => (point.attenuation.is_some(), false),
@@ -240,7 +240,7 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
         };
         let arrives = scout.seen().filter_map(|(_, seen)| seen.by(number)).map(|lit| lit.arrives.max_element());
         let too_much = arrives.fold(0.0, f32::max) > 20.0;
-        // Under paths light is in units of its own, and the exposure makes a picture of it.
+        // Path tracing has free units of light, which the exposure scales.
         let free = candela || fades && !too_much || scout.is_physical();
         let most = if free { f32::INFINITY } else { 20.0 };
         colors.push(Named { color: light.color(), block: written.span, fields: ["color", "color"], most });
@@ -248,14 +248,14 @@ fn all_colors(scout: &SceneProbe) -> Vec<Named> {
     colors
 }
 
-/// Colours from 0 to 255.
+/// Reports colours from 0 to 255.
 pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut say = |color: Color, place: Option<Span>, block: Option<Span>| {
-        // Only whole numbers of which some are large are meant as 255ths.
+        // Whole numbers, some of them large, are probably bytes.
         let whole = color.to_array().iter().all(|c| c.fract() == 0.0);
         let bytes = whole && (20.0..=255.0).contains(&color.max_element());
-        // Tens up to a hundred may be percent as well.
+        // Multiples of 5 up to 100 may also be percent.
         let percent = bytes && color.max_element() <= 100.0 && color.to_array().iter().all(|c| c % 5.0 == 0.0);
         let mended = if bytes { color / 255.0 } else { color / color.max_element() };
         let far = color.max_element() > 2.0;
@@ -275,7 +275,7 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
                 false => format!("colours go from 0 to 1: `{}`, say", vector(mended)),
             });
         let diagnostic = match place {
-            // What was meant by any other number nobody knows.
+            // Only bytes have an obvious correction.
             Some(place) if bytes && !percent => diagnostic.at(place).fix(place, vector(mended)),
             Some(place) => diagnostic.at(place),
             None => Diagnostic { span: block, ..diagnostic },
@@ -298,8 +298,8 @@ pub(super) fn too_large(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// The material that is seen most of those whose diffuse, mirrored and transmitted shares are more
-/// than all light.
+/// Returns a warning for the most visible material whose diffuse, mirrored and transmitted shares
+/// add up to more than 1.
 pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     let bounces = scout.subject.job.settings.bounces > 0;
     let sum = |phong: &Phong| {
@@ -322,8 +322,8 @@ pub(super) fn gives_too_much(scout: &SceneProbe) -> Option<Diagnostic> {
     ))
 }
 
-/// Glass whose colour keeps all light in, where that colour weighs what it mirrors and lets
-/// through.
+/// Reports glass whose colour absorbs all light, in dialects where that colour scales reflection
+/// and transmission.
 pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return super::layers::dull_glass(scout);
@@ -348,7 +348,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Glass with an index and no colour of what goes through.
+/// Reports glass with an index of refraction but no transmission colour.
 fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
     let dull = |(i, written, phong): &(u32, &Spanned<Written>, &Phong)| match &written.value {
         Written::Phong(own, _) => {
@@ -372,13 +372,13 @@ fn dull_by_color(scout: &SceneProbe) -> Vec<Finding> {
     phongs(scout).filter(dull).take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Where the background is written: the scene does not keep it.
+/// Returns the span of the background's section; the scene does not store it.
 pub(super) fn background_span(scout: &SceneProbe) -> Option<Span> {
     let file = scout.subject.scene.camera_span.file;
     durer_formats::course::place::section(scout.subject.files.bytes(file)?, file, "Background")
 }
 
-/// Colours below zero.
+/// Reports colours below zero.
 pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     let below = |named: &Named| named.color.min_element() < 0.0;
     let say = |Named { color, block, fields, .. }: Named| {
@@ -401,7 +401,7 @@ pub(super) fn negative(scout: &SceneProbe) -> Vec<Finding> {
     all.filter(below).take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Things that have the colour of what is behind them.
+/// Reports objects of the background's colour.
 pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if world.cube_map().is_some() {
@@ -424,11 +424,11 @@ pub(super) fn camouflaged(scout: &SceneProbe) -> Vec<Finding> {
         false => "take another `color` for the background, or for the materials",
     });
     let finding = Finding::from(diagnostic);
-    // Where no light arrives, that is the cause, and this comes of it.
+    // If no light arrives, that is the cause, and this only follows from it.
     vec![if black { finding.last() } else { finding.whole(true) }]
 }
 
-/// Things of which all that is seen has the background's colour, exactly: others are seen.
+/// Reports objects whose visible pixels all have exactly the background's colour.
 fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<Finding> {
     let world = scout.world();
     if world.background().max_element() < 0.02 || scout.is_physical() {
@@ -436,7 +436,7 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
     }
     let say = |(number, object): (usize, &durer_render::world::Object)| {
         let mut own = scout.seen().filter(|(_, seen)| seen.object as usize == number).peekable();
-        // What mirrors the background is meant to show it.
+        // A mirror may show the background.
         let Material::Phong(phong) = world.materials().get(object.material as usize)? else { return None };
         let own_color = phong.reflective == Color::ZERO && phong.transparent == Color::ZERO && phong.texture.is_none();
         own.peek()?;
@@ -456,7 +456,7 @@ fn lost_in_background(scout: &SceneProbe, alike: &dyn Fn(Color) -> bool) -> Vec<
     world.objects().iter().enumerate().filter_map(say).take(super::finding::MAX_ALIKE).collect()
 }
 
-/// Textures on things without texture coordinates.
+/// Reports textures on objects without texture coordinates.
 pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
     let meshes_only = scout.world().rules().has(Compat::MeshTextures);
     let textured = phongs(scout).filter(|(_, _, phong)| phong.texture.is_some());
@@ -482,7 +482,7 @@ pub(super) fn no_coordinates(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Materials that nothing is made of.
+/// Reports materials that no object uses.
 pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut used = vec![false; world.materials().len()];
@@ -492,7 +492,7 @@ pub(super) fn unused(scout: &SceneProbe) -> Vec<Finding> {
             _ => used[object.material as usize] = true,
         }
     }
-    // A mixed material uses earlier ones.
+    // A mixed material refers to earlier materials only, so go backwards.
     for i in (0..world.materials().len()).rev() {
         if let (Material::Solid(solid, ..), true) = (&world.materials()[i], used[i]) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

@@ -1,5 +1,5 @@
-//! Pictures that are too bright, too dark, or of one colour; depths that are all black or all
-//! white.
+//! Checks of exposure: pictures that are too bright, too dark or of one colour, and depth ranges
+//! that show black or white only.
 
 use super::brightness::brightest;
 use super::finding::{Finding, number, percent, vector};
@@ -11,23 +11,25 @@ use durer_diag::{Diagnostic, Severity};
 use durer_scene::light::Emitter as _;
 use durer_scene::math::{Color, fp};
 
-/// Values beyond this are cut in eight bits; beyond the other, much of their shading is lost.
+/// Values above `BEYOND` are clipped in eight bits; above `FAR_BEYOND` most of their shading is
+/// lost.
 const BEYOND: f32 = 1.0 + VISIBLE;
 const FAR_BEYOND: f32 = 1.25;
-/// Where so large a share of what is seen is cut, or far beyond, it is more than highlights.
+/// Largest shares of the visible points that may be clipped, or far too bright: above, it is more
+/// than highlights.
 const MAX_CUT: f32 = 0.4;
 const MAX_FAR: f32 = 0.2;
 
-/// Where more than this share is white, nothing is seen for light.
+/// Largest share of white pixels in a picture that still shows something.
 const MAX_WHITE: f32 = 0.5;
 
-/// A factor of light in stops.
+/// Converts a factor of light to stops.
 fn stops_of(factor: f32) -> f32 {
     fp::ln(factor) / std::f32::consts::LN_2
 }
 
-/// A picture in units of its own that eight bits show as white: of a path tracer, or with a sky in
-/// cd/m^2.
+/// Reports a picture in physical units (path tracing, or a sky in cd/m^2) that eight bits show as
+/// white.
 fn white(scout: &SceneProbe) -> Vec<Finding> {
     let shown = scout.light();
     let white = shown.iter().filter(|color| color.min_element() > 1.1).count();
@@ -60,7 +62,7 @@ fn white(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Values beyond 1 in a picture of eight bits.
+/// Reports values above 1 in a picture of eight bits.
 pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() || scout.world().environment().is_some() {
         return white(scout);
@@ -74,7 +76,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let brightest = lit.iter().copied().max_by(|a, b| a.max_element().total_cmp(&b.max_element())).unwrap_or_default();
-    // Ambient light is left as it is, unless it alone is too much.
+    // Keep the ambient light, unless it alone is too much.
     let world = scout.world();
     let (most, ambient) = (brightest.max_element(), world.ambient().max_element().min(0.5));
     let factor = (1.0 - ambient) / (most - ambient).max(1e-6);
@@ -90,7 +92,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
                 "multiply the colours of the lights by {}, or write a picture that keeps them (.exr, .hdr)",
                 number(factor)
             ));
-    // Where the lamps alone are too much, no material is to blame.
+    // If the lights alone are too strong, blame no material.
     let local = |seen: &ProbeHit| (seen.ambient + seen.lit.iter().map(|lit| lit.adds).sum::<Color>()).max_element();
     let by_lamps = scout.seen().filter(|(_, seen)| local(seen) > FAR_BEYOND).count();
     if let Some(cause) = super::colors::gives_too_much(scout).filter(|_| by_lamps * 2 < far) {
@@ -100,7 +102,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     }
     for (i, light) in world.lights().iter().enumerate() {
         let Some(span) = place(scout, i) else { continue };
-        // A light that nearly does not fade is not too bright of itself.
+        // A light with almost no attenuation is not too bright itself.
         let faded = scout.value(span, &["attenuation", "falloff"]).filter(|_| factor < 0.1 && most > 10.0);
         if let (Some(value), Some(a)) = (faded, super::verdict::divisor(light)) {
             let single = scout.text(value).split_whitespace().count() == 1;
@@ -123,7 +125,7 @@ pub(super) fn too_bright(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(cut * 2 > lit.len())]
 }
 
-/// A picture of one colour.
+/// Reports a picture of one colour.
 pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     let shown = |color: Color| color.clamp(Color::ZERO, Color::ONE);
     let mut colors = scout.light().iter().map(|color| shown(*color));
@@ -137,7 +139,7 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
         _ => format!("of the one colour {}", vector(first)),
     };
     let empty = scout.seen().next().is_none();
-    // What is too small for the grid of rays is there all the same.
+    // Small objects between the probes are still visible.
     if empty && scout.visibilities().contains(&super::visibility::Visibility::Seen) {
         return Vec::new();
     }
@@ -149,7 +151,7 @@ pub(super) fn one_color(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic.help("`durer explain SCENE --pixel X,Y` tells of what a pixel is made")).last()]
 }
 
-/// A picture that is nearly black where it is not background.
+/// Reports a picture that is almost black wherever it shows an object.
 pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
     if scout.is_physical() {
         return dark_paths(scout);
@@ -169,7 +171,7 @@ pub(super) fn too_dark(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).last()]
 }
 
-/// The same of a path tracer's picture.
+/// Reports a path tracer's picture that is almost black.
 fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_dark() {
         return Vec::new();
@@ -196,7 +198,7 @@ fn dark_paths(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).last()]
 }
 
-/// A range of depths beside all depths.
+/// Reports a depth range that contains none of the picture's depths.
 pub(super) fn depth_range(scout: &SceneProbe) -> Vec<Finding> {
     let Some((min, max)) = scout.subject.job.depth_range else { return Vec::new() };
     let depths: Vec<f32> = scout.seen().map(|(_, seen)| seen.t).collect();

@@ -1,4 +1,4 @@
-//! Sizes: things too small or too large to be seen, and fields of view to match.
+//! Checks of size: objects too small or too large to be seen, and fields of view of the wrong size.
 
 use super::finding::{Finding, MAX_SOUGHT, number};
 use super::scene_probe::SceneProbe;
@@ -10,26 +10,25 @@ use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Aabb, fp};
 use durer_scene::scene::{MatrixOp, Node, Object};
 
-/// What spans fewer pixels cannot be recognised.
+/// Minimum size in pixels of a recognisable object.
 const FEWEST_PIXELS: f32 = 6.0;
-/// Beyond this ratio of sizes something is out of scale; and beyond this one, where it spoils the
-/// picture.
+/// Ratios of sizes above which an object is out of scale: harmless, and spoiling the picture.
 const OUT_OF_SCALE: f32 = 3e3;
 const HARMFUL: f32 = 100.0;
-/// And beyond this, where the camera is in it as well.
+/// Ratio of sizes above which an object that contains the camera is out of scale.
 const SWALLOWING: f32 = 20.0;
 
-/// Sizes of things that single precision can place beside others.
+/// Range of sizes that single precision can represent next to other objects.
 const ABSURD: std::ops::Range<f32> = 1e-9..1e9;
 
-/// All that has an end spans but a few pixels.
+/// Reports scenes whose bounded objects all together cover only a few pixels.
 pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     let bounds = scout.world().bounds();
     let Some(size) = Some(bounds).filter(|b| !b.is_empty()).and_then(|bounds| pixels(scout, bounds)) else {
         return Vec::new();
     };
     let empty = scout.seen().next().is_none();
-    // Who takes so wide a field of view wants to see much, not a few small things in its middle.
+    // A very wide field of view is meant to show much, not a few small objects in its middle.
     let share = match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle > 120.0 => 0.12,
         Camera::Perspective(camera) if camera.angle > 90.0 => 0.08,
@@ -67,10 +66,11 @@ pub(super) fn too_small(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// The picture shows a tiny part of things: an angle in radians, say.
+/// Reports pictures that show a tiny part of the objects, for example because of an angle in
+/// radians.
 pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let (bounds, span, larger) = (scout.world().bounds(), scout.subject.scene.camera_span, scout.larger());
-    // What is seen whole is not seen too near.
+    // The camera is not too close to an object that is seen whole.
     let seen =
         scout.world().objects().iter().zip(scout.visibilities()).filter(|(_, sight)| **sight == Visibility::Seen);
     let sizes: Vec<f32> = seen.filter_map(|(object, _)| pixels(scout, object.bounds()?)).collect();
@@ -83,7 +83,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     let radians = |angle: f32| angle <= std::f32::consts::PI;
     match scout.world().camera() {
         Camera::Perspective(camera) if camera.angle < 5.0 => {
-            // A telescope is there to see far things.
+            // A telescope is meant to see distant objects.
             let Some(size) = pixels(scout, bounds).filter(|size| *size > 8.0 * larger) else { return Vec::new() };
             let degrees = camera.angle.to_degrees();
             let mut diagnostic =
@@ -100,7 +100,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
             vec![Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true)]
         }
         Camera::Orthographic(camera) => {
-            // A picture of one thing's surface alone shows nothing.
+            // A picture of the surface of a single object shows nothing.
             let mut seen: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
             seen.sort_unstable();
             seen.dedup();
@@ -117,7 +117,7 @@ pub(super) fn too_narrow(scout: &SceneProbe) -> Vec<Finding> {
     }
 }
 
-/// A narrow field of view that one thing fills, and most others are beside it.
+/// Reports a narrow field of view that one object fills while most others are outside it.
 fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     let Camera::Perspective(camera) = scout.world().camera() else { return None };
     let visibilities = scout.visibilities().iter().zip(scout.world().objects());
@@ -137,7 +137,7 @@ fn one_fills(scout: &SceneProbe, sizes: &[f32]) -> Option<Finding> {
     Some(Finding::from(scout.at_value(diagnostic, span, &["angle", "fov"])).whole(true))
 }
 
-/// How many times larger an object is than the largest other one, if that is far.
+/// Returns how many times larger an object is than the largest other one, if above `SWALLOWING`.
 pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     let size = |i: usize| Some(scout.world().objects()[i].bounds()?.size().max_element());
     let others = (0..scout.world().objects().len()).filter(|&i| i != object as usize).filter_map(size);
@@ -145,25 +145,25 @@ pub(super) fn times_larger(scout: &SceneProbe, object: u32) -> Option<f32> {
     (times > SWALLOWING && times.is_finite()).then_some(times)
 }
 
-/// Whether a large object spoils the picture: it is not seen, though it reaches over all, or others
-/// are not seen for it.
+/// Returns true if a large object spoils the picture: it is invisible in spite of its size, or
+/// hides other objects.
 fn is_harm(scout: &SceneProbe, object: u32) -> bool {
     let visibilities = scout.visibilities();
     let hides = visibilities.contains(&Visibility::Hidden(object));
     let keeps_light = scout.verdicts().contains(&Verdict::Blocked(object));
     let ball = is_ball(&scout.world().objects()[object as usize]);
-    // What the camera is in, and which leaves no light or no other thing to be seen, is no sky.
+    // An object that contains the camera and blocks the light or the view is not a sky.
     if swallows(scout, object) {
         return true;
     }
     match visibilities[object as usize] {
-        // What of a ball is too high or too large, its place tells.
+        // Other checks judge the position of a ball that only hides or only blocks.
         Visibility::Seen => hides && keeps_light || (hides || keeps_light) && !ball,
         _ => true,
     }
 }
 
-/// Whether the camera is in an object that keeps light off or hides others.
+/// Returns true if the camera is inside an object that blocks light or hides others.
 fn swallows(scout: &SceneProbe, object: u32) -> bool {
     let eye = scout.world().camera().pose().center;
     let keeps_light = [Verdict::Blocked(object), Verdict::Inside(object)].iter().any(|v| scout.verdicts().contains(v));
@@ -171,7 +171,7 @@ fn swallows(scout: &SceneProbe, object: u32) -> bool {
     harms && super::within::around(scout.world(), eye).contains(&object)
 }
 
-/// Objects far larger or smaller than most.
+/// Reports objects far larger or smaller than most.
 pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let sized = |(i, object): (usize, &durer_render::world::Object)| {
@@ -194,7 +194,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     if sizes.len() < 2 || !lost.is_empty() {
         return lost;
     }
-    // Of two, that which the camera's distance speaks for is right.
+    // Of two objects, the one whose size fits its distance from the camera is right.
     let eye = world.camera().pose().center;
     let away = |object: u32| world.objects()[object as usize].bounds().map_or(1.0, |b| (b.center() - eye).length());
     let odd = |(object, size): (u32, f32)| fp::ln(size / away(object).clamp(1e-6, 1e6)).abs();
@@ -211,7 +211,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for &(object, size) in &sizes {
         let ratio = if size > middle { size / middle } else { middle / size };
-        // Of two, either may be wrong: the small one is not seen, the large one hides.
+        // Of two objects either may be wrong: the small one is invisible, the large one hides.
         let spoils = size > middle && is_harm(scout, object);
         if found.len() >= MAX_SOUGHT
             || ratio
@@ -225,7 +225,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
         {
             continue;
         }
-        // The ground may well be part of a huge ball, and the sky another.
+        // A huge ball may be the ground or the sky.
         if size > middle && !spoils {
             continue;
         }
@@ -255,7 +255,7 @@ pub(super) fn out_of_scale(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Rotations by less than a turn in radians, which are fractions of pi.
+/// Reports rotations by simple fractions of pi, which are probably in radians.
 pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
     let mut angles = Vec::new();
     if let Some(root) = &scout.subject.scene.root {
@@ -277,7 +277,7 @@ pub(super) fn radians(scout: &SceneProbe) -> Vec<Finding> {
     })]
 }
 
-/// A rotation: where its transform is written, what it may be called, and its angle.
+/// A rotation: span of its transform, its possible keywords, and its angle.
 type Rotation = (Span, [&'static str; 2], f32);
 
 fn rotations(object: &Object, angles: &mut Vec<Rotation>) {

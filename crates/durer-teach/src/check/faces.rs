@@ -1,4 +1,4 @@
-//! Flat faces that lie in one another: of two, one is seen at random.
+//! Checks of coplanar faces that overlap: which one is visible is random.
 
 use super::scene_probe::SceneProbe;
 use super::shapes::shape;
@@ -7,10 +7,10 @@ use durer_scene::camera::Projection;
 use durer_scene::math::Vec3;
 use durer_scene::shape::Shape as _;
 
-/// Of more things, none are looked at.
+/// Number of objects above which this check is skipped.
 const MAX_THINGS: usize = 300;
 
-/// A flat face: its corners in order, and its normal if only one side is ever seen.
+/// A flat face: its corners in order, and its normal if only one side can be visible.
 struct Face {
     object: usize,
     corners: Vec<Vec3>,
@@ -27,8 +27,8 @@ fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     let world = |corners: &[Vec3]| corners.iter().map(|p| object.world_point(*p)).collect::<Vec<Vec3>>();
     let Some(shape) = shape(object) else { return Vec::new() };
     let polygons = shape.polygons();
-    // Triangles are often written by the hundred, and share edges: planes alone are compared with
-    // them, see `objects::in_plane`.
+    // Triangles often come in hundreds and share edges; they are only compared with planes, see
+    // `objects::in_plane`.
     let mut faces: Vec<Face> = polygons
         .iter()
         .filter(|polygon| polygon.len() > 3)
@@ -45,7 +45,7 @@ fn faces_of(number: usize, object: &Object) -> Vec<Face> {
     faces
 }
 
-/// Whether two faces lie in one plane and cover a part of each other.
+/// Returns true if two faces are coplanar and overlap.
 fn meet(a: &Face, b: &Face) -> bool {
     let (n, m) = (a.normal(), b.normal());
     if n == Vec3::ZERO || m == Vec3::ZERO || n.dot(m).abs() < 1.0 - 1e-6 {
@@ -55,7 +55,7 @@ fn meet(a: &Face, b: &Face) -> bool {
     if b.corners.iter().any(|p| (*p - a.corners[0]).dot(n).abs() > 1e-5 * size) {
         return false;
     }
-    // Convex shapes are apart where a side of one separates them; those that only touch are apart
+    // Convex faces are disjoint if a side of one separates them; faces that only touch are disjoint
     // too.
     let separates = |one: &Face, other: &Face| {
         let count = one.corners.len();
@@ -72,8 +72,7 @@ fn meet(a: &Face, b: &Face) -> bool {
     !separates(a, b) && !separates(b, a)
 }
 
-/// The objects, boxes and rectangles, whose faces lie in one another on the side that the camera
-/// sees.
+/// Returns pairs of boxes or rectangles whose faces overlap on the side that the camera sees.
 pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
     let objects = scout.world().objects();
     if objects.len() > MAX_THINGS {
@@ -87,7 +86,7 @@ pub(super) fn overlapping(scout: &SceneProbe) -> Vec<(usize, usize)> {
         for b in faces[i + 1..].iter().filter(|b| b.object != a.object) {
             let (first, second) = (a.object, b.object);
             if !found.contains(&(first, second)) && faces_eye(a) && faces_eye(b) && meet(a, b) {
-                // Boxes side by side face each other.
+                // Adjacent boxes face each other.
                 let opposite = a.outwards.zip(b.outwards).is_some_and(|(n, m)| n.dot(m) < 0.0);
                 if !opposite {
                     found.push((first, second));

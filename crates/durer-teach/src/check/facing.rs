@@ -1,4 +1,4 @@
-//! Sides: surfaces seen from behind, and triangles of the scene file that are turned.
+//! Checks of orientation: surfaces seen from behind, and reversed triangles of the scene file.
 
 use super::finding::{Finding, MAX_SOUGHT, counted};
 use super::mesh_files::topology::Topology;
@@ -10,7 +10,7 @@ use durer_scene::describe::{DescribedList as _, Value};
 use durer_scene::math::{Affine, Vec3};
 use durer_scene::shape::{Flip, Shape as _};
 
-/// What to write so that a flat shape faces the other way.
+/// Describes the edit that makes a flat shape face the other way.
 pub(super) fn flip_text(flip: Flip) -> String {
     match flip {
         Flip::Corners([a, b]) | Flip::Edges([a, b]) => format!("exchange `{a}` and `{b}`"),
@@ -22,8 +22,8 @@ pub(super) fn flip_text(flip: Flip) -> String {
     }
 }
 
-/// The diagnostic with the edit that turns a flat shape round; `None` if it is not flat, or a field
-/// is not written.
+/// Adds the edit that flips a flat shape; `None` if the shape is not flat or a field is not
+/// written.
 pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) -> Option<Diagnostic> {
     let shape = shape(&scout.world().objects()[object as usize])?;
     let value = |field: &str| scout.value(scout.object_span(object), &[field]);
@@ -47,12 +47,12 @@ pub(super) fn flipped(scout: &SceneProbe, diagnostic: &Diagnostic, object: u32) 
     Some(diagnostic)
 }
 
-/// How a flat shape that the course's programs have is turned round.
+/// Returns how to flip a flat shape of the course's programs.
 fn course_flip(object: &Object) -> Option<Flip> {
     shape(object).filter(|shape| !shape.is_ours())?.flip()
 }
 
-/// The text change that turns a flat shape of the course's programs round.
+/// Adds the edit that flips a flat shape of the course's programs.
 fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic {
     match course_flip(&scout.world().objects()[object as usize]) {
         Some(flip) => match flipped(scout, &diagnostic, object) {
@@ -63,8 +63,8 @@ fn turned(scout: &SceneProbe, diagnostic: Diagnostic, object: u32) -> Diagnostic
     }
 }
 
-/// Objects of which only backs are seen: a warning where backs are not shaded as fronts are, else a
-/// note on flat shapes, which have a front that was meant to be seen.
+/// Reports objects seen only from behind: a warning if backs are not shaded, otherwise a note for
+/// flat shapes, whose front was meant to be visible.
 pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     let shaded = scout.subject.job.settings.shade_back;
     let is_flat = |i: usize| course_flip(&scout.world().objects()[i]).is_some();
@@ -76,7 +76,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
         black |= surface.black;
     }
     let all: usize = seen.iter().sum();
-    // Who is on the wrong side of what hides everything is told that alone.
+    // If `hidden-behind` fires, suppress this finding: same cause.
     if !super::hidden::hidden(scout).is_empty() {
         return Vec::new();
     }
@@ -89,7 +89,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
             let note = Diagnostic::note(message)
                 .at(scout.object_span(i as u32))
                 .effect("a tracer that does not shade backs, as the course's without `-shade_back`, leaves it black");
-            // A plane with normal and offset turned is the same plane, and looks the same where
+            // Flipping a plane's normal and offset gives the same plane, and it looks the same if
             // backs are shaded.
             return Finding::from(if plane(&scout.world().objects()[i]).is_some() {
                 note
@@ -110,7 +110,7 @@ pub(super) fn from_behind(scout: &SceneProbe) -> Vec<Finding> {
     turned_away.take(MAX_SOUGHT).map(say).collect()
 }
 
-/// Triangles written one by one that hang together, some of which go round the other way.
+/// Reports connected triangles of the scene file that wind the other way than most of them.
 pub(super) fn turned_triangles(scout: &SceneProbe) -> Vec<Finding> {
     let mut soups: Vec<(Option<Affine>, Vec<u32>)> = Vec::new();
     for (i, object) in scout.world().objects().iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Lights that fade: what is left of them where they arrive, and what they are divided by.
+//! Checks of lights with attenuation: how much of them arrives, and their divisors.
 
 use super::finding::{Finding, number, vector};
 use super::lights::{each, place, useless, written};
@@ -25,7 +25,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
             let help = format!("it is {} times too weak: `color {}`, say", number(factor), vector(color));
             return Some(scout.at_value(diagnostic, span, &["color"]).help(help));
         };
-        // Where its colour is that of a light, what fades it is wrong.
+        // If the colour is plausible for a light, the attenuation is wrong.
         let value = scout.value(span, &["attenuation", "falloff"]).filter(|_| point.color.max_element() > 0.2);
         if let (Some(value), Some(a)) = (value, point.attenuation.filter(|_| point.falloff.is_none())) {
             let reversed = Vec3::new(a.z, a.y, a.x);
@@ -37,12 +37,12 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
         let (value, text, field) = match (value, point.falloff, point.attenuation) {
             (Some(value), Some(falloff), _) => (value, number(falloff / factor), scout.text(before(scout, value))),
             (Some(value), None, Some(a)) => {
-                // The constant keeps a light bright near by: it only grows to what it should have
-                // been.
+                // The constant factor limits brightness near the light; increase it at most to its
+                // usual value.
                 let scaled = a / factor;
                 (value, vector(Vec3::new(scaled.x.max(a.x.min(1.0)), scaled.y, scaled.z)), "attenuation".into())
             }
-            // The dialect fades light by itself, unless something else is written.
+            // The dialect's default attenuation applies unless the file states another.
             _ => match (scout.value(span, &["color"])?, divisor(&scout.world().lights()[light])) {
                 (color, Some(a)) if scout.subject.dialect == Dialect::F23 => {
                     let after = Span { start: color.end, ..color };
@@ -59,7 +59,7 @@ pub(super) fn faint(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Whether a light that is divided by other factors would arrive as bright as lights do.
+/// Returns true if a light with other attenuation factors would arrive at a usual brightness.
 fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
     let Some(point) = point(&scout.world().lights()[light]) else { return false };
     let faces = scout.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.cosine > 0.1));
@@ -70,7 +70,7 @@ fn fits(scout: &SceneProbe, light: usize, factors: Vec3) -> bool {
     (0.2..4.0).contains(&left.fold(0.0, f32::max))
 }
 
-/// The word before a value.
+/// Returns the span of the word before a value.
 fn before(scout: &SceneProbe, value: Span) -> Span {
     let bytes = scout.subject.files.bytes(value.file).unwrap_or_default();
     let head = &bytes[..value.start as usize];

@@ -1,21 +1,21 @@
-//! One finding, and how it is put into words.
+//! Findings and their wording.
 
 use durer_diag::{Diagnostic, Edit, Severity};
 use durer_scene::math::Vec3;
 
-/// At most so many findings of one kind are told one by one.
+/// Maximum number of findings of one kind that are reported one by one.
 pub(super) const MAX_ALIKE: usize = 3;
-/// After so many of one kind, no more are looked for.
+/// Number of findings of one kind after which a check stops.
 pub(super) const MAX_SOUGHT: usize = 50;
 
-/// What a check has found.
+/// A finding of a check.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Code, place, words, and the edit that mends it.
+    /// Code, span, message, and the edit that fixes it.
     pub diagnostic: Diagnostic,
-    /// Whether it spoils the whole picture, and not a part of it.
+    /// True if it spoils the whole picture, not only a part of it.
     pub whole: bool,
-    /// Whether it only says how the picture is, for want of anything that says why.
+    /// True if it only describes the picture, and is dropped when another finding explains it.
     pub(super) last: bool,
 }
 
@@ -26,23 +26,23 @@ impl From<Diagnostic> for Finding {
 }
 
 impl Finding {
-    /// Whether the picture is not what was meant, or cannot be made.
+    /// Returns true for warnings and errors: the picture is wrong or cannot be made.
     pub fn is_serious(&self) -> bool {
         self.diagnostic.severity > Severity::Note
     }
 
-    /// One that spoils the whole picture if `whole`.
+    /// Sets whether the finding spoils the whole picture.
     pub(super) fn whole(self, whole: bool) -> Self {
         Finding { whole, ..self }
     }
 
-    /// One that gives way to all that spoil the whole picture.
+    /// Marks the finding as one that is dropped if another one spoils the whole picture.
     pub(super) fn last(self) -> Self {
         Finding { last: true, whole: true, ..self }
     }
 }
 
-/// Says at the last finding of a kind how many more there are, and takes their edits over.
+/// Adds the number of further findings to the last finding of a kind, with the edits of `other`.
 pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Finding) {
     let Some(Finding { diagnostic, .. }) = last else { return };
     let words = format!("; and {more} more of this kind");
@@ -54,29 +54,29 @@ pub(super) fn count_more(last: Option<&mut Finding>, more: usize, other: &Findin
     diagnostic.fix.extend(others);
 }
 
-/// A number with four significant digits.
+/// Formats a number with four significant digits.
 pub(super) fn number(x: f32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { x.to_string() };
     }
-    // Written with an exponent it is cut where the digits end, and is the nearest such number.
+    // Printing with an exponent rounds at the fourth digit; parsing gives the nearest such number.
     let rounded: f64 = format!("{x:.3e}").parse().unwrap_or(f64::from(x));
     let size = rounded.abs();
     if (1e-4..1e7).contains(&size) { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
-/// A vector as scene files have it.
+/// Formats a vector as scene files write it.
 pub(super) fn vector(v: Vec3) -> String {
     format!("{} {} {}", number(v.x), number(v.y), number(v.z))
 }
 
-/// A share as percent.
+/// Formats a share in percent.
 pub(super) fn percent(part: usize, of: usize) -> String {
     let share = 100.0 * part as f32 / of.max(1) as f32;
     if share > 0.0 && share < 1.0 { "less than 1 %".into() } else { format!("{share:.0} %") }
 }
 
-/// A count with its noun.
+/// Formats a count with its noun.
 pub(super) fn counted(count: usize, one: &str, many: &str) -> String {
     if count == 1 { format!("1 {one}") } else { format!("{count} {many}") }
 }

@@ -1,4 +1,4 @@
-//! One thing before all others, or before nearly all: planes above all.
+//! Checks of one object, often a plane, in front of all or most others.
 
 use super::finding::{Finding, counted, number, percent, vector};
 use super::objects::empty_solids;
@@ -10,16 +10,16 @@ use durer_render::world::Object;
 use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Ray, Vec3};
 
-/// Of more things, one alone is not blamed.
+/// Number of objects above which a single one is not blamed.
 const FEW_OBJECTS: usize = 8;
 
-/// One thing is in front of all others, or of nearly all.
+/// Reports one object in front of all, or almost all, others.
 pub(super) fn hidden_behind(scout: &SceneProbe) -> Vec<Finding> {
     let found = hidden(scout);
     if found.is_empty() { in_the_way(scout) } else { found }
 }
 
-/// One thing is in front of all others.
+/// Reports one object in front of all others.
 pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     let mut hits = scout.seen().map(|(_, seen)| seen.object);
     let Some(front) = hits.next().filter(|front| hits.all(|other| other == *front)) else { return Vec::new() };
@@ -35,16 +35,17 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     }
     let covered = scout.seen().count();
     let is_plane = scout.world().objects()[front as usize].bounds().is_none();
-    // A thing may well stand behind another; behind a plane without end, nothing is ever seen.
+    // An object may stand behind another on purpose; behind an infinite plane nothing is ever
+    // visible.
     let few = !is_plane && covered * 2 < scout.probes.len();
     if hidden == 0 || others > 0 || few || scout.is_glass(front) {
         return Vec::new();
     }
     let name = scout.object(front);
     let behind = scout.seen().all(|(_, seen)| seen.from_behind);
-    // Rays without a beginning see what is behind the camera too.
+    // Rays without a start also see objects behind the camera.
     let backwards = !has_eye(scout) && scout.seen().all(|(_, seen)| seen.t < 0.0);
-    // Whoever looks at its back may be on the wrong side of it himself.
+    // If the back is visible, the camera may be on the wrong side instead.
     let turned = (is_plane && !behind).then(|| offset_turned(scout, front)).flatten();
     let help = match (is_plane, behind) {
         _ if backwards => {
@@ -73,7 +74,7 @@ pub(super) fn hidden(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// One thing just before the camera that covers most of the picture and others with it.
+/// Reports one object close to the camera that covers most of the picture and the other objects.
 fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut counts = vec![0; objects.len()];
@@ -87,8 +88,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
         return Vec::new();
     }
     let Some(bounds) = objects[front].bounds() else { return Vec::new() };
-    // A room or a table holds the others; what is in the way is far before them, and hides nearly
-    // all of them.
+    // A room or a table contains the others; an obstacle is far in front of them and hides almost
+    // all.
     let eye = scout.world().camera().pose().center;
     let others: Vec<usize> = (0..objects.len()).filter(|&i| i != front && objects[i].bounds().is_some()).collect();
     let away = |i: &usize| objects[*i].bounds().map_or(f32::INFINITY, |own| (own.center() - eye).length());
@@ -118,8 +119,8 @@ fn in_the_way(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// A plane between the camera and all things that have an end, though something else, the sky say,
-/// is seen beside it.
+/// Reports a plane between the camera and all bounded objects, even if something else, such as the
+/// sky, is visible beside it.
 pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut front = None;
@@ -173,8 +174,8 @@ pub(super) fn below_plane(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// The plane between the camera and an object, if there is one: no camera that turns sees the
-/// object.
+/// Returns the plane between the camera and an object, which hides the object for every camera
+/// direction.
 pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     let world = scout.world();
     let (eye, place) = (world.camera().pose().center, object.bounds().filter(|b| !b.is_empty())?.center());
@@ -182,7 +183,7 @@ pub(super) fn plane_before(scout: &SceneProbe, object: &Object) -> Option<u32> {
     world.hits_of_each(&way).map(|hit| hit.object).find(|&other| world.objects()[other as usize].bounds().is_none())
 }
 
-/// Where the camera would be as far above a plane as it is below, if all things stand on it.
+/// Mirrors the camera's height at a plane, if all objects stand on that plane.
 fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     let (n, d) = ground(scout, object)?;
     let eye = scout.world().camera().pose().center;
@@ -193,7 +194,7 @@ fn raised(scout: &SceneProbe, object: u32) -> Option<Vec3> {
     (lowest > -0.05 * size && lowest < 0.05 * size && height(eye) < 0.0).then(|| eye - 2.0 * height(eye) * n)
 }
 
-/// The normal and offset of a plane in the world.
+/// Returns the normal and offset of a plane in world space.
 pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
     let object = &scout.world().objects()[object as usize];
     let plane = plane(object)?;
@@ -202,7 +203,7 @@ pub(super) fn ground(scout: &SceneProbe, object: u32) -> Option<(Vec3, f32)> {
     Some((n, on.dot(n)))
 }
 
-/// The only plane, if it faces up and all things and the camera are below it.
+/// Returns the only plane if it faces up and the camera and all objects are below it.
 fn ceiling(scout: &SceneProbe) -> Option<u32> {
     let world = scout.world();
     let planes = world.objects().iter().enumerate().filter(|(_, object)| object.bounds().is_none());
@@ -218,8 +219,8 @@ fn ceiling(scout: &SceneProbe) -> Option<u32> {
     (faces_up && all && seen && !matches!(world.camera(), Camera::Orthographic(_))).then_some(number)
 }
 
-/// The other sign of a plane's offset and where it is written, if the camera and the things are on
-/// one side of it then.
+/// Returns the negated offset of a plane and its span, if that puts the camera and the objects on
+/// the same side.
 fn offset_turned(scout: &SceneProbe, object: u32) -> Option<(Span, String)> {
     let plane_object = &scout.world().objects()[object as usize];
     let plane = plane(plane_object)?;

@@ -1,4 +1,4 @@
-//! Under a path tracer: surfaces that shine, and why their light is not seen.
+//! Checks of area lights in path tracing: why their light does not arrive.
 
 use super::facing::{flip_text, flipped};
 use super::finding::{Finding, MAX_SOUGHT};
@@ -12,30 +12,30 @@ use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::scene::Material as Written;
 use durer_scene::shape::{Flip, Shape};
 
-/// So many places are asked how much of a lamp's light they get.
+/// Maximum number of visible points at which an area light is judged.
 const MAX_PLACES: usize = 200;
-/// Places on a lamp.
+/// Sample points on an area light.
 const ON_LAMP: [Vec2; 4] = [Vec2::new(0.3, 0.2), Vec2::new(0.7, 0.3), Vec2::new(0.2, 0.7), Vec2::new(0.8, 0.8)];
-/// A lamp that gives a smaller share of what it might gives nothing.
+/// An area light whose share of its possible light is below this contributes nothing.
 const NOTHING: f32 = 0.1;
 const HARDLY: f32 = 0.03;
 
-/// What a lamp does for what is seen: sums over places, of the cosine at the lamp.
+/// Contribution of an area light to the visible points: sums of the cosine at the light.
 #[derive(Clone, Copy, Debug, Default)]
 struct Given {
-    /// Where nothing is in the way.
+    /// Sum over unoccluded points.
     front: f32,
     back: f32,
-    /// And if nothing were in the way.
+    /// Sum as if nothing occluded the light.
     front_free: f32,
-    /// How many rays only glass was in the way of.
+    /// Number of rays that only glass occluded.
     glass: usize,
     rays: usize,
-    /// What was in the way of the front last.
+    /// Object that last occluded the front side.
     blocker: Option<u32>,
 }
 
-/// The surfaces that shine, of which points can be chosen: their number, and whether both sides do.
+/// Returns the area lights that can be sampled: object, and true if they are two-sided.
 fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
     let world = scout.world();
     let shines = |(number, object): (usize, &Object)| {
@@ -46,7 +46,7 @@ fn shining(scout: &SceneProbe) -> Vec<(u32, bool)> {
     world.objects().iter().enumerate().filter_map(shines).take(MAX_SOUGHT).collect()
 }
 
-/// Where the strongest lamp's strength is written, and how much that is.
+/// Returns the span and the value of the strongest area light's luminance.
 pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
     let materials = &scout.subject.scene.materials;
     let lamps = shining(scout).into_iter().filter_map(|(number, _)| {
@@ -57,7 +57,7 @@ pub(super) fn brightest(scout: &SceneProbe) -> Option<(Span, f32)> {
     lamps.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// Whether light may go through an object.
+/// Returns true if light can pass through an object.
 fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     match scout.world().materials().get(scout.world().objects()[object as usize].material as usize) {
         Some(Material::Phong(phong)) => {
@@ -68,7 +68,7 @@ fn is_clear(scout: &SceneProbe, object: u32) -> bool {
     }
 }
 
-/// The first thing that keeps light off between two places, and whether glass was passed.
+/// Returns the first opaque object between two points, and true if the ray passed glass.
 fn between(scout: &SceneProbe, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>, bool) {
     let ray = Ray { t_min: 1e-3, t_max: 1.0 - 1e-3, ..Ray::new(from, to - from) };
     let mut glass = false;
@@ -81,7 +81,8 @@ fn between(scout: &SceneProbe, lamp: u32, from: Vec3, to: Vec3) -> (Option<u32>,
     (None, glass)
 }
 
-/// What a lamp of one part does; `None` for what has no points that can be chosen.
+/// Measures an area light of one part, and returns true if it is flat; `None` if it cannot be
+/// sampled.
 fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
     let object = &scout.world().objects()[lamp as usize];
     let all: Vec<Vec3> =
@@ -121,7 +122,8 @@ fn given(scout: &SceneProbe, lamp: u32) -> Option<(Given, bool)> {
     (given.rays > 0).then_some((given, flat))
 }
 
-/// How far a lamp's light goes from its middle, as a share of the scene; `None`: on and on.
+/// Returns the distance that an area light's normal travels, as a share of the scene's size; `None`
+/// if it hits nothing.
 fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
     let (form, normal) = emitter_of(object, 0)?;
     let (point, n, _) = form.point(normal, Vec2::splat(0.5))?;
@@ -130,13 +132,13 @@ fn reach(scout: &SceneProbe, object: &Object) -> Option<f32> {
     Some(hit.t / scout.world().bounds().size().length().max(1e-6))
 }
 
-/// Lamps that shine away from what is seen.
+/// Reports area lights that face away from the visible points.
 pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     let one_sided = shining(scout).into_iter().filter(|(_, both)| !both && scout.is_physical());
     let say = |(number, _): (u32, bool)| {
         let object = &scout.world().objects()[number as usize];
         let (given, flat) = given(scout, number)?;
-        // A lamp that lights the ceiling is one as well.
+        // A light that illuminates the ceiling works too.
         let indirect = reach(scout, object).is_some_and(|far| far > 0.03) && !scout.is_dark();
         if !flat || given.back <= 0.0 || given.front > NOTHING * given.back || indirect {
             return None;
@@ -160,8 +162,8 @@ pub(super) fn turned(scout: &SceneProbe) -> Vec<Finding> {
     one_sided.filter_map(say).collect()
 }
 
-/// The edit that turns a flat lamp round. It is for the author to say which corners of a triangle
-/// change places.
+/// Adds the edit that flips a flat area light. Which corners of a triangle to exchange is for the
+/// author to decide.
 fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diagnostic {
     match shape(&scout.world().objects()[number as usize]).and_then(Shape::flip) {
         Some(Flip::Edges(_) | Flip::Negate(_)) => flipped(scout, &diagnostic, number).unwrap_or(diagnostic),
@@ -169,7 +171,7 @@ fn turned_round(scout: &SceneProbe, diagnostic: Diagnostic, number: u32) -> Diag
     }
 }
 
-/// Lamps whose light something keeps in.
+/// Reports area lights that are occluded from all visible points.
 pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() {
         return Vec::new();
@@ -192,7 +194,7 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
         .related(scout.object_span(blocker), "in the way")
         .effect(if scout.is_dark() { "the picture is black" } else { "no light of it comes straight to what is seen" })
         .help("is it on the wrong side, or inside? Move the lamp to the side that is seen");
-        // Light may well come round corners, where it does.
+        // If the picture is not dark, the light arrives indirectly.
         let dark = scout.is_dark();
         let severity = if dark { Severity::Warning } else { Severity::Note };
         (dark || lamps.len() > 1).then(|| Finding::from(Diagnostic { severity, ..diagnostic }).whole(whole))
@@ -200,7 +202,7 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     lamps.iter().filter_map(say).collect()
 }
 
-/// Lamps inside of glass: paths come upon them by chance, or not at all.
+/// Reports area lights inside glass, which paths hit by chance or not at all.
 pub(super) fn in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, Method::Path(_)) {

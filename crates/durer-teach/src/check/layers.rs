@@ -1,5 +1,4 @@
-//! Materials of layers that show nothing, or not what they are meant to: black metals, glass that
-//! swallows all light, surfaces that are not there.
+//! Checks of layered materials: black metals, glass that absorbs all light, invisible surfaces.
 
 use super::finding::{Finding, MAX_SOUGHT, number as number_word, vector};
 use super::scene_probe::SceneProbe;
@@ -9,10 +8,10 @@ use durer_scene::material::principled::Walls;
 use durer_scene::math::fp;
 use durer_scene::scene::{Material as Written, Spanned};
 
-/// Shares of light below this are black.
+/// Shares of light below this count as black.
 const BLACK: f32 = 0.002;
 
-/// The materials of layers that something is made of, with their numbers.
+/// Returns the layered materials that objects use: index, description and parameters.
 fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s PrincipledMaterial)> {
     let used = |number: usize| scout.world().objects().iter().any(|object| object.material as usize == number);
     let all = scout.subject.scene.materials.iter().enumerate();
@@ -23,14 +22,14 @@ fn layers<'s>(scout: &SceneProbe<'s>) -> Vec<(usize, &'s Spanned<Written>, &'s P
     own.take(MAX_SOUGHT).collect()
 }
 
-/// The least side of the largest thing that is made of a material.
+/// Returns the smallest side of the thickest object of a material.
 fn thickness(scout: &SceneProbe, material: usize) -> Option<f32> {
     let made = scout.world().objects().iter().filter(|object| object.material as usize == material);
     let sides = made.filter_map(|object| Some(object.bounds()?.size().min_element()));
     sides.max_by(f32::total_cmp).filter(|side| *side > 0.0)
 }
 
-/// Materials of layers that give back no light, whatever falls on them.
+/// Reports layered materials that reflect no light.
 pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         if scout.material_rays()[number] == 0 {
@@ -65,7 +64,7 @@ pub(super) fn black(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).collect()
 }
 
-/// Glass that lets nothing through.
+/// Reports glass that transmits nothing.
 pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         let color = m.transmission_color.max_element();
@@ -80,7 +79,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
                 (diagnostic.effect("its colour swallows all light: it is black").help(help), "transmissionColor")
             })?
         } else {
-            // The ways through a round thing are about as long as that.
+            // Paths through a round body are about this long.
             let thick = thickness(scout, number)?;
             let left = fp::exp(fp::ln(color.max(1e-6)) * 0.6 * thick / m.transmission_depth);
             (left < BLACK).then(|| {
@@ -106,7 +105,7 @@ pub(super) fn dull_glass(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).collect()
 }
 
-/// Bodies of glass that bend no light, or as nothing does.
+/// Reports glass with an index of refraction of 1 or of an impossible value.
 pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         let clear = m.transmission_color.min_element() >= 0.99 && m.transmission_scatter.max_element() == 0.0;
@@ -118,7 +117,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
         let index = number_word(m.specular_ior);
         let message = format!("material {number} is of glass with an index of refraction of {index}");
         let effect = match m.specular_ior {
-            // Smoke in a body has no skin by right.
+            // A body of smoke has no surface reflection on purpose.
             ior if (ior - 1.0).abs() < 1e-3 && clear && plain && m.transmission_weight > 0.99 => {
                 "light goes straight through and nothing is mirrored: what is made of it is not seen"
             }
@@ -133,7 +132,7 @@ pub(super) fn odd_index(scout: &SceneProbe) -> Vec<Finding> {
     layers(scout).into_iter().filter_map(say).collect()
 }
 
-/// Surfaces of which nothing is there.
+/// Reports surfaces of zero opacity.
 pub(super) fn not_there(scout: &SceneProbe) -> Vec<Finding> {
     let say = |(number, written, m): (usize, &Spanned<Written>, &PrincipledMaterial)| {
         if m.opacity > 0.01 {

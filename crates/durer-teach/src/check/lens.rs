@@ -1,4 +1,5 @@
-//! Lenses and eyes: focus, aperture, shift, separation; and what is seen from its edge.
+//! Checks of lenses and stereo cameras: focus, aperture, shift, separation; and of planes seen
+//! edge-on.
 
 use super::finding::{Finding, number};
 use super::probes::{Probe, ProbeHit};
@@ -9,18 +10,19 @@ use durer_diag::Diagnostic;
 use durer_scene::camera::{Camera, Projection, ThinLensCamera};
 use durer_scene::math::{Aabb, Vec3, fp};
 
-/// Where every point becomes a disc of so large a share of the picture, nothing is sharp.
+/// Size of a blur disc, as a share of the picture, above which the picture is blurred everywhere.
 const MAX_BLUR: f32 = 0.08;
-/// What becomes a smaller disc looks sharp.
+/// Discs smaller than this share of the picture look sharp.
 const SHARP: f32 = 0.02;
-/// No lens is wider than this share of the distance at which it is sharp.
+/// Aperture as a share of the focus distance that no lens exceeds.
 const WIDEST: f32 = 0.4;
-/// And few are wider than this share.
+/// Aperture as a share of the distance that few lenses exceed.
 const FITTING: f32 = 0.12;
-/// Eyes that are further apart than this share of what they look at see different things.
+/// Eye separation as a share of the distance above which the two pictures do not fuse.
 const FURTHEST: f32 = 0.5;
 
-/// The discs that what is seen becomes, as shares of the picture's larger side, and its depths.
+/// Returns the blur discs of the visible points, as shares of the picture's larger side, and the
+/// depths.
 fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     let forward = scout.world().camera_frame().forward;
     let depth = |(probe, seen): (&Probe, &ProbeHit)| seen.t * probe.ray.dir.dot(forward);
@@ -30,7 +32,7 @@ fn blurs(scout: &SceneProbe, camera: &ThinLensCamera) -> Vec<(f32, f32)> {
     scout.seen().map(depth).filter(|z| *z > 0.0).map(|z| (blur(z), z)).collect()
 }
 
-/// A lens that blurs all that is seen.
+/// Reports a lens that blurs everything visible.
 pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
@@ -54,12 +56,13 @@ pub(super) fn out_of_focus(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, span, &["focusDistance", "aperture"])).whole(true)]
 }
 
-/// An opening that no lens has: everything but one plane is blurred away.
+/// Reports an aperture that no lens has: everything but one plane is blurred.
 pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return Vec::new() };
     let all = blurs(scout, camera);
     let sharp = all.iter().filter(|(blur, _)| *blur < SHARP).count();
-    // An opening that would do where most things are is sharp at the wrong place.
+    // An aperture that would fit the distance of most objects means that the focus is wrong
+    // instead.
     let mut depths: Vec<f32> = all.iter().map(|(_, depth)| *depth).collect();
     depths.sort_by(f32::total_cmp);
     let fits = depths.get(depths.len() / 2).is_some_and(|middle| camera.aperture < FITTING * middle);
@@ -88,7 +91,7 @@ pub(super) fn wide_aperture(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, span, &["aperture"])).whole(true)]
 }
 
-/// A film that is shifted so far that all is beside the picture.
+/// Reports a film shift that moves everything out of the picture.
 pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     let Camera::ThinLens(camera) = scout.world().camera() else { return None };
     let span = scout.subject.scene.camera_span;
@@ -111,7 +114,7 @@ pub(super) fn shifted(scout: &SceneProbe, middle: Vec3) -> Option<Diagnostic> {
     })
 }
 
-/// Eyes too far from each other.
+/// Reports eyes that are too far apart.
 pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (separation, target) = match world.camera() {
@@ -150,7 +153,7 @@ pub(super) fn eyes_apart(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, span, &["separation"])).whole(true)]
 }
 
-/// Planes that are seen from their edge, which is to say not at all.
+/// Reports planes that are seen edge-on, and are therefore invisible.
 pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (eye, forward) = (world.camera().pose().center, world.camera_frame().forward);
@@ -176,7 +179,7 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
             true => Diagnostic::note(format!("the camera looks along the {name}"))
                 .help("it is a line at most, seen so: tilt the camera's `direction` towards it"),
             false => {
-                // To the side where things are.
+                // Towards the side with the objects.
                 let side = if (things.center() - on).dot(n) < 0.0 { -n } else { n };
                 let raised = super::finding::vector(eye + 0.2 * size * side);
                 let value = scout.value(scout.subject.scene.camera_span, &["center"]);
@@ -192,7 +195,7 @@ pub(super) fn edge_on(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// A scene so far from the origin that numbers have no digits left for its shapes.
+/// Reports a scene so far from the origin that single precision cannot resolve its shapes.
 pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let sized = |b: Aabb| {
@@ -200,7 +203,7 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     };
     let all: Vec<(f32, f32)> = world.objects().iter().filter_map(|object| sized(object.bounds()?)).collect();
     let eye = world.camera().pose().center.abs().max_element();
-    // Both the camera and most things: what stands far away alone is something else.
+    // The camera and most objects must be far away; a single distant object is another problem.
     let lost = |far: f32, size: f32| far * f32::EPSILON > size / 500.0;
     let many = all.iter().filter(|(far, size)| lost(*far, *size)).count();
     if many * 2 <= all.len() || all.is_empty() {
@@ -226,7 +229,7 @@ pub(super) fn far_origin(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(scout.at_value(diagnostic, scout.subject.scene.camera_span, &["center"])).whole(true)]
 }
 
-/// A scene smaller than the distance at which an old program lets shadow rays begin.
+/// Reports a scene smaller than the distance at which an old program starts shadow rays.
 pub(super) fn below_epsilon(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let Some(epsilon) = world.rules().epsilon else { return Vec::new() };

@@ -1,4 +1,4 @@
-//! Lights that do nothing to what is seen, or less than was meant.
+//! Checks of lights that contribute nothing, or less than intended, to the visible points.
 
 use super::finding::{Finding, percent, vector};
 use super::probes::Lit;
@@ -13,23 +13,23 @@ use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 
-/// A light as it is written.
+/// Returns a light's description.
 pub(super) fn written<'s>(scout: &SceneProbe<'s>, light: usize) -> Option<&'s Spanned<Light>> {
     scout.subject.scene.lights.as_ref()?.get(light)
 }
 
-/// Where a light is written.
+/// Returns a light's span.
 pub(super) fn place(scout: &SceneProbe, light: usize) -> Option<Span> {
     Some(written(scout, light)?.span)
 }
 
-/// Whether no light adds anything to what is seen.
+/// Returns true if no light contributes to the visible points.
 pub(super) fn all_fail(scout: &SceneProbe) -> bool {
     let verdicts = scout.verdicts();
     !verdicts.is_empty() && verdicts.iter().all(|verdict| *verdict != Verdict::Works)
 }
 
-/// A warning about a light that adds nothing.
+/// Returns a warning about a light that contributes nothing.
 pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Option<(Diagnostic, Span)> {
     let span = place(scout, light)?;
     let effect = match (all_fail(scout), scout.world().ambient().max_element() > VISIBLE) {
@@ -40,14 +40,14 @@ pub(super) fn useless(scout: &SceneProbe, light: usize, message: String) -> Opti
     Some((Diagnostic::warning(message).at(span).effect(effect), span))
 }
 
-/// The findings of one kind, each made of a light's number and its verdict.
+/// Collects the findings that `find` makes from each light's index and verdict.
 pub(super) fn each(scout: &SceneProbe, find: impl Fn(usize, Verdict) -> Option<Diagnostic>) -> Vec<Finding> {
     let whole = all_fail(scout);
     let verdicts = scout.verdicts().iter().enumerate();
     verdicts.filter_map(|(light, verdict)| Some(Finding::from(find(light, *verdict)?).whole(whole))).collect()
 }
 
-/// Lights that do something only because nothing casts shadows: an object is around them.
+/// Reports lights inside an object that work only because shadows are off.
 fn enclosed(scout: &SceneProbe) -> Vec<Finding> {
     let shadows = scout.subject.job.settings.shadows;
     let lights = scout.world().lights().iter().enumerate().filter(|_| !shadows).take(MAX_JUDGED);
@@ -99,18 +99,17 @@ pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Where lights together reach a smaller share of what is seen, most of it is in the dark.
+/// Share of visible points that the lights must reach together; below, most of the picture is dark.
 const MOSTLY_DARK: f32 = 0.33;
-/// Where less than this share of the strongest light arrives of one, it is there to brighten
-/// shadows.
+/// A light weaker than this share of the strongest one is a fill light.
 const WEAK: f32 = 0.15;
 
-/// Where they reach less than this, only a rim is lit.
+/// Share of lit points below which only a rim is lit.
 const RIM: f32 = 0.2;
-/// And here nearly all.
+/// Share of lit points below which almost everything is dark.
 const NEARLY_ALL_DARK: f32 = 0.25;
 
-/// The lights that work, without those of which far less arrives than of the strongest.
+/// Returns the working lights, without those much weaker than the strongest.
 fn main_lights(scout: &SceneProbe) -> Vec<usize> {
     let strength = |light: usize| {
         let arrives = scout.seen().filter_map(|(_, seen)| Some(seen.by(light)?.arrives.max_element()));
@@ -122,13 +121,13 @@ fn main_lights(scout: &SceneProbe) -> Vec<usize> {
     all.into_iter().filter(|(_, strength)| *strength >= WEAK * most).map(|(light, _)| light).collect()
 }
 
-/// Lights that do reach something, but little, since most of what is seen faces away from them.
+/// Reports lights that reach little because most visible surfaces face away from them.
 fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
     let working = main_lights(scout);
     let (mut all, mut reached, mut away, mut grazed) = (0, 0, 0, 0);
     let is_main = |lit: &&Lit| working.contains(&lit.light);
     let bright = |lit: &Lit| is_main(&lit) && lit.cosine > GRAZING && lit.adds.abs().max_element() > VISIBLE;
-    // A back that is not shaded as a front is no light's fault.
+    // An unshaded back is not the light's fault.
     let shaded = scout.subject.job.settings.shade_back;
     for (_, seen) in scout.seen().filter(|(_, seen)| shaded || !seen.from_behind) {
         all += 1;
@@ -137,7 +136,7 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
         away += usize::from(faces_away);
         grazed += usize::from(faces_away && seen.lit.iter().filter(is_main).any(is_grazing));
     }
-    // What is black of itself, or in shadow, tells nothing of where the lights are.
+    // Black or shadowed surfaces say nothing about the direction of the lights.
     let reaches = reached as f32 > MOSTLY_DARK * all as f32;
     if all == 0 || working.is_empty() || reaches || away * 2 < all - reached || super::colors::all_black(scout) {
         return Vec::new();
@@ -155,20 +154,20 @@ fn mostly_dark(scout: &SceneProbe) -> Vec<Finding> {
         })
         .help("the light is behind what is seen: `direction` is where light goes, `position` where it is");
     diagnostic = scout.at_value(diagnostic, span, &["direction", "position"]);
-    // All lights turned round together are meant to be where they came from.
+    // If the lights face away together, each `direction` probably points towards its source.
     for &light in &working {
         let Some(light) = written(scout, light) else { continue };
         if let (None, Some(direction)) = (light.value.position(), light.value.direction()) {
             diagnostic = diagnostic.fix_at(scout.value(light.span, &["direction"]), vector(-direction));
         }
     }
-    // A crescent of a round thing may well be meant; of a floor no light at all is not.
+    // A crescent on a round object may be intended; a floor without any light is not.
     let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let floor = scout.seen().any(|(_, seen)| flat(seen.object));
     let lit_floor = scout.seen().any(|(_, seen)| flat(seen.object) && seen.lit.iter().any(bright));
     if (!floor || lit_floor) && reached as f32 > 0.02 * all as f32 {
         diagnostic.severity = Severity::Note;
-        // A moon is left as it is; a rim of light is more likely a sign too many.
+        // Leave a half-lit moon alone; a thin rim is more likely a wrong sign.
         if reached as f32 > RIM * all as f32 {
             diagnostic.fix.clear();
         }
@@ -181,7 +180,7 @@ fn is_grazing(lit: &Lit) -> bool {
     lit.cosine.abs() <= 1e-3
 }
 
-/// The first of some lights, which only goes along what is seen.
+/// Reports the first light that only grazes the visible surfaces.
 fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     let light = *lights.iter().find(|light| {
         let all = scout.seen().filter_map(|(_, seen)| seen.by(**light));
@@ -216,7 +215,7 @@ fn grazing(scout: &SceneProbe, lights: &[usize]) -> Option<Diagnostic> {
     }
 }
 
-/// Lights that lie in a plane that is seen, or go exactly along it: it gets nothing of them.
+/// Reports lights that lie in a visible plane or run parallel to it, so that it gets no light.
 fn along_plane(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: u32| scout.world().objects()[object as usize].bounds().is_none();
     let is_along = |light: &usize| {
@@ -265,7 +264,7 @@ pub(super) fn behind(scout: &SceneProbe) -> Vec<Finding> {
                 scout.at_value(diagnostic, span, &["position"]).help(help)
             }
         };
-        // One of several lights may well be meant for another side.
+        // One of several lights may be meant for another side.
         Some(if all_fail(scout) { diagnostic } else { Diagnostic { severity: Severity::Note, ..diagnostic } })
     }));
     found
@@ -289,7 +288,7 @@ pub(super) fn cancelled(scout: &SceneProbe) -> Vec<Finding> {
     })
 }
 
-/// Lights that are written twice.
+/// Reports lights that are written twice.
 pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let lights = scout.subject.scene.lights.as_deref().unwrap_or_default();
     let pairs = lights.iter().enumerate().filter_map(|(i, light)| {
@@ -303,7 +302,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     pairs.map(say).collect()
 }
 
-/// Takes the light that a finding is about out of the file, and out of the count of lights.
+/// Adds the edit that removes a light from the file and from the light count.
 fn without(scout: &SceneProbe, diagnostic: Diagnostic) -> Diagnostic {
     let Some(own) = diagnostic.span else { return diagnostic };
     let Some(bytes) = scout.subject.files.bytes(own.file) else { return diagnostic };

@@ -1,4 +1,4 @@
-//! Meshes: their triangles, edges and normals, file by file.
+//! Checks of meshes, file by file: triangles, edges and normals.
 
 use super::finding::{Finding, counted, percent, vector};
 use super::mesh_files::MeshFile;
@@ -8,10 +8,10 @@ use durer_diag::{Diagnostic, Span};
 use durer_render::world::{Material, Object as Placed};
 use durer_scene::dialect::Compat;
 
-/// A share of triangles without area that is more than the poles of a turned body have.
+/// Share of triangles without area that is above what the poles of a surface of revolution have.
 const MANY_FLAT: f32 = 0.03;
 
-/// Triangles without area.
+/// Reports triangles without area.
 pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {
@@ -31,7 +31,7 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Holes and crowded edges where a mesh must have an inside.
+/// Reports holes and non-manifold edges in meshes that need an inside.
 pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = flat_glass(scout);
     for mesh in scout.meshes() {
@@ -52,13 +52,13 @@ pub(super) fn open_glass(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Opaque meshes with holes through which their inside is seen.
+/// Reports opaque meshes whose inside is visible through holes.
 pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.glass(scout).is_none() && mesh.topology.open > 0) {
         let seen = scout.seen().filter(|(_, seen)| mesh.is_shown_at(scout.object_span(seen.object)));
         let (all, backs) = seen.fold((0, 0), |(all, backs), (_, s)| (all + 1, backs + usize::from(s.from_behind)));
-        // A sheet is seen from one side, or nearly so.
+        // A sheet is visible from mostly one side.
         if backs * 50 < all || backs * 10 > all * 7 || all == 0 {
             continue;
         }
@@ -73,7 +73,7 @@ pub(super) fn holes(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Flat things of glass: what has no inside.
+/// Reports flat objects of glass, which have no inside.
 pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     use super::shapes::{shape, triangle};
     use durer_scene::describe::DescribedList as _;
@@ -105,7 +105,7 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
                 "a ray that goes in never comes out: it is bent once, and all behind is seen as from within the glass",
             )
             .help("glass needs a body: a sphere, a closed mesh; or give it the index 1");
-        // The surface of a lake is flat by right.
+        // The surface of a lake is flat on purpose.
         if *what != "triangle" && !world.rules().is_official() {
             diagnostic.severity = durer_diag::Severity::Note;
         }
@@ -114,8 +114,8 @@ pub(super) fn flat_glass(scout: &SceneProbe) -> Vec<Finding> {
     flat.iter().filter(open).take(3).map(say).collect()
 }
 
-/// Mesh files with faces of more than three corners: name, how many, of how many, and the first of
-/// them.
+/// Returns mesh files with faces of more than three corners: path, number of such faces, number of
+/// all faces, and span of the first.
 pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, usize, Span)> {
     let one = |mesh: &MeshFile<'s>| {
         let bytes = scout.subject.files.bytes(mesh.file)?;
@@ -136,8 +136,8 @@ pub(super) fn large_faces<'s>(scout: &SceneProbe<'s>) -> Vec<(&'s str, usize, us
     scout.meshes().iter().filter_map(one).collect()
 }
 
-/// Mesh files of which the year's program loses the last line, or gives normals to other vertices
-/// than the file says.
+/// Reports mesh files whose last line that year's program drops, or whose normals it assigns to
+/// other vertices than the file does.
 pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     let mut found = Vec::new();
@@ -173,7 +173,7 @@ pub(super) fn misread(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// The first corner of a face whose normal has another number than its vertex.
+/// Returns the first corner of a face whose normal index differs from its vertex index.
 fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
     let mut start = 0;
     for line in bytes.split_inclusive(|b| *b == b'\n') {
@@ -193,7 +193,7 @@ fn other_normal(bytes: &[u8], file: u32) -> Option<Span> {
     None
 }
 
-/// Triangles that wind the other way than their neighbours.
+/// Reports triangles that wind the other way than their neighbours.
 pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes().iter().filter(|mesh| mesh.given.is_none()) {
@@ -213,7 +213,7 @@ pub(super) fn winding(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Closed meshes whose normals point inwards.
+/// Reports closed meshes whose normals point inwards.
 pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in
@@ -233,7 +233,7 @@ pub(super) fn inside_out(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Whether an object shows a mesh that is inside out, which is told of as such.
+/// Returns true if an object shows a mesh that `inside-out` reports.
 pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
     let span = scout.object_span(object);
     let turned =
@@ -241,7 +241,7 @@ pub(super) fn shows_inside_out(scout: &SceneProbe, object: u32) -> bool {
     turned.into_iter().any(|mesh| mesh.objects.iter().any(|own| own.span.start == span.start))
 }
 
-/// Normals in a file that contradict its faces, are missing on some, or are no directions.
+/// Reports normals of a file that contradict its faces, are missing on some, or have no length.
 pub(super) fn given_normals(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for mesh in scout.meshes() {

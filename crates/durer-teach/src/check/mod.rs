@@ -1,9 +1,9 @@
-//! What is wrong with a scene whose picture is black, white, empty or odd, and how to mend it.
+//! Diagnosis of scenes whose picture is black, white, empty or odd, with fixes.
 //!
-//! A [`SceneProbe`] sends a coarse grid of camera rays into the world and keeps what each found.
-//! The checks of the table [`CHECKS`] look at that, at the meshes and at the description. Every
-//! finding has a code that does not change, a place, an effect on the picture, a proposed change
-//! and, where that is mechanical, the edit of the scene's text.
+//! A [`SceneProbe`] traces a coarse grid of camera rays through the world and keeps what each
+//! found. The checks of the table [`CHECKS`] examine these probes, the meshes and the description.
+//! Every finding has a stable code, a place, an effect on the picture, a proposed change and, if
+//! that is mechanical, the edit of the scene's text.
 
 mod aim;
 mod air;
@@ -54,11 +54,11 @@ pub use repair::{Repaired, apply};
 pub use scene_probe::SceneProbe;
 pub use table::{CHECKS, Check, rank};
 
-/// Because of these nothing, or one thing alone, is seen.
+/// Findings that explain why nothing, or a single object, is visible.
 const EMPTIES: [&str; 7] =
     ["camera-inside", "camera-away", "too-small", "too-narrow", "all-missed", "hidden-behind", "below-plane"];
 
-/// What comes of some causes, and is not told beside them.
+/// Causes, and the findings that are suppressed beside each because they follow from it.
 const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("color-range", &["too-bright"]),
     ("full-ambient", &["too-bright"]),
@@ -107,8 +107,8 @@ const CONSEQUENCES: &[(&str, &[&str])] = &[
     ("epsilon", &["tiny"]),
 ];
 
-/// All findings about a scene that was read and compiled, those of its reader among them; the
-/// causes first.
+/// Returns all findings about a compiled scene, causes first, including the diagnostics of its
+/// reader.
 pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
     let scout = SceneProbe::new(subject);
     let mut found: Vec<Finding> = diagnostics.iter().cloned().map(Finding::from).collect();
@@ -117,11 +117,11 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
         let of_kind = (check.find)(&scout).into_iter();
         found.extend(of_kind.map(|finding| Finding { diagnostic: finding.diagnostic.code(check.code), ..finding }));
     }
-    // Some are meant only where nothing else says why.
+    // Drop findings that only count if nothing explains the picture.
     if found.iter().any(|finding| finding.whole && !finding.last) {
         found.retain(|finding| !finding.last);
     }
-    // A word of another year that says how light fades is why it does not here.
+    // If a foreign attenuation keyword was ignored, that is why the light does not fade.
     let fades = |finding: &Finding| {
         let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
         finding.diagnostic.code == "foreign-word" && ["attenuation", "falloff"].contains(&word.as_str())
@@ -132,27 +132,27 @@ pub fn check(subject: &Subject, diagnostics: &Diagnostics) -> Vec<Finding> {
             (finding.diagnostic.severity, finding.whole) = (Severity::Warning, true);
         }
     }
-    // A colour out of range is the cause of what is too bright; and so on.
+    // Drop findings that follow from a cause that was found.
     for (cause, consequences) in CONSEQUENCES {
         if found.iter().any(|finding| finding.diagnostic.code == *cause && finding.is_serious()) {
             found.retain(|finding| !consequences.contains(&finding.diagnostic.code));
         }
     }
-    // Where nothing is seen, each thing that is not seen is no finding of its own.
+    // If nothing is visible, do not report each invisible object.
     if found.iter().any(|finding| EMPTIES.contains(&finding.diagnostic.code) && finding.whole) {
         found.retain(|finding| finding.diagnostic.code != "unseen");
     }
     ordered(found)
 }
 
-/// The findings of the reader and the compiler alone: of a scene that cannot be rendered.
+/// Returns the findings of the reader and the compiler only, for a scene that cannot be rendered.
 pub fn reported(diagnostics: &Diagnostics) -> Vec<Finding> {
     ordered(diagnostics.iter().cloned().map(Finding::from).collect())
 }
 
-/// Errors first, then what spoils the whole picture, then the rest, then notes; among those in the
-/// order of the table, in which causes stand before what comes of them, and each kind once before
-/// any is told of again. Of many that are alike, the last one told says how many more there are.
+/// Sorts findings: errors, then warnings about the whole picture, other warnings, then notes.
+/// Within a level, the order of the table (causes before consequences), each kind once before any
+/// kind repeats. Of many findings of a kind, the last one shown counts the rest.
 fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
     let level = |finding: &Finding| match finding.diagnostic.severity {
         Severity::Error => 0,
@@ -161,7 +161,7 @@ fn ordered(mut found: Vec<Finding>) -> Vec<Finding> {
         Severity::Warning => 2,
         Severity::Note => 4,
     };
-    // Errors stay as they were found: the first may be the reason of the others.
+    // Errors keep their order: the first may be the reason for the others.
     let rank = |finding: &Finding| if level(finding) == 0 { 0 } else { table::rank(finding.diagnostic.code) };
     found.sort_by_key(|finding| (level(finding), rank(finding)));
     let mut told: Vec<(u8, &str)> = Vec::new();

@@ -1,13 +1,13 @@
-//! Names in the scene file that nothing comes of.
+//! Checks of names in the scene file that are not used.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::values;
 
-/// Things that are defined and never used.
+/// Reports definitions that are never used.
 pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
-    // What other files define is a library.
+    // Definitions in other files form a library.
     let file = scout.subject.scene.camera_span.file;
     let Some(bytes) = scout.subject.files.bytes(file) else { return Vec::new() };
     let files = (0..).map_while(|i| scout.subject.files.bytes(i).map(|bytes| (i, bytes)));
@@ -20,7 +20,7 @@ pub(super) fn unused_define(scout: &SceneProbe) -> Vec<Finding> {
             .at(**span)
             .effect("nothing of it is in the picture: `define` only gives it a name")
             .help(format!("write `use {name}` in the `Group`, where it is wanted"));
-        // Where nothing defined is used, that was forgotten.
+        // If no definition is used at all, that is probably a mistake.
         if unused.len() == defined.len() {
             diagnostic.severity = Severity::Warning;
         }

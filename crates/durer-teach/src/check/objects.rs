@@ -1,4 +1,4 @@
-//! Objects: flat ones, squashed ones, and those at the same place.
+//! Checks of objects: flat ones, squashed ones, and duplicates.
 
 use super::faces::overlapping;
 use super::finding::{Finding, MAX_SOUGHT, number};
@@ -13,10 +13,10 @@ use durer_scene::shape::{Plane, Shape};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// A box thinner than this share of its sides was squashed.
+/// A box thinner than this share of its sides is squashed.
 const SQUASHED: f32 = 1e-4;
 
-/// Triangles of the scene file without area.
+/// Reports triangles of the scene file without area.
 pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     let flat = |object: &&Object| {
         triangle(object).is_some_and(|corners| {
@@ -34,7 +34,7 @@ pub(super) fn degenerate(scout: &SceneProbe) -> Vec<Finding> {
     scout.world().objects().iter().filter(flat).map(say).collect()
 }
 
-/// Solids that no ray meets, as far as a few hundred tell.
+/// Returns solids that none of a few hundred test rays hits.
 pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     let world = scout.world();
     let empty = |&(i, object): &(usize, &Object)| {
@@ -58,7 +58,7 @@ pub(super) fn empty_solids(scout: &SceneProbe) -> Vec<u32> {
     world.objects().iter().enumerate().filter(|_| few).filter(empty).map(|(i, _)| i as u32).take(MAX_SOUGHT).collect()
 }
 
-/// Solids of which nothing is left.
+/// Reports solids that are empty.
 pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     let say = |object: u32| {
         let diagnostic = Diagnostic::warning(format!("nothing is left of the {}", scout.object(object)))
@@ -70,7 +70,7 @@ pub(super) fn empty_solid(scout: &SceneProbe) -> Vec<Finding> {
     empty_solids(scout).into_iter().map(say).collect()
 }
 
-/// Objects that a transform has made flat, or nearly so.
+/// Reports objects that a transform makes flat, or nearly so.
 pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in scout.world().objects() {
@@ -96,7 +96,7 @@ pub(super) fn squashed(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Parts of solids that a scale of theirs makes next to nothing.
+/// Reports parts of solids that their own scale makes almost flat.
 fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
     let least = |op: &MatrixOp| match op {
         MatrixOp::UniformScale(s) => s.abs(),
@@ -121,7 +121,7 @@ fn squashed_parts(object: &Written, within: bool) -> Vec<Finding> {
     }
 }
 
-/// Whether two objects have the same surface.
+/// Returns true if two objects have the same surface.
 pub(super) fn same(a: &Object, b: &Object) -> bool {
     if a.to_world != b.to_world {
         return false;
@@ -142,27 +142,27 @@ pub(super) fn same(a: &Object, b: &Object) -> bool {
     }
 }
 
-/// Objects that are at the same place twice.
+/// Reports objects that are at the same place twice.
 pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let mut places: HashMap<[u32; 6], Vec<usize>> = HashMap::new();
     let mut found = Vec::new();
     found.extend(in_plane(scout));
-    // The same surface is told of below; and of one material it does not matter which of two is
-    // seen.
+    // Identical surfaces are reported below; with equal materials it does not matter which face is
+    // visible.
     let differ =
         |&(a, b): &(usize, usize)| objects[a].material != objects[b].material && !same(&objects[a], &objects[b]);
     let faces = overlapping(scout).into_iter().filter(differ).take(MAX_SOUGHT);
     found.extend(faces.map(|(a, b)| pair(scout, a, b)));
     for (i, object) in objects.iter().enumerate() {
-        // What has no end is at one place with all others that have none.
+        // Unbounded objects share one key.
         let key = object.bounds().map_or([0; 6], |b| {
             let [x, y, z] = b.min.to_array().map(f32::to_bits);
             let [u, v, w] = b.max.to_array().map(f32::to_bits);
             [x, y, z, u, v, w]
         });
         let there = places.entry(key).or_default();
-        // Many at one place are told of as pairs with the first ones only.
+        // Compare with the first 16 only, so that many at one place stay cheap.
         if found.len() >= MAX_SOUGHT {
             break;
         }
@@ -174,7 +174,7 @@ pub(super) fn twice(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Flat things that lie in a plane, where the two cannot be told apart.
+/// Reports flat objects that lie in a plane, where depth cannot tell the two apart.
 fn in_plane(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let planes: Vec<(usize, &Plane)> = objects

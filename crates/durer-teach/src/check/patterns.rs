@@ -1,4 +1,4 @@
-//! Patterns of which nothing is seen: of one part, or finer than a pixel.
+//! Checks of patterns that are invisible: only one part shows, or cells are finer than a pixel.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent};
 use super::scene_probe::SceneProbe;
@@ -8,17 +8,17 @@ use durer_scene::material::{ColorNoise, Solid};
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material as Written;
 
-/// Steps within a pixel in which a pattern is looked at.
+/// Number of steps across a pixel at which a pattern is evaluated.
 const STEPS: u32 = 24;
-/// So many changes within a pixel are noise.
+/// Number of changes within a pixel above which a pattern is noise.
 const MAX_CHANGES: usize = 3;
-/// Cells this many times wider than all things together make no pattern.
+/// Cells this many times wider than the whole scene show no pattern.
 const COARSEST: f32 = 3.0;
-/// Fewer places tell nothing.
+/// Minimum number of visible points for a judgement.
 const FEWEST: usize = 20;
 
-/// A pattern and how its share of the first part is computed: for solids the matrix to pattern
-/// space, and [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
+/// A pattern that can be evaluated. Solids carry the matrix to pattern space and
+/// [`ShadingRules::conic_rings`](durer_render::world::ShadingRules::conic_rings).
 enum Look<'w> {
     Solid(&'w Solid, &'w glam::DAffine3, bool),
     Noise(&'w ColorNoise),
@@ -48,13 +48,13 @@ impl Look<'_> {
     }
 }
 
-/// Patterns of which the picture shows one part, or only noise.
+/// Reports patterns of which the picture shows one part, or only noise.
 pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
     for (number, written) in scout.subject.scene.materials.iter().enumerate().take(MAX_SOUGHT) {
         let Some(look) = Look::of(world, number as u32) else { continue };
-        // Its own hits alone: a pattern inside of another is seen in part.
+        // Count direct hits only: a pattern inside another is only partly visible.
         let places: Vec<(Vec3, f32)> = scout
             .seen()
             .filter(|(_, seen)| seen.material as usize == number)
@@ -105,7 +105,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// Why a pattern cannot be seen as one, if what is written tells.
+/// Explains from the description why a pattern shows no change, if it can.
 fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<(String, &'static str)> {
     let Look::Solid(solid, to_pattern, _) = look else { return None };
     if let Solid::Mix(mix) = solid {
@@ -119,7 +119,7 @@ fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<
     }
     let cell = to_pattern.inverse().matrix3;
     let cell = cell.x_axis.length().min(cell.y_axis.length()).min(cell.z_axis.length()) as f32;
-    // What has no end is as large as the rest, or as the camera is far from it.
+    // For unbounded objects use the size of the rest of the scene, or the distance from the camera.
     let size = match scout.world().bounds() {
         bounds if bounds.is_empty() => return None,
         bounds => bounds.size().max_element(),
@@ -130,8 +130,8 @@ fn without_change(scout: &SceneProbe, look: &Look, written: &Written) -> Option<
     (cell > COARSEST * size).then_some((message, help))
 }
 
-/// Textures of which one colour alone is seen: the picture has no other, or all corners of a mesh
-/// lie at one place of it.
+/// Reports textures that show a single colour: the image has no other, or all corners of a mesh
+/// have the same texture coordinates.
 pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let mut found = Vec::new();
@@ -158,7 +158,7 @@ pub(super) fn flat_texture(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// About how wide a pixel is at distance 1.
+/// Estimates the width of a pixel at distance 1.
 fn pixel(scout: &SceneProbe) -> f32 {
     let [a, b] = [0, scout.probes.len() - 1].map(|i| &scout.probes[i]);
     let (p, q) = (a.pixel, b.pixel);

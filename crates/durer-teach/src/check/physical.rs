@@ -1,5 +1,5 @@
-//! Under a path tracer: scenes in which nothing shines, lamps that shine on nothing that is seen or
-//! are enclosed in glass, and words of media without effect.
+//! Checks for path tracing: scenes without emitters, lights that are enclosed in glass, and media
+//! parameters without effect.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -11,7 +11,7 @@ use durer_scene::light::Emitter as _;
 use durer_scene::math::{Color, Vec3};
 use durer_scene::scene::Material;
 
-/// What is found of local light says nothing of paths.
+/// Checks of local lighting that do not apply to path tracing.
 const OF_LOCAL_LIGHT: &[&str] = &[
     "light-divides",
     "light-inside",
@@ -27,10 +27,10 @@ const OF_LOCAL_LIGHT: &[&str] = &[
     "seen-from-behind",
 ];
 
-/// What says why a path tracer's picture is black, where it is.
+/// Checks of local lighting that explain a black picture of a path tracer.
 const OF_DARKNESS: &[&str] = &["light-inside", "light-blocked", "light-behind", "light-faint"];
 
-/// Whether a finding means nothing here, since it is about local light.
+/// Returns true if a check of local lighting does not apply to the scene.
 pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
     let says_why = || OF_DARKNESS.contains(&code) && scout.is_dark();
     scout.is_physical() && OF_LOCAL_LIGHT.contains(&code) && !says_why()
@@ -53,7 +53,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() || !dark_sky || shines || world.lights().iter().any(|light| light.color() != Color::ZERO) {
         return Vec::new();
     }
-    // Something was meant to shine.
+    // Some material was meant to emit.
     let lamp = scout.subject.scene.materials.iter().enumerate().find(|(_, material)| match &material.value {
         Material::Principled(layers) => layers.emission_luminance > 0.0,
         _ => false,
@@ -90,7 +90,7 @@ pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Lamps without extent inside of glass: no path finds their light outside.
+/// Reports point lights inside glass, whose light no path can find from outside.
 pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if !matches!(scout.subject.job.method, Method::Path(_)) {
@@ -112,7 +112,7 @@ pub(super) fn lamp_in_glass(scout: &SceneProbe) -> Vec<Finding> {
     enclosed.collect()
 }
 
-/// Words of scattering inside of a body that change nothing.
+/// Reports scattering parameters that have no effect.
 pub(super) fn without_effect(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.is_physical() {
         return Vec::new();

@@ -1,28 +1,28 @@
-//! Whether a finished picture looks wrong.
+//! Checks of a finished picture.
 
 use durer_render::render::Statistics;
 use durer_scene::math::Color;
 
-/// Where so large a share of the pixels is cut at 1 in all channels, the picture is mostly white.
+/// Share of pixels clipped in all channels above which a picture is mostly white.
 const MAX_WHITE: f32 = 0.5;
-/// Where so large a share of the samples is left out, more is wrong than a speck.
+/// Share of rejected samples above which the cause is more than a speck.
 const MAX_REJECTED: f64 = 0.001;
 
-/// What is wrong with a picture as it is.
+/// A visible fault of a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Oddity {
-    /// All of it is black.
+    /// The whole picture is black.
     Black,
-    /// All of it has one colour.
+    /// The whole picture has one colour.
     OneColor,
-    /// Most of it is brighter than white.
+    /// Most pixels are brighter than white.
     White,
-    /// Many samples were no finite numbers.
+    /// Many samples were NaN or infinite.
     NotFinite,
 }
 
 impl Oddity {
-    /// In words, after `the picture`.
+    /// Returns the fault as words to follow `the picture`.
     pub fn words(self) -> &'static str {
         match self {
             Oddity::Black => "is wholly black",
@@ -33,13 +33,13 @@ impl Oddity {
     }
 }
 
-/// What of a picture of colours can look wrong, seen through an exposure: the factor by which its
-/// light is multiplied. Its pixels may come in any number of pieces.
+/// Accumulates pixels and finds visible faults. Pixels are multiplied by the exposure and may
+/// arrive in any number of pieces.
 #[derive(Clone, Debug)]
 pub struct Looks {
     exposure: f32,
     first: Option<Color>,
-    /// Whether some pixel has another colour than the first.
+    /// True if some pixel has another colour than the first.
     differs: bool,
     pixels: usize,
     /// Pixels that are brighter than white.
@@ -47,12 +47,12 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// Of nothing yet.
+    /// Creates an accumulator without pixels.
     pub fn new(exposure: f32) -> Self {
         Looks { exposure, first: None, differs: false, pixels: 0, cut: 0 }
     }
 
-    /// Looks at some pixels.
+    /// Adds pixels.
     pub fn add(&mut self, pixels: &[Color]) {
         let exposure = self.exposure;
         let shown = |color: &Color| (exposure * *color).clamp(Color::ZERO, Color::ONE);
@@ -64,7 +64,7 @@ impl Looks {
         self.cut += pixels.iter().filter(|pixel| exposure * pixel.min_element() > 1.001).count();
     }
 
-    /// What is wrong, if anything.
+    /// Returns the fault of the pixels so far, if there is one.
     pub fn oddity(&self, statistics: &Statistics) -> Option<Oddity> {
         if self.pixels > 1 && !self.differs {
             let first = self.first.unwrap_or(Color::ZERO);
@@ -81,7 +81,7 @@ impl Looks {
 mod tests {
     use super::*;
 
-    /// The pixels in pieces of two.
+    /// Adds the pixels in pieces of two.
     fn oddity(pixels: &[f32], exposure: f32, statistics: &Statistics) -> Option<Oddity> {
         let mut looks = Looks::new(exposure);
         let colors: Vec<Color> = pixels.iter().map(|&v| Color::splat(v)).collect();
@@ -97,9 +97,9 @@ mod tests {
         assert_eq!(judged(&[1.5, 2.0, 9.0]), Some(Oddity::OneColor));
         assert_eq!(judged(&[1.5, 2.0, 0.1]), Some(Oddity::White));
         assert_eq!(judged(&[0.0, 0.5, 1.0]), None);
-        // Light that just reaches white is not cut.
+        // White itself is not clipped.
         assert_eq!(judged(&[1.0, 1.0, 0.1]), None);
-        // Daylight in cd/m^2 is white as it is, and sound through an exposure.
+        // Daylight in cd/m^2 is white unscaled and fine with an exposure.
         let day = [900.0, 2000.0, 7000.0];
         assert_eq!(oddity(&day, 1.0, &Statistics::default()), Some(Oddity::OneColor));
         assert_eq!(oddity(&day, 1e-4, &Statistics::default()), None);

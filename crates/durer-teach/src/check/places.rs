@@ -1,12 +1,12 @@
-//! Where transforms put things, and where others would.
+//! Checks of where transforms place objects, and of corrections.
 
 use super::scene_probe::SceneProbe;
 use durer_diag::Span;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{MatrixOp, MatrixRules, Node, Object};
 
-/// Of a scene in which nothing is in the picture: the first transform that in the reverse order, or
-/// left out, would put its object there, and words for that.
+/// For a scene with nothing in the picture, returns the first transform that would bring its object
+/// into the picture if it were reversed or removed, and a sentence about it.
 pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
     let objects = scout.subject.scene.root.iter().flat_map(|root| &root.objects);
     objects.filter_map(|object| of(scout, object)).next()
@@ -14,7 +14,7 @@ pub(super) fn moved(scout: &SceneProbe) -> Option<(Span, String)> {
 
 fn of(scout: &SceneProbe, object: &Object) -> Option<(Span, String)> {
     let Node::Transform(ops, inner) = &object.node else { return None };
-    // The object at the place where its keyword is.
+    // Find the compiled object by the position of its keyword.
     let world = scout.world();
     let own =
         world.objects().iter().find(|own| own.span.file == inner.span.file && own.span.start == inner.span.start)?;

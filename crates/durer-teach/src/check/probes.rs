@@ -1,4 +1,4 @@
-//! A coarse look at the picture: a grid of camera rays, and all that made the light of each.
+//! A coarse render of the picture: a grid of camera rays with all terms of their light.
 
 use durer_diag::{Diagnostic, Files, Span};
 use durer_formats::course::place;
@@ -15,73 +15,73 @@ use durer_scene::sampler::SampleId;
 use durer_scene::scene::Scene;
 use rayon::prelude::*;
 
-/// Rays along the larger side of the picture; fewer where there are many lights, of each of which
-/// each ray asks.
+/// Rays along the larger side of the picture; fewer with many lights, because each ray asks each
+/// light.
 const RAYS: u32 = 48;
 const FEWEST_RAYS: u32 = 6;
 const MAX_QUESTIONS: u32 = 1 << 20;
-/// Levels of mirrored and transmitted rays that are looked at, and the least weight of a ray.
+/// Levels of reflected and transmitted rays, and minimum throughput of a ray.
 const BOUNCES: u32 = 4;
 const MIN_WEIGHT: f32 = 1.0 / 64.0;
 
-/// What is checked.
+/// A compiled scene to check.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The scene as written.
     pub scene: &'a Scene,
-    /// The same, compiled.
+    /// The compiled scene.
     pub world: &'a World,
-    /// Its dialect.
+    /// The scene's dialect.
     pub dialect: Dialect,
     /// The files that were read.
     pub files: &'a Files,
-    /// The picture that is to be made of it.
+    /// The render job.
     pub job: &'a Job,
-    /// What multiplies its colours before they are shown.
+    /// Factor by which colours are multiplied before display.
     pub exposure: f32,
-    /// A sample of that picture that is known not to be a finite number: column, row, number.
+    /// Column, row and index of a sample known to be NaN or infinite.
     pub rejected: Option<(u32, u32, u32)>,
 }
 
-/// What one camera ray found.
+/// Result of one camera ray.
 #[derive(Clone, Debug)]
 pub(super) struct Probe {
-    /// The pixel of the picture that it goes through.
+    /// Pixel that the ray passes through.
     pub pixel: (u32, u32),
     pub ray: Ray,
     pub color: Color,
     pub seen: Option<ProbeHit>,
 }
 
-/// The surface that a camera ray meets first, and the light on it.
+/// The first surface on a camera ray, and its light.
 #[derive(Clone, Debug)]
 pub(super) struct ProbeHit {
     pub object: u32,
     pub material: u32,
     pub t: f32,
     pub from_behind: bool,
-    /// Whether its back is left black.
+    /// True if a back is left black.
     pub black: bool,
     pub has_uv: bool,
-    /// What the ambient light adds.
+    /// Contribution of the ambient light.
     pub ambient: Color,
     pub lit: Vec<Lit>,
 }
 
-/// What one light does at a surface.
+/// Contribution of one light to a surface.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lit {
     pub light: usize,
-    /// N·L, and what arrives if nothing is in the way.
+    /// N·L, and the light that arrives if nothing occludes it.
     pub cosine: f32,
     pub arrives: Color,
-    /// The first object in the way, where it keeps light off.
+    /// First object that occludes the light.
     pub blocker: Option<u32>,
-    /// What it adds to the colour.
+    /// Contribution to the colour.
     pub adds: Color,
 }
 
-/// A scene, and what a grid of camera rays found in it.
+/// A scene and the results of a grid of camera rays.
 #[derive(Debug)]
 pub struct ProbeGrid<'a> {
     pub(super) subject: Subject<'a>,
@@ -90,7 +90,7 @@ pub struct ProbeGrid<'a> {
 }
 
 impl<'a> ProbeGrid<'a> {
-    /// Looks at a scene.
+    /// Traces the probes of a scene.
     pub(super) fn new(subject: &Subject<'a>) -> Self {
         let Job { width, height, settings, .. } = *subject.job;
         let larger = width.max(height);
@@ -107,7 +107,7 @@ impl<'a> ProbeGrid<'a> {
                 least_weight: settings.least_weight.max(MIN_WEIGHT),
                 ..settings
             },
-            // Its terms are what the checks ask for.
+            // The checks use Whitted's terms.
             method: Method::WHITTED,
             ..subject.job.clone()
         };
@@ -123,7 +123,7 @@ impl<'a> ProbeGrid<'a> {
         ProbeGrid { subject: *subject, raster, probes }
     }
 
-    /// The larger side of the picture in pixels.
+    /// Returns the larger side of the picture in pixels.
     pub(super) fn larger(&self) -> f32 {
         self.subject.job.width.max(self.subject.job.height) as f32
     }
@@ -132,18 +132,18 @@ impl<'a> ProbeGrid<'a> {
         self.subject.world
     }
 
-    /// The rays that hit something.
+    /// Iterates over the rays that hit something.
     pub(super) fn seen(&self) -> impl Iterator<Item = (&Probe, &ProbeHit)> {
         self.probes.iter().filter_map(|probe| Some((probe, probe.seen.as_ref()?)))
     }
 
-    /// How many rays see each material, or one that is mixed of it.
+    /// Counts for each material the rays that see it, directly or as part of a mix.
     pub(super) fn count_rays(&self) -> Vec<usize> {
         let materials = self.world().materials();
         let (mut direct, mut all) = (vec![0; materials.len()], vec![0; materials.len()]);
         self.seen().for_each(|(_, seen)| direct[seen.material as usize] += 1);
         for (whole, count) in direct.iter().enumerate().filter(|(_, count)| **count > 0) {
-            // A part that is in it several times counts once.
+            // A part that occurs several times in a mix counts once.
             let (mut parts, mut known) = (vec![whole], vec![false; materials.len()]);
             while let Some(part) = parts.pop() {
                 if std::mem::replace(&mut known[part], true) {
@@ -158,12 +158,12 @@ impl<'a> ProbeGrid<'a> {
         all
     }
 
-    /// Whether the scene's light is a path tracer's.
+    /// Returns true if the job uses path tracing.
     pub(super) fn is_physical(&self) -> bool {
         self.subject.job.method.transport().is_some()
     }
 
-    /// Whether light goes through an object.
+    /// Returns true if an object is transparent.
     pub(super) fn is_glass(&self, object: u32) -> bool {
         let world = self.world();
         let phong =
@@ -175,7 +175,8 @@ impl<'a> ProbeGrid<'a> {
         Names { files: self.subject.files, scene: self.subject.scene, world: self.subject.world }
     }
 
-    /// An object's keyword and line; what is a model's, by its name and place.
+    /// Names an object by its keyword and line, or, if it comes from a model, by its name and
+    /// position.
     pub(super) fn object(&self, number: u32) -> String {
         let span = self.object_span(number);
         let (line, column) = self.subject.files.position(span).unwrap_or_default();
@@ -189,32 +190,33 @@ impl<'a> ProbeGrid<'a> {
         self.world().objects()[number as usize].span
     }
 
-    /// A word of the course's first grammar, or its counterpart in that of nodes, whichever the
-    /// scene has.
+    /// Returns the keyword of the course's first grammar or of the node grammar, whichever the
+    /// scene uses.
     pub(super) fn word(&self, classic: &'static str, nodes: &'static str) -> &'static str {
         if self.subject.dialect == Dialect::F23 { nodes } else { classic }
     }
 
-    /// The text at a place.
+    /// Returns the text at a span.
     pub(super) fn text(&self, span: Span) -> String {
         let bytes = self.subject.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         String::from_utf8_lossy(bytes.unwrap_or_default()).into_owned()
     }
 
-    /// Where the value of a field is written in the block that a keyword begins.
+    /// Returns the span of a field's value in the block that a keyword opens.
     pub(super) fn value(&self, block: Span, fields: &[&str]) -> Option<Span> {
         let bytes = self.subject.files.bytes(block.file)?;
         fields.iter().find_map(|field| place::value(bytes, block, field))
     }
 
-    /// A finding at the value of a field, or at the block's keyword where it is not written.
+    /// Places a diagnostic at a field's value, or at the block's keyword if the field is not
+    /// written.
     pub(super) fn at_value(&self, diagnostic: Diagnostic, block: Span, fields: &[&str]) -> Diagnostic {
         diagnostic.at(self.value(block, fields).unwrap_or(block))
     }
 }
 
 impl ProbeHit {
-    /// What a light does here. Lights are told of in their order.
+    /// Returns the contribution of a light. Lights are stored by index.
     pub fn by(&self, light: usize) -> Option<&Lit> {
         self.lit.get(light).filter(|lit| lit.light == light)
     }

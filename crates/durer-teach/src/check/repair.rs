@@ -1,19 +1,19 @@
-//! Edits put into a scene's text.
+//! Applies edits to a scene's text.
 
 use super::finding::Finding;
 use durer_diag::Edit;
 
-/// A text with the edits of some findings in it.
+/// A text after the edits of some findings.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Repaired {
     /// The new text.
     pub bytes: Vec<u8>,
-    /// Which of the findings were mended.
+    /// Indices of the findings that were fixed.
     pub mended: Vec<usize>,
 }
 
-/// Puts the edits of findings into a file. A finding whose edits meet those of an earlier one, or
-/// lie in another file, is left as it is.
+/// Applies the edits of findings to a file. Skips a finding whose edits overlap an earlier one's or
+/// lie in another file.
 pub fn apply(bytes: &[u8], file: u32, findings: &[Finding]) -> Repaired {
     let mut edits: Vec<&Edit> = Vec::new();
     let mut mended = Vec::new();

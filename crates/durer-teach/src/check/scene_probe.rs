@@ -1,4 +1,4 @@
-//! What the checks ask of a coarse look at the picture again and again: each is found out once.
+//! Facts about the probes that several checks use, each computed once.
 
 use super::aim::{Aim, aim};
 use super::brightness::{brightest, light};
@@ -10,10 +10,10 @@ use durer_scene::math::Color;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-/// What is darker shows nothing.
+/// Brightness below which a picture shows nothing.
 const DARK: f32 = 0.02;
 
-/// A scene, and what a coarse look at its picture found.
+/// A scene, its probes, and lazily computed facts about them.
 #[derive(Debug)]
 pub struct SceneProbe<'a> {
     grid: ProbeGrid<'a>,
@@ -34,7 +34,7 @@ impl<'a> Deref for SceneProbe<'a> {
 }
 
 impl<'a> SceneProbe<'a> {
-    /// Looks at a scene.
+    /// Traces the probes of a scene.
     pub fn new(subject: &Subject<'a>) -> Self {
         SceneProbe {
             grid: ProbeGrid::new(subject),
@@ -47,39 +47,39 @@ impl<'a> SceneProbe<'a> {
         }
     }
 
-    /// How each object is seen.
+    /// Returns the visibility of each object.
     pub(super) fn visibilities(&self) -> &[Visibility] {
         self.visibilities.get_or_init(|| visibilities(self))
     }
 
-    /// What each light does to what is seen.
+    /// Returns the verdict on each light.
     pub(super) fn verdicts(&self) -> &[Verdict] {
         self.verdicts.get_or_init(|| verdicts(self, self.aims()))
     }
 
-    /// Which lights have beams that miss what is seen.
+    /// Returns for each light how its beam misses the visible points, if it does.
     pub(super) fn aims(&self) -> &[Option<Aim>] {
         let lights = 0..self.world().lights().len();
         self.aims.get_or_init(|| lights.map(|light| aim(self, light)).collect())
     }
 
-    /// The colours of the picture, exposed: of all rays, or under a path tracer of a part of them,
-    /// each the mean of a few samples.
+    /// Returns the exposed colours of the picture: one for each probe, or with a path tracer the
+    /// mean of a few samples for some of them.
     pub(super) fn light(&self) -> &[Color] {
         self.light.get_or_init(|| light(self))
     }
 
-    /// Whether a path tracer's picture is black, or nearly so.
+    /// Returns true if a path tracer's picture is black, or nearly so.
     pub(super) fn is_dark(&self) -> bool {
         self.is_physical() && !self.light().is_empty() && brightest(self.light()) < DARK
     }
 
-    /// Its mesh files.
+    /// Returns the mesh files of the scene.
     pub(super) fn meshes(&self) -> &[MeshFile<'a>] {
         self.meshes.get_or_init(|| files(self))
     }
 
-    /// How many rays see each material, or one that is mixed of it.
+    /// Returns for each material the number of rays that see it, directly or as part of a mix.
     pub(super) fn material_rays(&self) -> &[usize] {
         self.material_rays.get_or_init(|| self.count_rays())
     }

@@ -1,11 +1,11 @@
-//! Properties of objects and lights that several checks ask for.
+//! Properties of objects and lights that several checks use.
 
 use durer_render::world::{Geometry, Object};
 use durer_scene::light::{Light, PointLight, SpotLight};
 use durer_scene::math::Vec3;
 use durer_scene::shape::{Plane, Primitive, Shape as _};
 
-/// The shape of an object of one part.
+/// Returns the shape of an object of one part.
 pub(super) fn shape(object: &Object) -> Option<&Primitive> {
     match &object.geometry {
         Geometry::Primitive(shape) => Some(shape),
@@ -13,19 +13,19 @@ pub(super) fn shape(object: &Object) -> Option<&Primitive> {
     }
 }
 
-/// The plane without end that an object is, in object space.
+/// Returns the infinite plane that an object is, in object space.
 pub(super) fn plane(object: &Object) -> Option<&Plane> {
     shape(object)?.plane()
 }
 
-/// The corners of an object that is a single triangle, in object space.
+/// Returns the corners of an object that is a single triangle, in object space.
 pub(super) fn triangle(object: &Object) -> Option<[Vec3; 3]> {
     let polygons = shape(object)?.polygons();
     let [polygon] = &polygons[..] else { return None };
     <[Vec3; 3]>::try_from(&polygon[..]).ok()
 }
 
-/// Whether an object is a ball, whose place and size are judged by its center and radius.
+/// Returns true if an object is a ball, whose position and size follow from its center and radius.
 pub(super) fn is_ball(object: &Object) -> bool {
     match shape(object) {
         Some(Primitive::Sphere(_)) => true,
@@ -45,7 +45,7 @@ pub(super) fn is_ball(object: &Object) -> bool {
     }
 }
 
-/// The light whose fading with distance the scene file states.
+/// Returns a point light, whose attenuation the scene file states.
 pub(super) fn point(light: &Light) -> Option<&PointLight> {
     match light {
         Light::Point(point) => Some(point),
@@ -53,7 +53,7 @@ pub(super) fn point(light: &Light) -> Option<&PointLight> {
     }
 }
 
-/// The light whose cone the scene file states.
+/// Returns a spotlight, whose cone the scene file states.
 pub(super) fn spot(light: &Light) -> Option<&SpotLight> {
     match light {
         Light::Spot(spot) => Some(spot),

@@ -1,4 +1,4 @@
-//! Solids: parts that change nothing.
+//! Checks of solids: parts that change nothing.
 
 use super::finding::{Finding, MAX_SOUGHT};
 use super::scene_probe::SceneProbe;
@@ -6,7 +6,7 @@ use durer_diag::Diagnostic;
 use durer_scene::math::Aabb;
 use durer_scene::scene::{Node, Operation, extent};
 
-/// Parts that are cut away where the first is not, as far as boxes tell.
+/// Reports subtracted parts that do not overlap the first part, judged by their bounds.
 pub(super) fn idle_part(scout: &SceneProbe) -> Vec<Finding> {
     let scene = scout.subject.scene;
     let mut found = Vec::new();

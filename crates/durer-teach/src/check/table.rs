@@ -1,4 +1,4 @@
-//! The table of checks, in the order in which findings are told: causes before what comes of them.
+//! The table of checks, in the order of reporting: causes before their consequences.
 
 use super::finding::Finding;
 use super::scene_probe::SceneProbe;
@@ -7,14 +7,14 @@ use super::{
     objects, patterns, physical, solid, unseen, view, year,
 };
 
-/// One kind of finding.
+/// A kind of finding.
 #[derive(Clone, Copy, Debug)]
 pub struct Check {
-    /// Its code.
+    /// Stable code.
     pub code: &'static str,
-    /// What it means.
+    /// Short description.
     pub about: &'static str,
-    /// Looks for it; what the reader or the compiler reports, nobody looks for again.
+    /// Runs the check; empty for codes that the reader or the compiler reports.
     pub(super) find: fn(&SceneProbe) -> Vec<Finding>,
 }
 
@@ -24,13 +24,13 @@ fn reported(_: &SceneProbe) -> Vec<Finding> {
 
 macro_rules! checks {
     ($($code:literal: $about:literal, $find:expr;)+) => {
-        /// All kinds of findings.
+        /// Every kind of finding.
         pub const CHECKS: &[Check] = &[$(Check { code: $code, about: $about, find: $find },)+];
     };
 }
 
 checks! {
-    // What the reader and the compiler report.
+    // Reported by the reader and the compiler.
     "syntax": "a word or number that is not understood", reported;
     "unknown-word": "a word that means nothing where it stands", reported;
     "unclosed-block": "a brace that is missing", reported;
@@ -44,7 +44,7 @@ checks! {
     "bad-file": "a mesh or picture that cannot be used", reported;
     "open-solid": "a part of a solid that is not closed", reported;
     "no-objects": "nothing to be seen", view::no_objects;
-    // Where the camera is.
+    // The camera.
     "far-origin": "a scene so far from the origin that numbers have no digits left for its shapes", lens::far_origin;
     "epsilon": "a scene smaller than the distance at which this year's program lets shadow rays begin", lens::below_epsilon;
     "camera-inside": "the camera is inside an object", view::inside;
@@ -66,7 +66,7 @@ checks! {
     "stretched": "a picture that is not square, under a program that stretches it", year::stretched;
     "plane-normal": "a plane whose normal is not of length 1", year::plane_normal;
     "out-of-scale": "an object far larger or smaller than most", extent::out_of_scale;
-    // Light.
+    // Lights.
     "no-light": "no light", reported;
     "no-emitter": "a scene for paths in which nothing shines", physical::no_emitter;
     "thick-fog": "fog that keeps all light off", air::thick_fog;
@@ -142,7 +142,8 @@ checks! {
     "mesh-file": "something in a mesh file that was passed over", reported;
 }
 
-/// The place of a code in the order of findings; what has none stands before the notes at the end.
+/// Returns the position of a code in the order of reporting; unknown codes come before the final
+/// notes.
 pub fn rank(code: &str) -> usize {
     let of = |code: &str| CHECKS.iter().position(|check| check.code == code);
     of(code).or(of("foreign-word")).unwrap_or(CHECKS.len())

@@ -1,4 +1,4 @@
-//! Parts of the checks that no scene shows alone.
+//! Tests of parts of the checks that no scene covers alone.
 
 use super::mesh_files::topology::Topology;
 use super::within::around;
@@ -10,7 +10,7 @@ use durer_scene::math::random::Random;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::{Cone, Cuboid, Cylinder, Ellipsoid, Primitive, Shape, Sphere, Torus};
 
-/// A torus of rows times rows squares, each cut into two triangles that face outwards.
+/// Builds a torus of `rows` by `rows` squares, each cut into two triangles that face outwards.
 fn torus(rows: u32) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let turn = |i: u32| fp::sin_cos_degrees(f64::from(i) * 360.0 / f64::from(rows));
     let corner = |i: u32, j: u32| {
@@ -32,11 +32,11 @@ fn a_sound_mesh_is_closed_and_faces_outwards() {
     let (positions, triangles) = torus(24);
     let topology = Topology::of(&positions, &triangles);
     assert!(topology.is_closed() && topology.turned.is_empty() && topology.degenerate.is_empty());
-    // A torus of radii R and r encloses 2 pi^2 R r^2; its polygons lie a little within.
+    // A torus of radii R and r encloses 2 pi^2 R r^2; its polygons enclose a little less.
     let exact = 2.0 * std::f64::consts::PI * std::f64::consts::PI * 3.0;
     let volume = topology.volume / 6.0;
     assert!(volume < exact && volume > 0.95 * exact, "{volume} of {exact}");
-    // Each corner with a number of its own changes nothing: corners at the same place are one.
+    // Separate corners for each triangle change nothing: equal positions are merged.
     let apart: Vec<Vec3> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
     let own: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
     assert!(Topology::of(&apart, &own).is_closed());
@@ -63,7 +63,7 @@ fn turned_triangles_are_told_from_the_others() {
 #[test]
 fn holes_and_crowds_are_counted() {
     let (positions, mut triangles) = torus(12);
-    // Each triangle that is taken away leaves three edges, if it has no neighbour that was taken.
+    // Each removed triangle leaves three open edges if no neighbour was removed.
     for taken in 1..4 {
         triangles.remove(taken * 40);
         let topology = Topology::of(&positions, &triangles);
@@ -96,7 +96,7 @@ fn points_are_found_inside_what_is_around_them() {
         for _ in 0..300 {
             let local = 1.5 * random.point();
             let point = affine.transform_point3(local.as_dvec3()).as_vec3();
-            // Where rounding decides, either is right.
+            // Either answer is right within rounding.
             let near = |far: f64| shape.inside(local.as_dvec3() * (1.0 + far));
             if near(1e-4) != near(-1e-4) {
                 continue;
@@ -123,7 +123,7 @@ fn values_are_found_where_they_are_written() {
     };
     assert_eq!(value(0, "center"), Some("1 2.5 -3"));
     assert_eq!(value(0, "radius"), Some("4"));
-    // Of several the last counts; those of inner blocks are none of this one's.
+    // The last of several values counts; values of inner blocks do not.
     assert_eq!(value(1, "radius"), Some("6"));
     assert_eq!(value(1, "offset"), None);
     assert_eq!(place::block(text, keyword(0)).map(|s| (s.start, s.end)), Some((11, 46)));
@@ -141,7 +141,7 @@ fn edits_are_put_in_together_unless_they_meet() {
     let findings = [
         finding(&[(20, 22, "1")]),
         finding(&[(11, 12, "2"), (30, 31, "5 5 5")]),
-        // Meets the first one's, and is beyond the end.
+        // Overlaps the first edit, or is beyond the end.
         finding(&[(19, 21, "x")]),
         finding(&[(40, 41, "x")]),
         finding(&[]),
@@ -179,7 +179,7 @@ fn causes_stand_before_what_comes_of_them() {
         "unused-material",
     ];
     assert_eq!(codes, expected);
-    // Of many that are alike, few are told.
+    // Of many alike, only a few are reported.
     let many = ordered((0..9).map(|_| finding(warning, "same-place", false)).collect());
     assert!(many.len() < 6, "{many:?}");
     assert!(many.last().unwrap().diagnostic.message.ends_with("more of this kind"));

@@ -1,4 +1,4 @@
-//! What is not in the picture: beside it, hidden, far away, too small, or flat.
+//! Checks of objects that are invisible: outside the picture, hidden, far away, too small, or flat.
 
 use super::finding::{Finding, MAX_SOUGHT, counted, number, vector};
 use super::scene_probe::SceneProbe;
@@ -9,14 +9,14 @@ use durer_render::world::{Geometry, Object};
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::scene::Node;
 
-/// Of more objects, some may be out of sight.
+/// Number of objects above which some may be out of sight.
 const FEW_OBJECTS: usize = 8;
 
-/// Objects of which nothing is in the picture.
+/// Reports objects that are nowhere in the picture.
 pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     let visibilities = scout.visibilities();
     let nothing: Vec<u32> = nothing_of(scout);
-    // In a large scene something is always beside the picture or behind something.
+    // In a large scene some objects are always outside the picture or hidden.
     let mut found = far_away(scout);
     let missing =
         visibilities.iter().filter(|sight| matches!(sight, Visibility::Outside | Visibility::Hidden(_))).count();
@@ -27,18 +27,18 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     let out: Vec<u32> = all.clone().filter(|&i| visibilities[i as usize] == Visibility::Outside).collect();
     let hidden: Vec<(u32, u32)> = all
         .filter_map(|i| match visibilities[i as usize] {
-            // What is behind glass, or in a mirror's sight, is seen.
+            // Objects behind glass, or seen in a mirror, are visible.
             Visibility::Hidden(by) if !scout.is_glass(by) && found.is_empty() => Some((i, by)),
             _ => None,
         })
-        // A triangle behind another is the far side of what they are parts of.
+        // A triangle behind another is the far side of a body.
         .filter(|&(i, by)| ![i, by].iter().all(|&object| is_triangle(scout, object)))
-        // Two at one place are told of as that.
+        // `same-place` reports duplicates.
         .filter(|&(i, by)| {
             !super::objects::same(&scout.world().objects()[i as usize], &scout.world().objects()[by as usize])
         })
         .collect();
-    // Where most of a small scene is lost, that is no chance.
+    // Warn if most of a small scene is missing: probably a mistake.
     let bounded = scout.world().objects().iter().filter(|object| object.bounds().is_some()).count();
     let most = |lost: usize| lost >= 2 && lost * 2 >= bounded && visibilities.len() <= FEW_OBJECTS;
     let severity = |lost: usize| if most(lost) { Severity::Warning } else { Severity::Note };
@@ -51,8 +51,8 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
                 scout.object(first)
             ),
         };
-        // What is out of the picture may stand there for its shadow, or its light; not if next to
-        // nothing is left.
+        // An object outside the picture may be there for its shadow or its light, unless almost
+        // nothing else is left.
         let own = |(_, seen): &(_, &crate::check::probes::ProbeHit)| {
             scout.world().objects()[seen.object as usize].bounds().is_some()
         };
@@ -81,7 +81,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
             (false, true) => "move it out, or make the other smaller, or move that",
             (false, false) => "is it on the wrong side of the other, or the other in the way?",
         };
-        // What a thing merely stands behind may be meant.
+        // An object may stand behind another on purpose.
         let one = hidden.iter().all(|(_, other)| *other == by);
         let severity = if plane || inside || one { severity(hidden.len()) } else { Severity::Note };
         let diagnostic = Diagnostic { severity, ..Diagnostic::note(message) }
@@ -103,7 +103,7 @@ pub(super) fn unseen(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// The number of a scale below zero around a thing, and where it is written.
+/// Returns the negative scale around an object: its span and its replacement.
 fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
     let object = &scout.world().objects()[number as usize];
     object.to_world.as_ref().filter(|to_world| {
@@ -125,7 +125,7 @@ fn mirrored(scout: &SceneProbe, number: u32) -> Option<(Span, String)> {
     None
 }
 
-/// Things of which there is nothing: solids that are empty, triangles and meshes without area.
+/// Returns objects without a surface: empty solids, triangles and meshes without area.
 fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     let mut nothing = super::objects::empty_solids(scout);
     let flat = |[a, b, c]: [Vec3; 3]| (b - a).cross(c - a).length_squared() == 0.0;
@@ -141,18 +141,18 @@ fn nothing_of(scout: &SceneProbe) -> Vec<u32> {
     nothing
 }
 
-/// Whether one object is wholly inside another, as far as its middle tells.
+/// Returns true if the centre of one object is inside another.
 fn holds(scout: &SceneProbe, outer: u32, inner: u32) -> bool {
     let middle = scout.world().objects()[inner as usize].bounds().map(|bounds| bounds.center());
     middle.is_some_and(|middle| super::within::around(scout.world(), middle).contains(&outer))
 }
 
-/// Things smaller than a pixel.
+/// Reports objects smaller than a pixel.
 pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     let objects = scout.world().objects();
     let small = |(index, object): (usize, &Object)| {
         let bounds = object.bounds().filter(|bounds| !bounds.is_empty())?;
-        // Nobody makes a mesh of many triangles to be a dot.
+        // A mesh of many triangles is not meant to be a dot.
         let least = if matches!(&object.geometry, Geometry::Mesh(tree) if tree.mesh.len() > 50) { 6.0 } else { 1.5 };
         let size = pixels(scout, bounds).filter(|size| *size < least)?;
         let looked = super::visibility::rays_to(scout, bounds.center());
@@ -163,7 +163,7 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
         ))
     };
     let all: Vec<_> = objects.iter().enumerate().take(MAX_SOUGHT).filter_map(small).collect();
-    // A swarm of tiny things is one; and all that is tiny together is told of together.
+    // A swarm of tiny objects is intended, and `too-small` covers a scene that is tiny as a whole.
     let bounded = objects.iter().filter(|object| object.bounds().is_some()).count();
     if objects.len() > FEW_OBJECTS || all.len() == bounded || scout.seen().next().is_none() {
         return Vec::new();
@@ -182,7 +182,7 @@ pub(super) fn tiny(scout: &SceneProbe) -> Vec<Finding> {
     all.into_iter().map(say).collect()
 }
 
-/// Landscapes without heights.
+/// Reports height fields without heights.
 pub(super) fn flat_field(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     let mut all: Vec<&durer_scene::scene::Object> =
@@ -216,7 +216,7 @@ fn is_triangle(scout: &SceneProbe, object: u32) -> bool {
     triangle(&scout.world().objects()[object as usize]).is_some()
 }
 
-/// Objects far from all that is seen: thrown away by a transform, say.
+/// Reports objects far from everything visible, for example moved away by a transform.
 fn far_away(scout: &SceneProbe) -> Vec<Finding> {
     let both = || scout.world().objects().iter().zip(scout.visibilities()).enumerate();
     let seen =

@@ -1,4 +1,4 @@
-//! What each light does to what is seen, and why it does nothing.
+//! Judges what each light contributes to the visible points, and why it contributes nothing.
 
 use super::aim::Aim;
 use super::probes::{Lit, ProbeGrid, ProbeHit};
@@ -9,45 +9,45 @@ use durer_scene::camera::Projection;
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::{Color, Ray, Vec3};
 
-/// What adds less than this to a colour is not seen in eight bits.
+/// Half a step of eight bits: smaller contributions are invisible.
 pub(super) const VISIBLE: f32 = 1.0 / 512.0;
-/// Of more lights, the rest is taken to work.
+/// Number of lights that are judged; the rest count as working.
 pub(super) const MAX_JUDGED: usize = 500;
-/// A light that adds something to a smaller share of what is seen might as well add nothing.
+/// A light that contributes to a smaller share of the visible points counts as useless.
 const SHARE: f32 = 0.002;
-/// Where more of what faces a light than this is in shadow, the light is kept off.
+/// A light is blocked if more than this share of the points facing it is in shadow.
 const MAX_BLOCKED: f32 = 0.95;
-/// A roof over all things keeps light off so large a share of what faces it.
+/// Share of the points facing a light that a roof over all objects shadows.
 const ROOFED: f32 = 0.6;
-/// Where all that arrives of all lights is less than this, nobody sees that there are any.
+/// Total light below which the lights are practically invisible.
 const MAX_WEAK: f32 = 0.06;
-/// Below this cosine light hardly falls on a surface, but goes along it.
+/// Cosine below which light grazes a surface.
 pub(super) const GRAZING: f32 = 0.08;
 
-/// What a light does to what is seen.
+/// Judgement of a light.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Verdict {
-    /// It adds to the picture, or there is nothing that it could add to.
+    /// The light contributes to the picture, or nothing visible could receive it.
     Works,
-    /// It has no colour.
+    /// The colour is black.
     Black,
-    /// It divides by zero, or by less.
+    /// The attenuation divides by zero or a negative number.
     Divides,
-    /// It is inside this object.
+    /// The light is inside this object.
     Inside(u32),
-    /// This object, more than others, keeps it off what faces it.
+    /// This object blocks the light more than others do.
     Blocked(u32),
-    /// What is seen faces away from it.
+    /// The visible surfaces face away from the light.
     Behind,
-    /// Its beam does not go to what is seen.
+    /// The beam misses the visible surfaces.
     Missing,
-    /// At most so much of it arrives.
+    /// At most this much light arrives.
     Faint(f32),
-    /// What it shines on has none of its colours.
+    /// The light and the surfaces have no colour in common.
     Cancelled,
 }
 
-/// The verdict on each light of the world.
+/// Judges each light of the world.
 pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
     let judged = |light| if light < MAX_JUDGED { verdict(grid, light, aims) } else { Verdict::Works };
     let mut verdicts: Vec<Verdict> = (0..grid.world().lights().len()).map(judged).collect();
@@ -60,7 +60,8 @@ pub(super) fn verdicts(grid: &ProbeGrid, aims: &[Option<Aim>]) -> Vec<Verdict> {
     verdicts
 }
 
-/// What arrives of a few lights that work, where all of them together hardly count.
+/// Returns the light that arrives from up to three working lights if all together are almost
+/// invisible.
 fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     if verdicts.is_empty() || verdicts.len() > 3 || verdicts.iter().any(|verdict| *verdict != Verdict::Works) {
         return None;
@@ -73,8 +74,7 @@ fn weak_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> Option<f32> {
     (arrives > 0.0 && arrives < MAX_WEAK && adds < MAX_WEAK).then_some(arrives)
 }
 
-/// Whether what all lights together shine on has none of their colours, on nearly all that they
-/// reach.
+/// Returns true if almost all surfaces that the lights reach share no colour with them.
 fn cancelled_together(grid: &ProbeGrid, verdicts: &[Verdict]) -> bool {
     let materials = grid.world().materials();
     if !verdicts.contains(&Verdict::Works) || verdicts.iter().any(|v| !matches!(v, Verdict::Works | Verdict::Cancelled))
@@ -116,7 +116,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
         return Verdict::Missing;
     }
     let visible = all.iter().filter(|lit| lit.adds.abs().max_element() > VISIBLE).count();
-    // A few lights are each meant to be seen.
+    // With only a few lights, each is meant to be visible.
     let most = all.iter().map(|lit| lit.adds.abs().max_element()).fold(0.0, f32::max);
     let arrives = all.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
     if grid.world().lights().len() <= 3 && most > VISIBLE && most < 6.0 * VISIBLE && arrives < 12.0 * VISIBLE {
@@ -136,7 +136,7 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     let blocked: Vec<u32> = facing.iter().filter_map(|lit| lit.blocker).collect();
     if facing.len() - blocked.len() > all.len() / 50 && !is_blocked {
         let most = facing.iter().map(|lit| lit.arrives.abs().max_element()).fold(0.0, f32::max);
-        // What lies nearly along the light is dark whatever its colour.
+        // At a grazing angle a surface is dark whatever its colour.
         let lit = facing.iter().filter(|lit| lit.blocker.is_none() && lit.cosine > GRAZING);
         let (full, lost) = lit
             .filter(|lit| lit.arrives.abs().max_element() > 4.0 * VISIBLE)
@@ -157,15 +157,15 @@ fn verdict(grid: &ProbeGrid, number: usize, aims: &[Option<Aim>]) -> Verdict {
     }
 }
 
-/// Whether something keeps a light off nearly all that faces it: a few pixels at the horizon may be
-/// lit.
+/// Returns true if almost all points that face a light are in shadow; a few pixels at the horizon
+/// may be lit.
 fn nearly_blocked(all: &[&Lit]) -> bool {
     let facing: Vec<&&Lit> = all.iter().filter(|lit| lit.cosine > 1e-3).collect();
     let blocked = facing.iter().filter(|lit| lit.blocker.is_some()).count();
     blocked as f32 > MAX_BLOCKED * facing.len() as f32 && facing.len() * 5 > all.len()
 }
 
-/// Whether one thing keeps a light off all others that have an end and face it, and off most of the
+/// Returns true if one object shadows all other bounded objects that face a light, and most of the
 /// rest.
 fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     let objects = grid.world().objects();
@@ -182,8 +182,7 @@ fn roofed(grid: &ProbeGrid, light: usize) -> bool {
     count > 20 && covered as f32 > MAX_BLOCKED * count as f32 && dark as f32 > ROOFED * all as f32
 }
 
-/// Of some objects the one that is in the way of a light at the most places; each may be in the way
-/// of another.
+/// Returns the object that blocks a light at the most points; objects may block each other.
 fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> {
     let (common, lamp) = (most_common(blocked)?, &grid.world().lights()[light]);
     let places = grid.seen().filter(|(_, seen)| seen.by(light).is_some_and(|lit| lit.blocker.is_some()));
@@ -199,11 +198,12 @@ fn main_blocker(grid: &ProbeGrid, light: usize, blocked: &[u32]) -> Option<u32> 
         all.extend(hit);
     }
     let count = |object: u32| all.iter().filter(|other| **other == object).count();
-    // What is hit first most often is told of, unless something else is in the way at more places.
+    // Report the object that is hit first most often, unless another one blocks the light at more
+    // points.
     most_common(&all).filter(|other| count(*other) * 10 > count(common) * 11).or(Some(common))
 }
 
-/// The seen plane that is between the camera and a light, if one is first of all.
+/// Returns the visible plane between the camera and a light, if it is the first hit.
 fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     let point = point(light)?;
     let world = grid.world();
@@ -213,8 +213,8 @@ fn behind_plane(grid: &ProbeGrid, light: &Light) -> Option<u32> {
     (is_seen && world.objects()[hit.object as usize].bounds().is_none()).then_some(hit.object)
 }
 
-/// Whether an object around a light lets nothing out: it blocks something, or nothing that is seen
-/// faces the light.
+/// Returns true if an object around a light lets none out: it blocks the light, or no visible
+/// surface faces the light.
 fn keeps_light(grid: &ProbeGrid, object: u32, all: &[&Lit]) -> bool {
     let shadows = grid.subject.job.settings.shadows;
     let blocks = all.iter().any(|lit| lit.blocker == Some(object));
@@ -227,7 +227,7 @@ pub(super) fn most_common(objects: &[u32]) -> Option<u32> {
     sorted.chunk_by(|a, b| a == b).max_by_key(|same| same.len()).map(|same| same[0])
 }
 
-/// What the light of a point is divided by: its three factors.
+/// Returns the three attenuation factors of a point light.
 pub(super) fn divisor(light: &Light) -> Option<Vec3> {
     point(light)?.attenuation
 }

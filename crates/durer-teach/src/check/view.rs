@@ -1,4 +1,4 @@
-//! Where the camera stands and looks.
+//! Checks of the camera's position and direction.
 
 use super::finding::{Finding, number, vector};
 use super::hidden::{ground, plane_before};
@@ -15,13 +15,13 @@ use durer_scene::camera::{Camera, Projection};
 use durer_scene::math::{Aabb, Color, Vec3, fp};
 use durer_scene::scene::{Group, Node};
 
-/// A scene in which nothing is.
+/// Reports a scene without objects.
 pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
-    // Solids of which nothing is left are told of as that.
+    // `empty-solid` reports empty solids.
     let solid = |object: &Node| matches!(object, Node::Solid(..));
     let empty = |root: &&Group| scout.world().objects().is_empty() && !root.objects.iter().any(|o| solid(&o.node));
     let Some(root) = scout.subject.scene.root.as_ref().filter(empty) else { return Vec::new() };
-    // Models and scenes as JSON have no such word.
+    // Models and JSON scenes have no `Group` keyword.
     let file = scout.subject.scene.camera_span.file;
     let group = scout.subject.files.bytes(file).is_some_and(|bytes| section(bytes, file, "Group").is_some());
     let diagnostic = match group && root.objects.is_empty() {
@@ -31,7 +31,7 @@ pub(super) fn no_objects(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic.effect("every ray misses; the whole picture is background")).whole(true)]
 }
 
-/// Objects that are no room for others, but around the eye.
+/// Reports objects around the camera, except rooms.
 pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     if !has_eye(scout) {
         return Vec::new();
@@ -41,9 +41,9 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = Vec::new();
     for object in around(scout.world(), pose.center) {
         let own = scout.seen().filter(|(_, seen)| seen.object == object).count();
-        // A room has things in it, and light.
+        // A room contains other objects and light.
         let dark = !physical && all_fail(scout) && scout.verdicts().contains(&Verdict::Blocked(object));
-        // Walls that are seen from behind where backs are not shaded are no room's.
+        // Unshaded backs are not the walls of a room.
         let backs = scout.seen().filter(|(_, seen)| seen.object == object && seen.from_behind).count();
         let walls = !physical && !scout.subject.job.settings.shade_back && backs * 50 > rays;
         if own * 100 < rays * 99 && !dark && !walls {
@@ -77,14 +77,14 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     found
 }
 
-/// The first place beyond a box on the way from a point inside it, with a little room.
+/// Returns a point outside a box, a little beyond the exit of a ray that starts inside.
 fn leave(bounds: Aabb, from: Vec3, direction: Vec3) -> Vec3 {
     let direction = direction.normalize_or(Vec3::Z);
     let way = bounds.clip(from, direction).map_or(0.0, |(_, leave)| leave);
     from + 1.5 * way * direction
 }
 
-/// What the camera should see: the box around all that has an end, else the nearest place of a
+/// Returns what the camera should see: the bounds of all bounded objects, or the nearest point of a
 /// plane.
 pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     let (world, eye) = (scout.world(), scout.world().camera().pose().center);
@@ -102,7 +102,7 @@ pub(super) fn target(scout: &SceneProbe) -> Option<Aabb> {
     world.objects().iter().find_map(foot).map(|place| Aabb::around([place]))
 }
 
-/// Whether there are things with an end and none of them is in the picture, or nothing is at all.
+/// Returns true if no bounded object is in the picture.
 fn all_outside(scout: &SceneProbe) -> bool {
     let world = scout.world();
     let bounded = || {
@@ -119,7 +119,7 @@ fn all_outside(scout: &SceneProbe) -> bool {
     }
 }
 
-/// The camera looks past everything, and the middle of things is not in the picture.
+/// Reports a camera that looks past everything, with the centre of the scene outside the picture.
 pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     let Some(bounds) = target(scout).filter(|_| all_outside(scout)) else { return Vec::new() };
     let (world, span) = (scout.world(), scout.subject.scene.camera_span);
@@ -129,7 +129,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     if aims(scout, center) || behind {
         return Vec::new();
     }
-    // A picture that is far too small looks past things too.
+    // A field of view that is far too narrow also misses the objects.
     if aims_widely(scout, center) && !super::extent::too_narrow(scout).is_empty() {
         return Vec::new();
     }
@@ -154,8 +154,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     }
     let to = center - pose.center;
     let angle = degrees(pose.direction, to);
-    // With an `up` that says nothing the picture may be turned any way; far from its middle that
-    // does not matter.
+    // With a degenerate `up` the picture may be rotated; only far off-axis does that not matter.
     let turned = pose.up.normalize_or_zero().cross(pose.direction.normalize_or_zero()).length() < 1e-3;
     if turned && angle < 60.0 {
         return Vec::new();
@@ -169,7 +168,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
         help += "; `direction` is a direction, not the point to look at";
     }
     let diagnostic = match (moved, scout.value(span, &["direction"])) {
-        // Which of the two is wrong nobody knows.
+        // Either the transform or the camera may be wrong.
         (Some((place, _)), _) => diagnostic.help(help).at(place).related(span, "the camera"),
         (None, Some(_)) => mended(scout, diagnostic.help(help), "direction", to),
         (None, None) => diagnostic.help(help).at(span),
@@ -177,7 +176,7 @@ pub(super) fn away(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Whether a camera of usual width would see a place.
+/// Returns true if a camera of usual field of view would see a point.
 fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
     let world = scout.world();
     let to = place - world.camera().pose().center;
@@ -191,7 +190,7 @@ fn aims_widely(scout: &SceneProbe, place: Vec3) -> bool {
     }
 }
 
-/// A vector of the camera is to be another.
+/// Adds the edit that replaces a vector of the camera.
 fn mended(scout: &SceneProbe, diagnostic: Diagnostic, field: &str, value: Vec3) -> Diagnostic {
     let span = scout.subject.scene.camera_span;
     match scout.value(span, &[field]).filter(|_| value != Vec3::ZERO || field == "center") {
@@ -205,7 +204,7 @@ fn degrees(a: Vec3, b: Vec3) -> f32 {
     fp::atan2(a.cross(b).length(), a.dot(b)).to_degrees()
 }
 
-/// The names of what is seen instead.
+/// Names the objects that are visible instead.
 fn only_seen(scout: &SceneProbe) -> String {
     let mut objects: Vec<u32> = scout.seen().map(|(_, seen)| seen.object).collect();
     objects.sort_unstable();
@@ -216,7 +215,7 @@ fn only_seen(scout: &SceneProbe) -> String {
     }
 }
 
-/// By how much the ray that comes nearest misses the ball around an object.
+/// Describes by how much the closest ray misses an object's bounding sphere.
 fn nearest(scout: &SceneProbe) -> String {
     let world = scout.world();
     let balls = world.objects().iter().enumerate().filter_map(|(i, object)| {
@@ -238,14 +237,14 @@ fn nearest(scout: &SceneProbe) -> String {
     }
 }
 
-/// The picture is empty although the camera looks at things: they are too small, or there is
-/// nothing of them.
+/// Reports a picture that is empty although the camera looks at the objects: they are too small or
+/// empty.
 pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     if scout.seen().next().is_some() || world.objects().is_empty() {
         return Vec::new();
     }
-    // What is too small for the grid of rays is no hole.
+    // Objects may be visible between the probes.
     let hit = scout.visibilities().contains(&Visibility::Seen);
     let Some(bounds) = target(scout).filter(|bounds| !hit && aims(scout, bounds.center())) else { return Vec::new() };
     let mut diagnostic = Diagnostic::warning("every ray misses, though the camera looks at the middle of the scene")
@@ -259,8 +258,8 @@ pub(super) fn missed(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).last()]
 }
 
-/// Planes that pass through the middle of most things: a floor with another axis for its normal,
-/// say.
+/// Reports planes through the middle of most objects, for example a floor with the wrong axis as
+/// its normal.
 pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let boxes: Vec<[Vec3; 8]> =
@@ -280,7 +279,7 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
         !clear && cut >= 2 && cut * 3 >= boxes.len() * 2
     };
     let say = |number: u32| {
-        // Things may well be sunk into a floor.
+        // Objects may be sunk into a floor on purpose.
         let floor = ground(scout, number).is_some_and(|(n, _)| n.dot(world.camera_frame().up).abs() > 0.8);
         let severity = if floor { Severity::Note } else { Severity::Warning };
         let message = format!("the {} passes through the middle of most things", scout.object(number));
@@ -293,7 +292,7 @@ pub(super) fn plane_through(scout: &SceneProbe) -> Vec<Finding> {
     (0..world.objects().len() as u32).filter(through).take(2).map(say).collect()
 }
 
-/// A camera whose `up` points into the ground on which all things stand.
+/// Reports a camera whose `up` points into the ground on which all objects stand.
 pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let (eye, things) = (world.camera().pose().center, world.bounds());
@@ -305,8 +304,8 @@ pub(super) fn upside_down(scout: &SceneProbe) -> Vec<Finding> {
     let stand = !things.is_empty() && things.corners().iter().all(|p| height(p) > -0.1 * size);
     let pose = world.camera().pose();
     let seen = scout.seen().any(|(_, seen)| seen.object == number);
-    // A ceiling from which things hang is as good as a ground; that things stand on it tells which
-    // it is.
+    // A ceiling from which objects hang would look the same; objects that touch the plane show that
+    // it is the ground.
     let lowest = things.corners().iter().map(height).fold(f32::INFINITY, f32::min);
     if !stand || !seen || lowest > 0.3 * size || world.camera_frame().up.dot(n) > -0.3 || pose.up.dot(n) > 0.1 {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! How each object is seen: in the picture, behind another, or not at all.
+//! Visibility of each object: in the picture, hidden by another, or outside.
 
 use super::probes::ProbeGrid;
 use super::shapes::triangle;
@@ -6,26 +6,26 @@ use durer_render::world::{Geometry, Object};
 use durer_scene::camera::{Camera, CameraSample, Projection};
 use durer_scene::math::{Aabb, Ray, Vec2, Vec3};
 
-/// How an object is seen.
+/// Visibility of an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Visibility {
-    /// Some of it is in the picture.
+    /// Some of the object is in the picture.
     Seen,
-    /// Some of it would be, but for another object.
+    /// The object is in the picture, but behind this one.
     Hidden(u32),
-    /// None of it lies in the picture.
+    /// The object is outside the picture.
     Outside,
-    /// It has no end, or there is nothing of it that could be aimed at.
+    /// The object is unbounded, or empty.
     Unknown,
 }
 
-/// Objects beyond this number are not looked for one by one.
+/// Number of objects that are tested one by one.
 const MAX_OBJECTS: usize = 200;
-/// Corners of a mesh that are looked for.
+/// Number of corners of a mesh that are tested.
 const MAX_CORNERS: usize = 40;
 
-/// The sight of each object. What a ray of the grid hit is seen; of the others, points are aimed
-/// at.
+/// Returns the visibility of each object. An object that no probe hit is tested by aiming at points
+/// of it.
 pub(super) fn visibilities(grid: &ProbeGrid) -> Vec<Visibility> {
     let objects = grid.world().objects();
     let mut visibilities = vec![Visibility::Unknown; objects.len()];
@@ -54,7 +54,7 @@ fn sight(grid: &ProbeGrid, number: u32, object: &Object) -> Visibility {
     sight
 }
 
-/// The camera's rays to a point that lies in the picture.
+/// Returns the camera rays to a point, if it projects into the picture.
 pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
     let (world, mut places) = (grid.world(), Vec::new());
     world.camera().project(world.camera_frame(), point, Vec2::splat(0.5), &mut |place| places.push(place));
@@ -63,13 +63,13 @@ pub(super) fn rays_to(grid: &ProbeGrid, point: Vec3) -> Vec<Ray> {
     inside.filter_map(|place| world.camera().ray(world.camera_frame(), &CameraSample::at(place))).collect()
 }
 
-/// The upper right corner of the picture in the square that the camera covers.
+/// Returns the upper right corner of the picture in the camera's square.
 pub(super) fn corner(grid: &ProbeGrid) -> Vec2 {
     grid.raster.point(Vec2::new(grid.raster.width as f32, 0.0)).abs()
 }
 
-/// Points of an object in the world: corners of triangles and their middles, else a grid through
-/// its box.
+/// Returns test points of an object in world space: corners and centres of triangles, otherwise a
+/// grid through the bounds.
 pub(super) fn points(object: &Object) -> Vec<Vec3> {
     let to_world = |p: Vec3| object.world_point(p);
     if let Some(corners) = triangle(object) {
@@ -84,7 +84,7 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
         Geometry::Primitive(_) | Geometry::Solid(_) => {
             let Some(bounds) = object.bounds().filter(|bounds| !bounds.is_empty()) else { return Vec::new() };
             let (center, half) = (bounds.center(), 0.5 * bounds.size());
-            // Not the corners themselves: round things have nothing there.
+            // Slightly inside the bounds: round objects do not reach the corners.
             let steps = [0.0, -0.95, 0.95, -0.5, 0.5];
             let grid = steps.iter().flat_map(|x| steps.iter().flat_map(move |y| steps.map(|z| Vec3::new(*x, *y, z))));
             grid.map(|at| center + at * half).collect()
@@ -92,18 +92,18 @@ pub(super) fn points(object: &Object) -> Vec<Vec3> {
     }
 }
 
-/// The middle of a triangle, and points near its corners.
+/// Returns the centre of a triangle, and points near its corners.
 fn within([a, b, c]: [Vec3; 3]) -> [Vec3; 4] {
     let middle = (a + b + c) / 3.0;
     [middle, a.lerp(middle, 0.1), b.lerp(middle, 0.1), c.lerp(middle, 0.1)]
 }
 
-/// Whether the camera sees a place, if nothing is in front of it.
+/// Returns true if the camera sees a point, ignoring occlusion.
 pub(super) fn aims(grid: &ProbeGrid, place: Vec3) -> bool {
     !rays_to(grid, place).is_empty()
 }
 
-/// How many pixels of the picture a box spans.
+/// Returns the extent of a box in pixels.
 pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
     let (world, job) = (grid.world(), grid.subject.job);
     let mut around: Option<(Vec2, Vec2)> = None;
@@ -122,8 +122,8 @@ pub(super) fn pixels(grid: &ProbeGrid, bounds: Aabb) -> Option<f32> {
     Some((max - min).max_element() / (2.0 * corner(grid).max_element()) * job.width.max(job.height) as f32)
 }
 
-/// Whether the camera's rays all start at its place and go one way: those that run both ways see
-/// what is behind as well.
+/// Returns true if all camera rays start at the camera's position. Rays that extend both ways also
+/// see what is behind.
 pub(super) fn has_eye(grid: &ProbeGrid) -> bool {
     !matches!(grid.world().camera(), Camera::Orthographic(_) | Camera::PushBroom(_) | Camera::MultipleCenter(_))
 }

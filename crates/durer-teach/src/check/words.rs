@@ -1,5 +1,5 @@
-//! What the reader and the compiler report, with what comes of it in the picture, and the edits
-//! that only the whole scene tells.
+//! Completes the diagnostics of the reader and the compiler with effects and edits that need the
+//! whole scene.
 
 use super::finding::{Finding, vector};
 use super::scene_probe::SceneProbe;
@@ -10,7 +10,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::Material;
 
-/// Adds what is known of a finding when the scene is compiled.
+/// Adds to a finding what only the compiled scene shows.
 pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     match finding.diagnostic.code {
         "no-light" => no_light(scout, finding),
@@ -46,7 +46,7 @@ pub(super) fn complete(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// What other years write in a thing, the year of nodes writes around it.
+/// The node grammar writes placement around an object, other years inside it.
 fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.severity = Severity::Note;
     let word = finding.diagnostic.span.map(|span| scout.text(span)).unwrap_or_default();
@@ -59,8 +59,7 @@ fn foreign_in_nodes(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// A scene may do without lights if it has no use for them: flat colours, and no other light that
-/// they would go with.
+/// A scene of flat colours needs no lights.
 fn no_light(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let plain = |material: &Material| match material {
@@ -98,8 +97,8 @@ fn up_parallel(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// One too many means that materials were counted from 1; with one material alone, it can only be
-/// that.
+/// An index one too large means that materials were counted from 1; with a single material this is
+/// certain.
 fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     finding.diagnostic.effect = finding.diagnostic.help.take();
     let count = scout.subject.scene.materials.len();
@@ -124,7 +123,8 @@ fn material_index(scout: &SceneProbe, finding: &mut Finding) {
     }
 }
 
-/// Where no object has material 0 and one has the material after the last, all were counted from 1.
+/// Fixes all indices if no object uses material 0 and one uses the index after the last: they count
+/// from 1.
 fn from_one(scout: &SceneProbe, finding: &mut Finding, count: usize) -> bool {
     let span = finding.diagnostic.span.unwrap_or_default();
     let uses = scout.subject.files.bytes(span.file).map(|bytes| place::values(bytes, span.file, "MaterialIndex"));
@@ -146,7 +146,7 @@ fn no_material(scout: &SceneProbe, finding: &mut Finding) {
     let scene = scout.subject.scene;
     let first = scene.root.iter().flat_map(|root| &root.objects).next();
     let nodes = scout.subject.dialect == durer_scene::dialect::Dialect::F23;
-    // At the top of the group it holds for all that follow without one of their own.
+    // At the top of the group it applies to all objects without an index.
     if let Some(first) = first.filter(|first| first.material.is_none() && !scene.materials.is_empty() && !nodes) {
         let place = Span { end: first.span.start, ..first.span };
         finding.diagnostic = finding.diagnostic.clone().fix(place, "MaterialIndex 0 ");

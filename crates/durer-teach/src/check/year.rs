@@ -1,5 +1,4 @@
-//! What a year's program makes of a scene that others would show as it was meant: its quirks, where
-//! they are on.
+//! Checks of scenes that a year's program renders differently than intended because of its quirks.
 
 use super::finding::{Finding, MAX_SOUGHT, number, percent, vector};
 use super::scene_probe::SceneProbe;
@@ -11,14 +10,14 @@ use durer_scene::material::PhongMaterial;
 use durer_scene::math::Color;
 use durer_scene::scene::{Material as Written, Spanned};
 
-/// Lengths of a camera's `up` that nobody sees in the picture.
+/// Lengths of a camera's `up` whose effect is invisible.
 const UNIT: std::ops::RangeInclusive<f32> = 0.9..=1.1;
-/// Cosines between `up` and `direction` beyond which the picture is seen to be skewed.
+/// Cosine between `up` and `direction` above which the skew is visible.
 const SKEW: f32 = 0.6;
-/// Sides of a picture that differ by less look equal.
+/// Aspect ratio below which a picture looks square.
 const SQUARE: f32 = 1.05;
 
-/// The Phong materials that are seen, as they are written.
+/// Iterates over the visible Phong materials with their descriptions.
 fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<Written>, &'s PhongMaterial)> {
     let rays = scout.material_rays().to_vec();
     let all = scout.subject.scene.materials.iter().enumerate();
@@ -28,7 +27,7 @@ fn seen<'s>(scout: &SceneProbe<'s>) -> impl Iterator<Item = (usize, &'s Spanned<
     })
 }
 
-/// A highlight without sharpness: 0 to the power of 0 is 1.
+/// Reports a highlight with exponent 0 in a dialect where 0 to the power of 0 is 1.
 pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     let rules = scout.world().rules();
     if rules.highlight != Highlight::Phong || !rules.has(Compat::PowZero) {
@@ -61,7 +60,7 @@ pub(super) fn pow_zero(scout: &SceneProbe) -> Vec<Finding> {
     if found.is_empty() { blunt(scout) } else { found }
 }
 
-/// The exponent of a material's highlight, and the word for it that is written.
+/// Returns the exponent of a material's highlight and the field that states it.
 fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     match (phong.exponent, phong.shininess) {
         (Some(exponent), _) => Some(("exponent", exponent)),
@@ -69,8 +68,8 @@ fn sharpness(phong: &PhongMaterial) -> Option<(&'static str, f32)> {
     }
 }
 
-/// Highlights so blunt that they are everywhere, as of an exponent of 0 or of one over what was
-/// meant.
+/// Reports highlights so wide that they cover everything, for example with exponent 0 or a
+/// reciprocal exponent.
 fn blunt(scout: &SceneProbe) -> Vec<Finding> {
     if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
@@ -89,12 +88,12 @@ fn blunt(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Exponents beyond this make highlights smaller than a pixel.
+/// Exponent above which a highlight is smaller than a pixel.
 const SHARPEST: f32 = 2e4;
-/// And below this, what is no highlight any more.
+/// Exponent below which highlights are invisible.
 const BLUNT: f32 = 0.7;
 
-/// Highlights smaller than a pixel.
+/// Reports highlights smaller than a pixel.
 pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
     if scout.world().rules().highlight == Highlight::None || scout.is_physical() {
         return Vec::new();
@@ -113,7 +112,7 @@ pub(super) fn tiny_highlight(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// A highlight's colour without its exponent, which is 1 then.
+/// Reports a highlight colour without an exponent, which then is 1.
 pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     if !matches!(scout.world().rules().highlight, Highlight::Blinn | Highlight::ByKeyword) {
         return Vec::new();
@@ -134,7 +133,7 @@ pub(super) fn no_exponent(scout: &SceneProbe) -> Vec<Finding> {
     seen(scout).filter(|(.., phong)| bare(phong)).map(say).take(MAX_SOUGHT).collect()
 }
 
-/// A camera's `up` that is used as it is written, and has not the length 1.
+/// Reports a camera's `up` that is not unit length in a dialect that does not normalise it.
 pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     let up = scout.world().camera().pose().up;
     let length = up.length();
@@ -159,7 +158,7 @@ pub(super) fn long_up(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// The same with an `up` far from being at right angles to `direction`.
+/// Reports an `up` far from perpendicular to `direction` in a dialect that does not correct it.
 fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     let pose = scout.world().camera().pose();
     let (up, forward) = (pose.up.normalize_or_zero(), pose.direction.normalize_or_zero());
@@ -178,7 +177,7 @@ fn skew_up(scout: &SceneProbe) -> Option<Finding> {
     Some(Finding::from(scout.at_value(diagnostic.fix_at(value, text), span, &["up"])).whole(true))
 }
 
-/// A picture that is not square, under a program that stretches it.
+/// Reports a picture that is not square in a dialect that stretches it.
 pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     let job = scout.subject.job;
     let (width, height) = (job.width as f32, job.height as f32);
@@ -197,7 +196,7 @@ pub(super) fn stretched(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Faces of more than three corners, of which the year's program reads three.
+/// Reports faces of more than three corners, of which that year's program reads three.
 pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     if !scout.world().rules().is_official() {
         return Vec::new();
@@ -214,7 +213,7 @@ pub(super) fn quads(scout: &SceneProbe) -> Vec<Finding> {
     super::mesh::large_faces(scout).into_iter().map(say).collect()
 }
 
-/// Patterns of which both parts are the same.
+/// Reports patterns of two equal parts.
 pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     use durer_scene::material::Pattern;
     let materials = &scout.subject.scene.materials;
@@ -247,7 +246,7 @@ pub(super) fn same_parts(scout: &SceneProbe) -> Vec<Finding> {
     materials.iter().enumerate().filter_map(say).take(MAX_SOUGHT).collect()
 }
 
-/// Ambient light that leaves nothing to the lamps.
+/// Reports ambient light that leaves no room for the lights.
 pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
     let ambient = world.ambient();
@@ -267,7 +266,7 @@ pub(super) fn full_ambient(scout: &SceneProbe) -> Vec<Finding> {
     vec![Finding::from(diagnostic).whole(true)]
 }
 
-/// Planes whose normal has not the length 1, where that moves them.
+/// Reports planes whose normal is not unit length, in dialects where that moves them.
 pub(super) fn plane_normal(scout: &SceneProbe) -> Vec<Finding> {
     use durer_render::world::Object;
     let say = |object: &Object| {

@@ -1,27 +1,27 @@
-//! How two pictures of one scene differ.
+//! Differences of two pictures of one scene.
 
 use super::stage::{Stage, percent};
 use durer_image::{Image, Layer, LayerKind, Transfer};
 use durer_scene::math::Vec3;
 
-/// Differences of this much in a channel, of 255, are rounding.
+/// Largest difference in a channel, in 255ths, that counts as rounding.
 const ROUNDING: i32 = 1;
-/// A step is seen if it changes so many of the pixels.
+/// Share of the pixels that a step must change to be visible.
 const MIN_SHARE: f64 = 0.001;
 
 /// The difference of two pictures.
 #[derive(Clone, Debug)]
 pub struct Change {
-    /// Grey where nothing changes, lighter where it gets lighter and darker where it gets darker:
-    /// half the difference of the eight bits.
+    /// Grey where nothing changes, lighter where the picture gets lighter and darker where it gets
+    /// darker: half the difference in eight bits.
     pub picture: Layer,
-    /// All pixels, those that change, and of those the ones that get lighter.
+    /// Number of all pixels.
     pub pixels: usize,
-    /// Pixels that change.
+    /// Number of pixels that change.
     pub changed: usize,
-    /// Pixels of those that get lighter.
+    /// Number of pixels that get lighter.
     pub lighter: usize,
-    /// The pixel that changes most, and by how much of 255 in a channel.
+    /// Pixel that changes most, and its change in a channel in 255ths.
     pub most: ((u32, u32), i32),
     light: bool,
 }
@@ -51,12 +51,12 @@ impl Change {
         Change { picture, pixels: after.image.pixels.len(), changed, lighter, most, light }
     }
 
-    /// Whether there is anything to see.
+    /// Returns true if the change is visible.
     pub(super) fn is_seen(&self) -> bool {
         self.changed as f64 >= MIN_SHARE * self.pixels as f64 && self.changed > 0
     }
 
-    /// It in words.
+    /// Describes the change in a sentence.
     pub(super) fn words(&self, stage: &Stage) -> String {
         let (share, ((x, y), by)) = (percent(self.changed, self.pixels), self.most);
         let [lighter, darker] = [self.lighter, self.changed - self.lighter].map(|n| percent(n, self.pixels));

@@ -1,9 +1,8 @@
-//! A scene in the order of the lecture: each step's pictures, its equation, and what it changes.
+//! A scene in the order of the lecture: pictures, equation and effect of each step.
 //!
-//! The steps are one table, [`TOPICS`]; [`Teacher`] makes the pictures of one after the other. A
-//! step that changes nothing in a scene is shown in a small scene of ours instead. Steps of light
-//! that paths follow are shown of scenes whose pictures are made by paths, as far as those can show
-//! them.
+//! The steps are one table, [`TOPICS`]; [`Teacher`] renders their pictures in order. A step that
+//! changes nothing in a scene is shown in a small scene of ours instead. Path-tracing steps are
+//! only shown for scenes that are rendered by path tracing and have the effect.
 
 mod change;
 mod plan;
@@ -20,41 +19,41 @@ use stage::Shown;
 pub use stage::{OWN_SCENE, OWN_SCENE_NAME, Stage};
 pub use topics::{Carriage, Glass, Look, Place, Shot, TOPICS, Topic};
 
-/// A picture and what it shows.
+/// A picture and its caption.
 #[derive(Clone, Debug)]
 pub struct Picture {
-    /// What it shows, in a few words.
+    /// Short caption.
     pub caption: &'static str,
-    /// The picture, as eight bits have it.
+    /// The picture in eight bits.
     pub layer: Layer,
 }
 
 /// One step of the lesson.
 #[derive(Clone, Debug)]
 pub struct Step {
-    /// What it is about.
+    /// Topic of the step.
     pub topic: &'static Topic,
-    /// Its title.
+    /// Title of the step.
     pub title: String,
-    /// Whether it is shown in our scene, because the other has nothing of it.
+    /// True if the step uses our scene because the other lacks the effect.
     pub ours: bool,
-    /// Why the other has nothing of it.
+    /// Reason why the other scene lacks the effect.
     pub lacking: &'static str,
-    /// Whether it goes on with the topic of the step before.
+    /// True if the step continues the previous step's topic.
     pub goes_on: bool,
-    /// What there was before, where that can be compared.
+    /// The picture before the step, if there is one to compare.
     pub before: Option<Picture>,
-    /// What there is now.
+    /// The picture after the step.
     pub after: Picture,
-    /// A drawing beside it: an SVG file.
+    /// An SVG drawing beside the picture.
     pub plan: Option<String>,
-    /// The difference of the two.
+    /// The difference of the two pictures.
     pub change: Option<Change>,
-    /// What came of it in this very scene, in a sentence or two.
+    /// Effect of the step in this scene, in a sentence or two.
     pub words: String,
 }
 
-/// Makes the steps.
+/// Renders the steps of the lesson.
 #[derive(Debug)]
 pub struct Teacher {
     /// The scene that is taught, and ours.
@@ -63,14 +62,14 @@ pub struct Teacher {
 }
 
 impl Teacher {
-    /// For a scene; pictures are compared as they look with a transfer curve.
+    /// Creates a teacher for a scene; pictures are compared after the transfer curve.
     pub fn new(stage: Stage, transfer: Transfer) -> Self {
         let ours = Stage::ours(stage.size());
         Teacher { stages: [stage, ours], transfer }
     }
 
-    /// The steps of a topic: at least one, but for a topic of paths, which has none where the scene
-    /// cannot show it. Later steps of one topic that change nothing are left out.
+    /// Renders the steps of a topic: at least one, except for a path-tracing topic that the scene
+    /// cannot show, which has none. Later steps of a topic that change nothing are left out.
     ///
     /// # Errors
     /// [`RenderError`].
@@ -88,17 +87,17 @@ impl Teacher {
                 return Ok(marked(steps, lacking));
             }
         }
-        // Not even our own scene shows it; a test sees to it that this never happens.
+        // Unreachable: a test checks that our own scene shows every topic.
         Ok(Vec::new())
     }
 }
 
-/// Steps that know why they are shown elsewhere, and which of them go on with the one before.
+/// Marks why steps use our scene, and which of them continue the one before.
 fn marked(steps: Vec<Step>, lacking: &'static str) -> Vec<Step> {
     steps.into_iter().enumerate().map(|(i, step)| Step { lacking, goes_on: i > 0, ..step }).collect()
 }
 
-/// The steps of a topic in a scene; none if that cannot show the first of them.
+/// Renders the steps of a topic in a scene; none if the first one is invisible.
 fn steps(
     topic: &'static Topic,
     stage: &mut Stage,
@@ -126,7 +125,7 @@ fn steps(
             words,
         };
         if topic.shots.len() == 1 {
-            // A quantity of another kind than the step's before: there is nothing to subtract.
+            // The first picture of another quantity: there is nothing to subtract.
             let words = stage.facts(shot, &shown);
             steps.extend(words.map(|words| step(None, None, words)));
         } else if let Some((before_shot, before)) = &last {
@@ -145,7 +144,7 @@ fn steps(
     Ok(steps)
 }
 
-/// What two pictures of light at random have of noise, in a sentence.
+/// Describes the noise of two Monte Carlo pictures in a sentence.
 fn noise(before: &Shown, after: &Shown) -> String {
     let share = |noise: f64| format!("{:.1} %", 100.0 * noise);
     match (before.noise, after.noise) {

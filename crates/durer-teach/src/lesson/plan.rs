@@ -1,22 +1,22 @@
-//! A plan of the camera's rays, seen from above: the middle row of the picture.
+//! Plan view of the camera rays of the picture's middle row.
 
 use super::stage::Stage;
 use durer_render::render::center_ray;
 use durer_scene::math::{Aabb, Vec2, Vec3};
 use std::fmt::Write;
 
-/// Rays drawn.
+/// Number of rays drawn.
 const RAYS: u32 = 21;
-/// At most so many boxes are drawn: more hide each other.
+/// Maximum number of boxes drawn; more would hide each other.
 const MAX_BOXES: usize = 200;
-/// The drawing's width and height.
+/// Width and height of the drawing.
 const SIZE: f32 = 400.0;
 
-/// The drawing, as an SVG file: boxes around the objects, rays to what they hit.
+/// Draws an SVG file: boxes around the objects, rays to their hits.
 pub(super) fn plan(stage: &Stage) -> String {
     let (world, (width, height)) = (&stage.world, stage.size());
     let frame = world.camera_frame();
-    // The camera's right is the drawing's right, and it looks up the page.
+    // Right on the page is the camera's right, up is its forward direction.
     let flat = |p: Vec3| Vec2::new((p - frame.eye).dot(frame.right), -(p - frame.eye).dot(frame.forward));
     let count = RAYS.min(width);
     let mut rays = Vec::new();
@@ -26,8 +26,7 @@ pub(super) fn plan(stage: &Stage) -> String {
         let hit = world.closest(&ray, &mut ()).map(|hit| hit.t);
         rays.push((ray, hit));
     }
-    // Ground that goes on for ever is not followed for ever: rays end where they are three times as
-    // long as the middle one.
+    // An infinite ground would dominate: rays end at three times the median length.
     let mut hits: Vec<f32> = rays.iter().filter_map(|ray| ray.1).collect();
     hits.sort_by(f32::total_cmp);
     let nothing = || (world.bounds().center() - frame.eye).length().max(1.0);
@@ -36,7 +35,7 @@ pub(super) fn plan(stage: &Stage) -> String {
     let ends = rays.iter().map(|(ray, hit)| (flat(ray.origin), flat(ray.at(hit.unwrap_or(reach))), hit.is_some()));
     let ends: Vec<(Vec2, Vec2, bool)> = ends.filter(|end| end.0.is_finite() && end.1.is_finite()).collect();
 
-    // The drawing shows all rays, with a margin.
+    // Fit all rays into the drawing, with a margin.
     let points = ends.iter().flat_map(|end| [end.0, end.1]).chain([Vec2::ZERO]);
     let around = Aabb::around(points.map(|p| p.extend(0.0)));
     let (middle, side) = (around.center().truncate(), around.size().max_element().max(1e-6));
@@ -62,7 +61,7 @@ pub(super) fn plan(stage: &Stage) -> String {
             dot(&mut svg, to, 2.5, "#e8590c");
         }
     }
-    // The axes of the drawing, in its lower left corner.
+    // Axes in the lower left corner.
     let corner = Vec2::new(18.0, SIZE - 18.0);
     for (to, name, at) in [
         (corner + Vec2::new(46.0, 0.0), "right", corner + Vec2::new(50.0, 4.0)),
@@ -80,8 +79,7 @@ pub(super) fn plan(stage: &Stage) -> String {
 }
 
 fn line(svg: &mut String, a: Vec2, b: Vec2, style: &str) {
-    // Lines of no length, and what is too far away to be drawn, are left out; a string takes what
-    // is written to it.
+    // Skip zero-length and extremely distant lines. Writing to a string never fails.
     if a.distance(b) > 0.05 && a.abs().max_element().max(b.abs().max_element()) < 1e6 {
         let _ =
             writeln!(svg, "<line x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\" {style}/>", a.x, a.y, b.x, b.y);

@@ -1,4 +1,4 @@
-//! A scene that can be shown with parts of its light left out, and with usual mistakes.
+//! A scene that can be rendered without parts of its light and with common mistakes.
 
 use super::topics::{Carriage, Glass, Look, Shot};
 use crate::mistakes::{Variant, of_name};
@@ -21,44 +21,45 @@ use durer_scene::scene::Scene;
 use durer_scene::source::MemorySource;
 use std::sync::Arc;
 
-/// A scene of ours in which every step can be seen, and the name of its file.
+/// Our own scene, in which every step is visible.
 pub const OWN_SCENE: &str = include_str!("scene.txt");
-/// The name under which messages know it.
+/// File name of our scene in messages.
 pub const OWN_SCENE_NAME: &str = "our-scene.txt";
 
-/// Samples a pixel where the job has one only.
+/// Samples a pixel if the job has only one.
 const SAMPLES: u32 = 16;
 
-/// Pictures that are kept for later steps.
+/// Number of pictures cached for later steps.
 const KEPT: usize = 4;
 
-/// A picture, and the values that it shows.
+/// A picture and the values that it shows.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
     pub(super) layer: Layer,
     pub(super) values: Image,
-    /// Of light at random, the error of its pixels as a share of its luminance.
+    /// Standard error of the pixels as a share of the luminance, for Monte Carlo pictures.
     pub(super) noise: Option<f64>,
 }
 
-/// A scene, its world, and the job whose picture the lesson ends with.
+/// A scene, its world, and the job that renders the final picture of the lesson.
 #[derive(Debug)]
 pub struct Stage {
     scene: Scene,
     files: Files,
     pub(super) world: World,
     pub(super) job: Job,
-    /// The world's own light, materials and rules.
+    /// The world's original lights, materials and rules.
     lights: Vec<Light>,
     ambient: Color,
     materials: Vec<Material>,
     rules: Rules,
-    /// What was made already: what one step ends with, the next begins with.
+    /// Recent pictures: a step starts with the last picture of the one before.
     made: Vec<(Shot, Shown)>,
 }
 
 impl Stage {
-    /// A scene that was read and compiled. Of the job, the whole picture is shown, in colour.
+    /// Creates a stage for a compiled scene. Of the job, only the colour of the whole picture is
+    /// used.
     pub fn new(scene: Scene, files: Files, world: World, job: Job) -> Self {
         let (lights, ambient) = (world.lights().to_vec(), world.ambient());
         let (materials, rules) = (world.materials().to_vec(), world.rules().clone());
@@ -66,7 +67,7 @@ impl Stage {
         Stage { scene, files, world, job, lights, ambient, materials, rules, made: Vec::new() }
     }
 
-    /// Our own scene, in pictures of a size.
+    /// Loads our own scene for pictures of a given size.
     pub(super) fn ours((width, height): (u32, u32)) -> Self {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
         let file = files.add(OWN_SCENE_NAME, OWN_SCENE.as_bytes().into());
@@ -79,8 +80,7 @@ impl Stage {
         Stage::new(scene, files, world, Job { width, height, ..Job::default() })
     }
 
-    /// Why a step cannot show anything in this scene whatever it holds, if its year's program has
-    /// nothing of it.
+    /// Returns the reason if the scene's dialect has no such effect at all.
     pub(super) fn year_lacks(&self, topic: &str) -> Option<&'static str> {
         let (highlights, secondary) = (self.rules.highlight, self.rules.secondary);
         match topic {
@@ -106,7 +106,7 @@ impl Stage {
         raster(&self.world, self.job.width, self.job.height)
     }
 
-    /// The picture of a shot.
+    /// Renders the picture of a shot.
     pub(super) fn show(&mut self, shot: &Shot, control: &Control) -> Result<Shown, RenderError> {
         let same = |made: &&(Shot, Shown)| (made.0.value, made.0.look) == (shot.value, shot.look);
         if let Some((_, shown)) = self.made.iter().find(same) {
@@ -136,13 +136,13 @@ impl Stage {
                 }
             }
         };
-        // Those that are long past do not come again.
+        // Older pictures are not needed again.
         self.made.drain(..self.made.len().saturating_sub(KEPT - 1));
         self.made.push((*shot, shown.clone()));
         Ok(shown)
     }
 
-    /// Gives the world the light, the materials and the mistakes of a look.
+    /// Applies the lights, materials and mistake of a look to the world.
     fn arrange(&mut self, look: &Look) {
         let (lights, ambient) = match look.lights {
             true => (self.lights.clone(), self.ambient),
@@ -151,7 +151,7 @@ impl Stage {
         let own = self.world.edit();
         (own.lights, own.ambient) = (lights, ambient);
         own.set_rules(self.rules.clone());
-        // The lesson's mistakes are those that change the rules.
+        // The mistakes of the lesson change only the rules.
         if let Some(mistake) = look.mistake.and_then(of_name) {
             let mut variant = Variant::new(&self.scene, self.world.clone(), self.job.settings);
             (mistake.make)(&mut variant, 0.0);
@@ -164,8 +164,7 @@ impl Stage {
         for material in &mut own.materials {
             let Material::Phong(phong) = material else { continue };
             phong.highlight = phong.highlight.filter(|_| look.highlights);
-            // Flat colour is that of textures too, whatever the dialect's ambient light knows of
-            // them.
+            // Flat colour includes textures, even if the dialect's ambient light ignores them.
             phong.ambient = phong.ambient.filter(|_| look.lights);
             if phong.fresnel && look.glass != Glass::Fresnel {
                 (phong.fresnel, phong.reflective) = (false, Color::ZERO);
@@ -186,7 +185,7 @@ impl Stage {
         }
     }
 
-    /// Whitted's light, or paths with what the picture's own have.
+    /// Returns Whitted's method, or path tracing with the job's own options.
     fn method(&self, look: &Look) -> Method {
         let Some(carriage) = look.paths else { return Method::WHITTED };
         let own = self.job.method.transport().unwrap_or_default();
@@ -200,7 +199,7 @@ impl Stage {
         }
     }
 
-    /// Whether the picture is made by paths.
+    /// Returns true if the job uses path tracing.
     pub(super) fn has_paths(&self) -> bool {
         self.job.method.transport().is_some()
     }
@@ -213,8 +212,8 @@ impl Stage {
         }
     }
 
-    /// The directions of the rays through the pixels' centres, as colours between 0 and 1; black
-    /// where there are none.
+    /// Returns the directions of the rays through the pixel centres as colours from 0 to 1; black
+    /// for pixels without a ray.
     fn directions(&self) -> Result<Shown, RenderError> {
         let (raster, (width, height)) = (self.raster(), self.size());
         let rays: Vec<Option<Vec3>> =
@@ -226,7 +225,7 @@ impl Stage {
         Ok(Shown { layer, values: Image::from_pixels(width, height, values)?, noise: None })
     }
 
-    /// What a picture shows that is compared with no other, in a sentence; `None` if it shows
+    /// Describes a picture that is not compared with another, in a sentence; `None` if it shows
     /// nothing.
     pub(super) fn facts(&self, shot: &Shot, shown: &Shown) -> Option<String> {
         let values = &shown.values.pixels;
@@ -274,13 +273,13 @@ impl Stage {
         }
     }
 
-    /// What is seen at a pixel's centre: an object's keyword and its place in the scene file.
+    /// Names the object at a pixel's centre by its keyword and position in the scene file.
     pub(super) fn object_at(&self, pixel: (u32, u32)) -> String {
         let hit = center_ray(&self.world, &self.raster(), pixel).and_then(|ray| self.world.closest(&ray, &mut ()));
         let names = Names { files: &self.files, scene: &self.scene, world: &self.world };
         hit.map_or("the background".into(), |hit| {
             let name = names.object(hit.object);
-            // Where the file lies is no matter of the lesson.
+            // Drop the folder of the file.
             match name.split_once(' ') {
                 Some((keyword, place)) => format!("{keyword} {}", place.rsplit(['/', '\\']).next().unwrap_or(place)),
                 None => name,
@@ -289,8 +288,8 @@ impl Stage {
     }
 }
 
-/// Depths whose greys tell something of a scene whose ground goes on for ever: from the least to
-/// three times as far from it as the middle one.
+/// Returns a useful depth range for a scene with an infinite ground: from the minimum to three
+/// times as far from it as the median.
 fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     let mut depths: Vec<f32> = depths.pixels.iter().map(|depth| depth.x).filter(|depth| depth.is_finite()).collect();
     depths.sort_by(f32::total_cmp);
@@ -299,16 +298,16 @@ fn depth_range(depths: &Image) -> Option<(f32, f32)> {
     (end > least).then_some((least, end))
 }
 
-/// The mean of the pixels' standard errors as a share of their mean luminance, by the variances of
-/// their means. Nothing counts as brighter than white, or the edges of lamps would be all of it.
-/// `None` where nothing shines.
+/// Returns the mean of the pixels' standard errors as a share of the mean luminance, from the
+/// variances of the pixel means. Values are clipped to white, because edges of emitters would
+/// dominate. `None` for a black picture.
 fn noise_of(colors: &Image, variances: &Image) -> Option<f64> {
     let light: f64 = colors.pixels.iter().map(|color| luminance_of(*color).min(1.0)).sum();
     let errors: f64 = variances.pixels.iter().map(|variance| f64::from(variance.x).sqrt().min(1.0)).sum();
     Some(errors / light).filter(|noise| noise.is_finite())
 }
 
-/// A part of some pixels for people.
+/// Formats a share of pixels in percent.
 pub(super) fn percent(part: usize, all: usize) -> String {
     format!("{:.1} %", 100.0 * part as f64 / all.max(1) as f64)
 }

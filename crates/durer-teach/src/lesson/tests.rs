@@ -1,4 +1,4 @@
-//! The steps of the lesson.
+//! Tests of the lesson's steps.
 
 use super::*;
 use durer::{LoadOptions, load};
@@ -33,7 +33,7 @@ fn our_own_scene_shows_every_topic() {
     let mut ours = Stage::ours((64, 48));
     for topic in TOPICS.iter().filter(|topic| !topic.is_of_paths()) {
         let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
-        // Mirrors are seen in mirrors, and those in mirrors again.
+        // Mirrors show other mirrors, and those show mirrors again.
         let least = if topic.name == "reflection" { 3 } else { 1 };
         assert!(steps.len() >= least, "{}: {}", topic.name, steps.len());
         assert!(steps.iter().all(|step| step.words.ends_with('.')));
@@ -51,7 +51,7 @@ fn a_lesson_ends_with_the_picture_itself_and_is_the_same_each_time() {
     let picture = render(&whitted.world, &whitted.job, &Control::default()).unwrap();
     assert_eq!(steps.last().unwrap().after.layer.image, picture.layers[0].image);
     assert_eq!(bits(&steps), bits(&lesson(whitted)));
-    // What a step begins with is what an earlier one ended with.
+    // A step starts with the last picture of an earlier one.
     let specular = steps.iter().find(|step| step.topic.name == "specular").unwrap();
     let diffuse = steps.iter().find(|step| step.topic.name == "diffuse").unwrap();
     assert_eq!(specular.before.as_ref().unwrap().layer, diffuse.after.layer);
@@ -68,7 +68,7 @@ fn what_a_scene_cannot_show_is_shown_in_ours() {
     assert!(!transforms.contains(&"transforms") && transforms.contains(&"refraction"), "{transforms:?}");
 }
 
-/// The steps of paths of a scene, in small pictures.
+/// Renders the path-tracing steps of a scene in small pictures.
 fn of_paths(scene: &str) -> Vec<Step> {
     let mut stage = stage(scene, 40);
     stage.job.method =
@@ -89,13 +89,13 @@ fn each_step_of_paths_is_seen_in_a_scene_of_ours_and_only_where_it_is() {
     let cornell = of_paths("cornell-box.txt");
     assert_eq!(names(&cornell), ["soft-shadows", "bounces", "mis"]);
     assert!(cornell.iter().all(|step| !step.ours && step.words.contains("Its noise")));
-    // A bounce more only adds light.
+    // Another bounce only adds light.
     let bounces = cornell.iter().filter(|step| step.topic.name == "bounces").map(|step| step.change.as_ref().unwrap());
     assert!(bounces.clone().count() >= 3 && bounces.clone().all(|change| change.lighter == change.changed));
     assert_eq!(names(&of_paths("caustic.txt")), ["soft-shadows", "bounces", "mis", "caustic"]);
-    // Sunlight has no extent that could be seen.
+    // Sunlight has no visible extent.
     assert_eq!(names(&of_paths("prism.txt")).last(), Some(&"spectrum"));
-    // Whitted's light has none of these steps.
+    // Whitted's method has none of these steps.
     assert!(lesson(stage("whitted.txt", 24)).iter().all(|step| !step.topic.is_of_paths()));
 }
 
@@ -107,7 +107,7 @@ fn points_and_directions_weighed_have_less_noise_than_either() {
     let topic = TOPICS.iter().find(|topic| topic.name == "mis").unwrap();
     let noise: Vec<f64> =
         topic.shots.iter().map(|shot| plates.show(shot, &Control::default()).unwrap().noise.unwrap()).collect();
-    // Points alone are bad by rare bright samples, of which a few samples have none.
+    // Sampling lights only fails by rare bright samples, which few samples miss.
     assert!(noise[2] < 0.95 * noise[0] && noise[2] < 0.5 * noise[1], "{noise:?}");
 }
 
@@ -117,11 +117,11 @@ fn acne_is_dark_specks_where_light_falls() {
     let topic = TOPICS.iter().find(|topic| topic.name == "epsilon").unwrap();
     let steps = steps(topic, &mut ours, Transfer::Srgb, true, &Control::default()).unwrap();
     let change = steps[0].change.as_ref().unwrap();
-    // Away with it, and it only gets lighter.
+    // Removing acne only makes pixels lighter.
     assert!(change.changed > 100 && change.lighter == change.changed, "{change:?}");
 }
 
-/// The image of a sphere's normal by the matrix itself, beside that by its inverse transpose.
+/// Compares a sphere's normal transformed by the matrix itself with the inverse transpose.
 #[test]
 fn moved_normals_are_those_of_the_matrix_itself() {
     let text = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 40 }
@@ -131,7 +131,7 @@ fn moved_normals_are_those_of_the_matrix_itself() {
         rules.compat = if quirk { Compat::MovedNormals.bit() } else { 0 };
         let folder = Path::new(".");
         let (world, _) = durer_render::compile::testing::try_read(text, &rules, AccelKind::Bvh, folder);
-        // The sphere's point (0.6, 0.4, z) in its own space is (1.2, 0.2, z) in the world's.
+        // The point (0.6, 0.4, z) of the sphere in object space is (1.2, 0.2, z) in world space.
         let ray = Ray::new(Vec3::new(1.2, 0.2, 9.0), Vec3::NEG_Z);
         let world = world.unwrap();
         let surface = world.intersect(&ray, &mut ()).unwrap().surface;

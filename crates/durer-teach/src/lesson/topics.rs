@@ -1,96 +1,96 @@
-//! The steps of the lecture as a table: what each shows, its equation, and where that is in the
-//! source. After them come those of light that is followed by paths.
+//! The steps of the lecture as a table: text, equations, pictures and places in the source. The
+//! path-tracing steps come last.
 
 use durer_render::integrator::Direct;
 use durer_scene::spectrum::ColorMode;
 
-/// How much of the light is computed, and which mistakes are made.
+/// Parts of the light that are computed, and the mistake that is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// Whether there are lights; else everything has its own colour.
+    /// True if there are lights; otherwise each surface shows its own colour.
     pub lights: bool,
-    /// Whether there are highlights.
+    /// True if there are highlights.
     pub highlights: bool,
-    /// Whether there are shadows.
+    /// True if there are shadows.
     pub shadows: bool,
-    /// Levels of mirrored and transmitted rays, at most as many as the job has.
+    /// Maximum depth of reflected and transmitted rays, limited by the job's.
     pub bounces: u32,
-    /// What glass does.
+    /// Behaviour of glass.
     pub glass: Glass,
-    /// The usual mistake that is made, by its name in [`crate::mistakes::MISTAKES`].
+    /// Name of the mistake to make, from [`crate::mistakes::MISTAKES`].
     pub mistake: Option<&'static str>,
-    /// Whether a pixel has more than one sample.
+    /// True if a pixel has more than one sample.
     pub sampled: bool,
-    /// How paths carry light; without, light is Whitted's.
+    /// Options of path tracing; `None` for Whitted's method.
     pub paths: Option<Carriage>,
 }
 
-/// How paths carry light.
+/// Options of path tracing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Carriage {
-    /// How light straight from lamps is found.
+    /// Sampling strategy for direct light.
     pub direct: Direct,
-    /// Whether photons bring what mirrors and glass throw on things.
+    /// True if photons render caustics.
     pub photons: bool,
-    /// What light is made of.
+    /// RGB or spectral light.
     pub color: ColorMode,
-    /// Whether glass bends wavelengths as it does, and not all alike.
+    /// True if glass disperses light.
     pub disperses: bool,
 }
 
-/// What glass does.
+/// Behaviour of glass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Glass {
-    /// Nothing gets through.
+    /// Opaque.
     None,
-    /// It transmits and mirrors nothing, where Fresnel's law would divide the light.
+    /// Transmits everything; no reflection in place of Fresnel's law.
     Transmits,
-    /// It is as the scene has it.
+    /// As in the scene.
     Fresnel,
 }
 
 /// One picture of a topic.
 #[derive(Clone, Copy, Debug)]
 pub struct Shot {
-    /// What it shows, in a few words.
+    /// Short caption.
     pub caption: &'static str,
-    /// `rays`, or one of the pictures of [`durer_render::film::aov::AOVS`]; `None` for colour.
+    /// `rays`, or an AOV of [`durer_render::film::aov::AOVS`]; `None` for colour.
     pub value: Option<&'static str>,
-    /// How it is made.
+    /// Parts of the light that are shown.
     pub look: Look,
 }
 
-/// A place in our source: a file from the repository's root, and what to look for in it.
+/// A place in the source: a file relative to the repository's root, and the text to find in it.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
-    /// The file.
+    /// Path of the file.
     pub file: &'static str,
-    /// The beginning of a definition in it.
+    /// Start of a definition in the file.
     pub symbol: &'static str,
 }
 
 /// A step of the lecture, or several of one kind.
 #[derive(Debug)]
 pub struct Topic {
-    /// For names of files.
+    /// Keyword, also used in file names.
     pub name: &'static str,
-    /// The title.
+    /// Title of the step.
     pub title: &'static str,
-    /// What is new, for a student who has read what comes before.
+    /// Explanation for a student who has read the steps before.
     pub words: &'static str,
-    /// The equations, line by line.
+    /// Equations, one a line.
     pub equations: &'static [&'static str],
-    /// Where they are in the source.
+    /// Places of the equations in the source.
     pub places: &'static [Place],
-    /// Its pictures: one alone, or a chain in which each differs from the one before.
+    /// Pictures: a single one, or a chain in which each differs from the one before.
     pub shots: &'static [Shot],
-    /// Why a scene cannot show it.
+    /// Reason why a scene may lack the effect.
     pub lacking: &'static str,
 }
 
 impl Topic {
-    /// Whether it is about light that paths follow: such steps are shown of scenes whose pictures
-    /// are made by paths, and of no other.
+    /// Returns true for topics of path tracing, which are shown only for scenes rendered by path
+    /// tracing.
     pub fn is_of_paths(&self) -> bool {
         self.shots.iter().any(|shot| shot.look.paths.is_some())
     }
@@ -131,7 +131,7 @@ const FRESNEL: Look = Look { glass: Glass::Fresnel, ..GLASS };
 const MOVED: Look = Look { mistake: Some("normals-moved"), ..FRESNEL };
 const SAMPLED: Look = Look { sampled: true, ..FRESNEL };
 
-/// Light by paths, which always takes many samples.
+/// Path tracing, always with many samples.
 const fn paths(bounces: u32, carriage: Carriage) -> Look {
     Look { bounces, sampled: true, paths: Some(carriage), ..FRESNEL }
 }
@@ -142,7 +142,7 @@ const fn straight(direct: Direct) -> Look {
 const PHOTONS: Carriage = Carriage { photons: true, ..BOTH };
 const SPECTRAL: Carriage = Carriage { color: ColorMode::Spectral, ..PHOTONS };
 
-/// All topics, in the order of the lecture.
+/// Topics in the order of the lecture.
 pub static TOPICS: [Topic; 18] = [
     Topic {
         name: "rays",

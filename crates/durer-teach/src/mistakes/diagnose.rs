@@ -1,4 +1,4 @@
-//! Which mistake made a picture: the table's rows are rendered, alone and in pairs.
+//! Finds the mistake that made a picture by rendering the table's rows, alone and in pairs.
 
 use super::habits::Turn;
 use super::pictures::View;
@@ -14,83 +14,82 @@ use durer_scene::scene::Scene;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// Pixels at which all mistakes are tried, and those that are left over.
+/// Numbers of pixels at which all mistakes are tried, then the remaining ones.
 const FEW: usize = 400;
 const COARSE: usize = 1600;
 const FULL: usize = 16_000;
-/// Pixels at which pairs are tried first, and how many pairs are tried at the next number of pixels
-/// each time.
+/// Number of pixels for the first trial of pairs, and number of pairs kept at each larger number of
+/// pixels.
 const FEWEST: usize = 72;
 const KEPT: [usize; 3] = [200, 30, 8];
-/// So many mistakes are tried at more pixels than a few.
+/// Number of mistakes that are tried at `COARSE` pixels.
 const MAX_SINGLES: usize = 60;
-/// Larger pictures are not looked at as a whole.
+/// Number of pixels above which a picture is only sampled.
 const WHOLE: usize = 160_000;
-/// So many of the best are looked at closely, and paired with all others.
+/// Number of best trials that are refined and paired with all others.
 const BEST: usize = 12;
-/// What explains less than this at some pixels is not tried at all of them, beside so many of the
-/// best.
+/// Only the `CLOSEST` best trials are tried at all pixels, unless they explain more than this.
 const CLOSE: f64 = 0.8;
 const CLOSEST: usize = 5;
-/// Where the scene's own picture differs from the reference at a larger share of the pixels,
-/// nothing is said.
+/// Share of pixels in which the scene's own picture may differ from the reference; above it,
+/// nothing is reported.
 const MAX_OFF: f64 = 0.25;
-/// Half a step of eight bits, and how many pixels must be rounded otherwise.
+/// Half a step of eight bits, and minimum number of pixels with different rounding.
 const HALF: f32 = 0.5 / 255.0;
 const FEWEST_ROUNDED: usize = 30;
-/// The largest number of pairs that are tried.
+/// Maximum number of pairs that are tried.
 const MAX_PAIRS: usize = 3000;
 
-/// Two pictures, and the scene of which the reference was made.
+/// Two pictures, and the scene of the reference.
 #[derive(Clone, Copy, Debug)]
 pub struct Question<'a> {
     /// The scene as written.
     pub scene: &'a Scene,
-    /// The same, compiled with the rules of the reference.
+    /// The scene compiled with the rules of the reference.
     pub world: &'a World,
-    /// How the reference was made; of the pictures' size, and whole.
+    /// The job of the reference: the pictures' size, without a crop.
     pub job: &'a Job,
-    /// What makes eight bits of light.
+    /// Transfer curve of the eight-bit pictures.
     pub transfer: Transfer,
-    /// The picture that is right.
+    /// The correct picture.
     pub reference: &'a Picture,
-    /// The picture to judge.
+    /// The picture to diagnose.
     pub test: &'a Picture,
 }
 
-/// Mistakes that together make a picture.
+/// Mistakes that together explain a picture.
 #[derive(Clone, Debug)]
 pub struct Named {
-    /// Each with its value.
+    /// The mistakes, each with its value.
     pub mistakes: Vec<(&'static Mistake, f32)>,
-    /// The share of the squared difference that they explain, rounding left out.
+    /// Share of the squared difference that they explain, without rounding.
     pub explained: f64,
-    /// Of the pixels that differ, the share that comes out as it is.
+    /// Share of the differing pixels that they reproduce.
     pub matched: f64,
 }
 
-/// What came of the trials.
+/// Result of a diagnosis.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnosis {
-    /// The share of the pixels in which the scene's own picture is not the reference.
+    /// Share of the pixels in which the scene's own picture differs from the reference.
     pub off: f64,
-    /// What makes the picture; more than one where several make the same of this scene. Empty where
-    /// nothing does.
+    /// Explanations of the picture, more than one if several give the same picture; empty if none
+    /// does.
     pub named: Vec<Named>,
-    /// What came nearest, whether it is named or not.
+    /// The closest trials, including those that do not explain the picture.
     pub tried: Vec<Named>,
-    /// The formulas in which mistakes are told.
+    /// Formulas for describing the mistakes.
     pub formulas: Formulas,
 }
 
 impl Diagnosis {
-    /// Whether the scene and the options make the reference at all.
+    /// Returns true if the scene and the options reproduce the reference.
     pub fn is_of_scene(&self) -> bool {
         self.off <= MAX_OFF
     }
 }
 
-/// A trial: mistakes, the picture that they make, and how well it fits.
+/// A trial: mistakes, their picture, and its fit.
 #[derive(Clone, Debug)]
 struct Trial {
     mistakes: Vec<(&'static Mistake, f32)>,
@@ -98,7 +97,7 @@ struct Trial {
     fit: Fit,
 }
 
-/// Some pixels of the three pictures.
+/// A selection of pixels of the three pictures.
 struct Pixels {
     places: Vec<(u32, u32)>,
     reference: Vec<Vec3>,
@@ -120,7 +119,7 @@ impl Named {
 }
 
 impl Pixels {
-    /// Leaves out those that are not to be kept.
+    /// Keeps the marked pixels.
     fn keep(&mut self, kept: &[bool]) {
         fn of<T>(list: &mut Vec<T>, kept: &[bool]) {
             let mut keep = kept.iter();
@@ -137,7 +136,7 @@ struct Search<'a> {
     base: Variant<'a>,
 }
 
-/// The values of a picture on a scale.
+/// Converts a picture's values to a scale.
 fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
     let pixels = picture.image.pixels.iter();
     match picture.scale == scale {
@@ -146,7 +145,7 @@ fn values(picture: &Picture, scale: Scale, transfer: Transfer) -> Vec<Vec3> {
     }
 }
 
-/// The reference's values, how pictures are looked at, and the scene without mistakes.
+/// Returns the reference's values, the view, and the scene without mistakes.
 fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
     let screen = [question.reference, question.test].iter().any(|picture| picture.scale == Scale::Display);
     let scale = if screen { Scale::Display } else { Scale::Linear };
@@ -155,7 +154,7 @@ fn prepared<'a>(question: &Question<'a>) -> (Vec<Vec3>, View<'a>, Variant<'a>) {
     (values(question.reference, scale, question.transfer), view, base)
 }
 
-/// Tries all mistakes. `told` hears how far the work is, from 0 to 1.
+/// Tries all mistakes. `told` receives the progress, from 0 to 1.
 pub fn diagnose(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     Diagnosis { formulas: Formulas::of(question.scene, question.world.rules()), ..all_tried(question, told) }
 }
@@ -164,7 +163,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     let (width, height) = (question.job.width, question.job.height);
     let (reference, view, base) = prepared(question);
     let test = values(question.test, view.scale, question.transfer);
-    // A picture of one colour is explained by anything that leaves none.
+    // Anything that erases the picture would explain a single colour.
     if test.iter().all(|pixel| *pixel == test[0]) {
         return Diagnosis { off: off(question), ..Diagnosis::default() };
     }
@@ -202,7 +201,7 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     };
     let (some, coarse) = (few(FEW), few(COARSE));
     let mut singles = search.trials(search.singles(), &some);
-    // What changes nothing in this scene explains nothing.
+    // A mistake that changes nothing in this scene explains nothing.
     singles.retain(|trial| differing(&trial.made, &some.base) > 0);
     told(0.2);
     let mut better = search.trials(best(&mut singles, MAX_SINGLES), &coarse);
@@ -227,13 +226,13 @@ fn all_tried(question: &Question, told: &(dyn Fn(f64) + Sync)) -> Diagnosis {
     told(0.6);
     let (pairs, tried_pairs) = search.pairs(&better, &singles, [&few(FEWEST), &some, &coarse, &full]);
     told(1.0);
-    // Two mistakes explain more than one; they must explain far more.
+    // Two mistakes always explain more than one; require much more.
     let rest = |named: &[Named]| named.first().map_or(1.0, |named| 1.0 - named.explained);
     let named = if rest(&pairs) < 0.35 * rest(&single) { pairs } else { single };
     Diagnosis { off, named, tried: [tried, tried_pairs].concat(), ..Diagnosis::default() }
 }
 
-/// What was tried at all pixels, the best first.
+/// Returns the trials at all pixels, best first.
 fn tried(trials: &[Trial]) -> Vec<Named> {
     let mut all: Vec<Named> = trials.iter().map(Trial::named).collect();
     all.sort_by(|a, b| b.explained.total_cmp(&a.explained));
@@ -241,8 +240,8 @@ fn tried(trials: &[Trial]) -> Vec<Named> {
     all
 }
 
-/// The share of the reference's pixels that the scene with the options of the question makes
-/// otherwise: looked at in some.
+/// Returns the share of a sample of pixels in which the scene's own picture differs from the
+/// reference.
 pub fn off(question: &Question) -> f64 {
     let (reference, view, base) = prepared(question);
     let places = sampled(question.job.width, &reference, &reference, 2 * FEW);
@@ -253,15 +252,15 @@ pub fn off(question: &Question) -> f64 {
 }
 
 impl<'a> Search<'a> {
-    /// All mistakes alone, with all values.
+    /// Returns all single mistakes with all their values.
     fn singles(&self) -> Vec<Vec<(&'static Mistake, f32)>> {
         let lights = self.base.world.lights().len();
         let rows = MISTAKES.iter().copied().flatten();
         rows.flat_map(|row| row.values.numbers(lights).into_iter().map(move |value| vec![(row, value)])).collect()
     }
 
-    /// Pixels in which the scene's picture does not hang on rounding: a little aside, or with
-    /// another epsilon, it is the same.
+    /// Marks pixels that do not depend on rounding: they stay the same with a small offset or
+    /// another epsilon.
     fn steady(&self, pixels: &Pixels) -> Vec<bool> {
         let aside = |by: f32| {
             let mut variant = self.base.clone();
@@ -277,7 +276,7 @@ impl<'a> Search<'a> {
                 *steady &= differing(&[*made], &[*base]) == 0;
             }
         }
-        // In a picture of nothing but edges, all pixels count.
+        // In a picture that consists of edges, use all pixels.
         if steady.iter().filter(|s| **s).count() * 2 < steady.len() { vec![true; steady.len()] } else { steady }
     }
 
@@ -285,14 +284,15 @@ impl<'a> Search<'a> {
         all.into_par_iter().map(|mistakes| self.trial(mistakes, pixels)).collect()
     }
 
-    /// Makes mistakes and looks at what comes of it.
+    /// Renders mistakes and measures the fit.
     fn trial(&self, mistakes: Vec<(&'static Mistake, f32)>, pixels: &Pixels) -> Trial {
         let mut variant = self.base.clone();
         for (mistake, value) in &mistakes {
             (mistake.make)(&mut variant, *value);
         }
         let mut made = self.view.picture(&variant, &pixels.places);
-        // Where the reference was made a little otherwise, what counts is what the mistake changes.
+        // If the reference differs slightly from the scene's own picture, apply the mistake's
+        // change to the reference.
         if variant.turn == Turn::default() {
             for ((made, base), reference) in made.iter_mut().zip(&pixels.base).zip(&pixels.reference) {
                 if differing(&[*base], &[*reference]) > 0 {
@@ -304,8 +304,8 @@ impl<'a> Search<'a> {
         Trial { mistakes, made, fit }
     }
 
-    /// The mistakes of a trial with the value at which it fits best: sought at few pixels, and
-    /// rounded if more allow it.
+    /// Returns the mistakes with the best-fitting value: searched at few pixels, and rounded if
+    /// more pixels agree.
     fn refined(&self, trial: &Trial, few: &Pixels, more: &Pixels) -> Vec<(&'static Mistake, f32)> {
         let [(mistake, value)] = trial.mistakes[..] else { return trial.mistakes.clone() };
         if !matches!(mistake.values, Values::Numbers(_)) || trial.fit.explained > 0.999 {
@@ -322,14 +322,13 @@ impl<'a> Search<'a> {
             }
             step = step.sqrt();
         }
-        // A round number that fits as well is meant.
+        // Prefer a round number that fits as well.
         let round = (at * 20.0).round() / 20.0;
         let fits = |tried| explained(tried, more) >= explained(at, more) - 0.002;
         vec![(mistake, if round > 0.0 && fits(round) { round } else { at })]
     }
 
-    /// Pairs of the best with all others: at a few pixels, then the best of them at more, and so
-    /// on.
+    /// Tries pairs of the best mistakes with all others, the best of them at ever more pixels.
     fn pairs(&self, best_of: &[Trial], singles: &[Trial], rounds: [&Pixels; 4]) -> (Vec<Named>, Vec<Named>) {
         let mut first: Vec<&Trial> = best_of.iter().take(BEST).chain(best_matched(best_of)).collect();
         first.dedup_by_key(|trial| trial.mistakes[0].0.name);
@@ -340,7 +339,7 @@ impl<'a> Search<'a> {
                 let (a, b) = (a.mistakes[0], b.mistakes[0]);
                 let key = |one: (&Mistake, f32)| (one.0.name, one.1.to_bits());
                 let pair = (key(a).min(key(b)), key(a).max(key(b)));
-                // What hangs on rounding goes with anything, and explains nothing.
+                // Mistakes that depend on rounding match anything and explain nothing.
                 let shaky = a.0.step == "epsilon" || b.0.step == "epsilon";
                 if a.0.name != b.0.name && !shaky && known.insert(pair) {
                     pairs.push(vec![a, b]);
@@ -359,12 +358,12 @@ impl<'a> Search<'a> {
         let trials = self.trials(pairs, full);
         let tried = tried(&trials);
         let mut named = decided(trials, full, &Bars::PAIR);
-        // Each of the two must be needed.
+        // Both mistakes must be needed.
         named.retain(|named| 1.0 - alone(&named.mistakes) > 2.0 * (1.0 - named.explained) + 0.002);
         (named, tried)
     }
 
-    /// Whether values that differ by one of 255 are those that are rounded otherwise.
+    /// Checks if values that differ by 1/255 match the other rounding.
     fn rounding(&self, pixels: &Pixels) -> Option<Named> {
         let mistake = super::table::of_name("other-rounding")?;
         let made = self.trial(vec![(mistake, 0.0)], pixels).made;
@@ -381,7 +380,7 @@ impl<'a> Search<'a> {
         told.then(|| Named { mistakes: vec![(mistake, 0.0)], explained: share, matched: share })
     }
 
-    /// Whether rays hit the surface that they leave.
+    /// Checks if the picture shows acne: rays that hit the surface they leave.
     fn acne(&self, all: &[(u32, u32)], reference: &[Vec3], test: &[Vec3]) -> Option<Named> {
         let lights = self.base.world.lights().len();
         if all.len() > WHOLE || !(1..=4).contains(&lights) || !self.base.settings.shadows {
@@ -390,8 +389,7 @@ impl<'a> Search<'a> {
         let width = self.question.job.width as usize;
         let differ = speckles::speckled(reference, test, width)?;
         let places: Vec<(u32, u32)> = differ.iter().map(|&i| all[i]).collect();
-        // Where mirrored rays begin in their own surface, they bring nothing, or what is there once
-        // more.
+        // Reflected rays with acne return nothing, or the surface's own light again.
         let bounces = if self.base.settings.bounces > 0 { 3 } else { 1 };
         let dark = |of: u32| {
             let (off, way) = (of / bounces, of % bounces);
@@ -416,8 +414,8 @@ fn sort(trials: &mut [Trial]) {
     trials.sort_by(|a, b| b.fit.explained.total_cmp(&a.fit.explained));
 }
 
-/// The mistakes of the best trials: three in four by the squared difference, one by the pixels that
-/// agree.
+/// Returns the best trials' mistakes: three quarters by squared difference, the rest by matching
+/// pixels.
 fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>> {
     sort(trials);
     let (first, others) = trials.split_at_mut(trials.len().min(count - count / 4));
@@ -425,29 +423,28 @@ fn best(trials: &mut [Trial], count: usize) -> Vec<Vec<(&'static Mistake, f32)>>
     first.iter().chain(others.iter().take(count / 4)).map(|trial| trial.mistakes.clone()).collect()
 }
 
-/// Those that agree at most pixels: a few that are far off spoil the squared difference.
+/// Returns the trials that match most pixels; a few outliers can spoil the squared difference.
 fn best_matched(trials: &[Trial]) -> impl Iterator<Item = &Trial> {
     let mut sorted: Vec<&Trial> = trials.iter().collect();
     sorted.sort_by(|a, b| b.fit.matched.total_cmp(&a.fit.matched));
     sorted.into_iter().take(4)
 }
 
-/// How well a picture must be explained to be named.
+/// Minimum fit of an explanation.
 struct Bars {
     explained: f64,
     matched: f64,
 }
 
 impl Bars {
-    // The right name leaves nothing but what rounding makes of edges; what leaves more is another
-    // mistake.
+    // The right mistake leaves only rounding at edges; a larger rest means another mistake.
     const SINGLE: Bars = Bars { explained: 0.985, matched: 0.9 };
     const PAIR: Bars = Bars { explained: 0.985, matched: 0.95 };
-    /// With a number that was fitted.
+    /// Minimum fit with a fitted value.
     const FITTED: Bars = Bars { explained: 0.999, matched: 0.97 };
-    /// No more is sought.
+    /// Fit at which the search stops.
     const CLEAR: Bars = Bars { explained: 0.995, matched: 0.98 };
-    /// As good as can be.
+    /// Practically perfect fit.
     const PERFECT: Bars = Bars { explained: 0.998, matched: 0.995 };
 
     fn passes(&self, fit: &Fit) -> bool {
@@ -455,8 +452,8 @@ impl Bars {
     }
 }
 
-/// The trial that makes the picture, with those that make the same one; nothing where none does, or
-/// two different ones do nearly as well.
+/// Returns the trials that explain the picture; none if no trial fits, or if two different ones fit
+/// almost equally well.
 fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     sort(&mut trials);
     trials.dedup_by(|a, b| a.mistakes.len() == b.mistakes.len() && same(&a.mistakes, &b.mistakes));
@@ -471,13 +468,13 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
             && difference(&best.made, &other.made) <= 0.01 * total
     };
     let rest = |trial: &Trial| 1.0 - trial.fit.explained;
-    // What fits as well as can be gives way only to what does so too.
+    // A perfect fit has only perfect rivals.
     let (slack, off) = if Bars::PERFECT.passes(&best.fit) { (0.001, 0.01) } else { (0.01, 0.1) };
     let rival = |other: &&Trial| {
         !equal(other)
             && rest(other) < 2.0 * rest(best) + slack
             && other.fit.matched > best.fit.matched - off
-            // Another value of the same mistake is no rival.
+            // Another value of the same mistake is not a rival.
             && !one_kind(&other.mistakes, &best.mistakes)
     };
     let rivals: Vec<&Trial> = trials.iter().filter(rival).collect();
@@ -486,12 +483,12 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     }
     let mut named: Vec<Named> = Vec::new();
     for trial in trials.iter().filter(|trial| equal(trial)).chain(rivals) {
-        // One mistake with two values is one.
+        // Report a mistake with two values once.
         if !named.iter().any(|named| one_kind(&named.mistakes, &trial.mistakes)) {
             named.push(trial.named());
         }
     }
-    // What needs a number to fit it is no mistake where another needs none.
+    // Prefer mistakes that need no fitted value.
     let plain = |named: &Named| !named.mistakes.iter().any(|(mistake, value)| mistake.is_fitted(*value));
     if named.iter().any(plain) {
         named.retain(plain);
@@ -499,9 +496,9 @@ fn decided(mut trials: Vec<Trial>, pixels: &Pixels, bars: &Bars) -> Vec<Named> {
     named
 }
 
-/// Whether mistakes are the same but for their values.
+/// Returns true if mistakes differ only in their values.
 fn one_kind(a: &[(&Mistake, f32)], b: &[(&Mistake, f32)]) -> bool {
-    // Another light is another mistake.
+    // Another light counts as another mistake.
     let alike =
         |a: &(&Mistake, f32), b: &(&Mistake, f32)| a.0.name == b.0.name && (a.0.values != Values::Lights || a.1 == b.1);
     a.len() == b.len() && a.iter().all(|a| b.iter().any(|b| alike(a, b)))

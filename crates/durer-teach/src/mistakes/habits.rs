@@ -1,46 +1,46 @@
-//! What a pupil's tracer does otherwise than it should.
+//! Deviations of a student's tracer from a correct one.
 
 use durer_scene::math::{Color, Vec2};
 
-/// Which of the hits along a ray is taken.
+/// Hit that the tracer selects along a ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pick {
-    /// The nearest, as it should be.
+    /// The nearest, which is correct.
     #[default]
     Nearest,
     /// The nearest hit of the object whose nearest hit is farthest.
     FarthestObject,
     /// The last crossing of any surface.
     Last,
-    /// That of the object that is written last.
+    /// The hit of the last object in the file.
     LastWritten,
-    /// That of the object that is written first.
+    /// The hit of the first object in the file.
     FirstWritten,
-    /// The nearest, but of spheres the far side.
+    /// The nearest, but the far side of spheres.
     FarSpheres,
-    /// As the farthest object, and of meshes the farthest triangle.
+    /// `FarthestObject`, with the farthest triangle of meshes.
     FarthestTriangle,
-    /// As what is written last, and of meshes the last triangle.
+    /// `LastWritten`, with the last triangle of meshes.
     LastTriangle,
     /// The nearest, but spheres are not hit from inside.
     NearRoots,
 }
 
-/// How normals of transformed things come to the world.
+/// Transform of normals from object to world space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Normals {
-    /// By the inverse transpose, normalised.
+    /// Inverse transpose, normalised.
     #[default]
     Right,
-    /// Not at all.
+    /// No transform.
     Local,
-    /// By the inverse transpose, and of any length.
+    /// Inverse transpose, not normalised.
     Long,
-    /// By the inverse, without the transpose.
+    /// Inverse, not transposed.
     ByInverse,
 }
 
-/// What becomes of the ambient light.
+/// Use of the ambient light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ambient {
     /// Times the diffuse colour, once.
@@ -48,11 +48,11 @@ pub enum Ambient {
     Right,
     /// Once for each light.
     EachLight,
-    /// Not times the diffuse colour.
+    /// Not multiplied by the diffuse colour.
     Bare,
 }
 
-/// The factor of a diffuse term.
+/// Factor of a diffuse term.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Cosine {
     /// max(0, N·L).
@@ -76,7 +76,7 @@ pub enum Cosine {
     OverPi,
 }
 
-/// The vector between light and eye of Blinn's highlights.
+/// Half vector of Blinn's highlights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Half {
     /// norm(L + V).
@@ -91,23 +91,23 @@ pub enum Half {
 /// Rays for which hits behind their origin count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Behind {
-    /// All.
+    /// Every ray.
     All,
-    /// Those of the camera.
+    /// Camera rays.
     Camera,
 }
 
-/// How what the lights give is added.
+/// Accumulation of the lights' contributions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Sum {
-    /// All of it, clamped at the very end.
+    /// Sum, clamped at the very end.
     #[default]
     Right,
     /// Clamped to 1 after each light.
     ClampedEach,
-    /// What each light gives is clamped to 1 by itself.
+    /// Each light's contribution is clamped to 1.
     ClampedLight,
-    /// Clamped to 1 before mirrored and transmitted light is added.
+    /// Clamped to 1 before reflected and transmitted light is added.
     ClampedLocal,
     /// Each light replaces those before it.
     LastOnly,
@@ -115,13 +115,13 @@ pub enum Sum {
     LastSeen,
 }
 
-/// What fades light with distance d, beside the factors of the scene.
+/// Attenuation of light with distance d, beside the factors of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Fading {
     /// Divided by the scene's polynomial.
     #[default]
     Right,
-    /// Multiplied with it.
+    /// Multiplied by the scene's polynomial.
     Multiplied,
     /// Divided by d.
     Linear,
@@ -133,7 +133,7 @@ pub enum Fading {
     SquaredTwice,
 }
 
-/// Where point lights are taken to be.
+/// Direction to a point light.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PointLamp {
     /// L = norm(position - p).
@@ -149,13 +149,13 @@ pub enum PointLamp {
     PositionAlone,
 }
 
-/// The direction of a mirrored ray.
+/// Direction of a reflected ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Mirror {
     /// d - 2 (d·N) N.
     #[default]
     Right,
-    /// Its negative.
+    /// The correct direction, negated.
     Negated,
     /// d - (d·N) N: along the surface.
     Along,
@@ -163,92 +163,92 @@ pub enum Mirror {
     Plus,
 }
 
-/// The direction of a transmitted ray.
+/// Direction of a transmitted ray.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Glass {
     /// Snell's law.
     #[default]
     Right,
-    /// With the ratio of indices turned round.
+    /// Inverse ratio of indices.
     Inverted,
-    /// With the ratio of entering also where the ray leaves.
+    /// The entering ratio also when the ray leaves.
     NotSwapped,
-    /// As if there were no surface.
+    /// Not refracted.
     Straight,
-    /// With the outward normal also where the ray leaves.
+    /// The outward normal also when the ray leaves.
     Outward,
-    /// With the root added that should be taken away.
+    /// The root added instead of subtracted.
     RootAdded,
-    /// With each index in place of the other, in Fresnel's law too.
+    /// Indices exchanged, in Fresnel's law too.
     Exchanged,
 }
 
-/// How the divisor of glass is found.
+/// Fresnel term of glass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Fresnel {
-    /// Schlick's formula.
+    /// Schlick's approximation.
     #[default]
     Right,
     /// R0 at every angle.
     Constant,
-    /// Not at all: both rays count in full.
+    /// None: both rays count in full.
     None,
-    /// This share is mirrored at every angle.
+    /// This share is reflected at every angle.
     Share(f32),
-    /// What should be mirrored is transmitted, and the other way.
+    /// Reflected and transmitted shares exchanged.
     Exchanged,
-    /// Schlick's formula with the angle of the incoming ray also where it leaves glass.
+    /// Schlick's approximation with the angle of the incoming ray also when it leaves glass.
     Incoming,
-    /// Schlick's formula with an R0 that is not squared.
+    /// Schlick's approximation with an R0 that is not squared.
     Unsquared,
-    /// Schlick's formula with another power than 5.
+    /// Schlick's approximation with another power than 5.
     Power(f32),
 }
 
-/// What a light is as a thing in space.
+/// Deviations of the lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Lamps {
-    /// L of directional lights is the direction as written, not its negative.
+    /// L of directional lights is the direction as written, not negated.
     pub negated: bool,
     /// L of all lights has the wrong sign, for shadow rays too.
     pub all_negated: bool,
-    /// L of directional lights has the length that is written.
+    /// L of directional lights is not normalised.
     pub long: bool,
-    /// L of point lights has the length of the distance.
+    /// L of point lights is not normalised.
     pub long_points: bool,
-    /// How light fades.
+    /// Attenuation.
     pub fading: Fading,
-    /// Where point lights are.
+    /// Direction to point lights.
     pub points: PointLamp,
 }
 
-/// What highlights do.
+/// Deviations of highlights.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Highlights {
-    /// They are times max(0, N·L).
+    /// Multiplied by max(0, N·L).
     pub times_cosine: bool,
-    /// They are times the diffuse colour.
+    /// Multiplied by the diffuse colour.
     pub times_diffuse: bool,
-    /// They have the light's colour, not times the specular colour.
+    /// The light's colour, not multiplied by the specular colour.
     pub bare: bool,
-    /// The vector of Blinn's model.
+    /// Half vector of Blinn's model.
     pub half: Half,
-    /// The direction to the eye has the wrong sign.
+    /// The view direction has the wrong sign.
     pub eye_negated: bool,
-    /// They do not have the light's colour.
+    /// Not multiplied by the light's colour.
     pub lightless: bool,
-    /// By what they are multiplied, if given.
+    /// Additional factor.
     pub factor: Option<f32>,
-    /// The base of the power has lost its sign.
+    /// Absolute value as the base of the power.
     pub two_sided: bool,
-    /// Blinn's model too shows them where N·L <= 0.
+    /// Blinn's model also where N·L <= 0.
     pub everywhere: bool,
 }
 
-/// Where shadow rays go.
+/// Direction of shadow rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ShadowWay {
-    /// To the light.
+    /// Towards the light.
     #[default]
     Light,
     /// Away from it.
@@ -257,109 +257,109 @@ pub enum ShadowWay {
     Normal,
 }
 
-/// What shadow rays do.
+/// Deviations of shadow rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shadows {
-    /// They do not end at the light.
+    /// Do not end at the light.
     pub endless: bool,
-    /// In shadow there is no ambient light either.
+    /// No ambient light in shadow.
     pub ambient_too: bool,
-    /// They begin this far along, if given.
+    /// Start distance.
     pub epsilon: Option<f32>,
-    /// The share of a light that is left in its shadow.
+    /// Share of a light that remains in its shadow.
     pub left: f32,
-    /// Where one light is blocked, those after it are too.
+    /// If one light is blocked, later ones are too.
     pub later_too: bool,
-    /// Where any light is blocked, there is no ambient light.
+    /// If any light is blocked, ambient light is missing.
     pub ambient_of_any: bool,
-    /// Only the light of this number casts shadows, if given.
+    /// Only the light of this index casts shadows.
     pub only_light: Option<usize>,
-    /// Things that let light through cast none.
+    /// Transparent objects cast no shadows.
     pub no_glass: bool,
-    /// Where they go.
+    /// Direction of shadow rays.
     pub way: ShadowWay,
-    /// Light counts where they hit something.
+    /// Light counts where the ray hits something.
     pub inverted: bool,
-    /// Those to directional lights end at distance 1.
+    /// Rays to directional lights end at distance 1.
     pub short: bool,
-    /// Highlights are there in shadow too.
+    /// Highlights remain in shadow.
     pub highlights_left: bool,
-    /// Where one light is blocked, there is no light at all; with `true`, mirrored and transmitted
-    /// light neither.
+    /// If one light is blocked, all direct light is missing; with `true`, also reflected and
+    /// transmitted light.
     pub black: Option<bool>,
 }
 
-/// What secondary rays do.
+/// Deviations of secondary rays.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounces {
-    /// Mirrored light counts in full.
+    /// Reflected light counts in full.
     pub mirror_in_full: bool,
     /// Transmitted light counts in full.
     pub glass_in_full: bool,
-    /// Mirrored rays bring nothing; glass is divided as if they did.
+    /// Reflected rays return nothing; the Fresnel term still applies.
     pub no_mirror: bool,
-    /// Transmitted rays bring nothing; glass is divided as if they did.
+    /// Transmitted rays return nothing; the Fresnel term still applies.
     pub no_glass: bool,
-    /// Where mirrored rays go.
+    /// Direction of reflected rays.
     pub mirror: Mirror,
-    /// Where transmitted rays go.
+    /// Direction of transmitted rays.
     pub glass: Glass,
-    /// What divides glass.
+    /// Fresnel term of glass.
     pub fresnel: Fresnel,
-    /// Local light counts for what the mirror's colour leaves of it.
+    /// Local light is scaled by what the mirror's colour leaves.
     pub mixed: bool,
-    /// Mirrored light is times the diffuse colour.
+    /// Reflected light is multiplied by the diffuse colour.
     pub times_diffuse: bool,
     /// Mirrors have no local light.
     pub instead: bool,
-    /// They are traced once for each light.
+    /// Traced once for each light.
     pub each_light: bool,
-    /// Where they hit nothing, they bring no light.
+    /// Misses return black.
     pub black_sky: bool,
-    /// Shadows are looked for at the first hit only.
+    /// Shadows at the first hit only.
     pub unshadowed: bool,
-    /// They begin this far along, if given.
+    /// Start distance.
     pub epsilon: Option<f32>,
 }
 
-/// Everything that a pupil's tracer does otherwise. The default is a tracer that is right.
+/// Deviations of a student's tracer. The default is a correct tracer.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Habits {
-    /// Which hit is taken.
+    /// Hit that is selected.
     pub pick: Pick,
-    /// Hits behind the ray's origin count: for camera rays, or for all.
+    /// Rays for which hits behind the origin count.
     pub behind: Option<Behind>,
-    /// The colour that each ray brings back is clamped to 1.
+    /// The colour that each ray returns is clamped to 1.
     pub clamped_rays: bool,
-    /// Directions are normalised in object space, so that `t` is another there.
+    /// Directions are normalised in object space, so that `t` differs there.
     pub local_unit: bool,
-    /// Normals of transformed things.
+    /// Transform of normals.
     pub normals: Normals,
-    /// Normals between the corners of a mesh keep the length that mixing gives them.
+    /// Interpolated mesh normals are not normalised.
     pub long_mixed: bool,
     /// Meshes have one normal a triangle.
     pub flat: bool,
-    /// Normals of triangles point the other way.
+    /// Triangle normals are negated.
     pub triangles_turned: bool,
-    /// Normals of spheres point inwards.
+    /// Sphere normals point inwards.
     pub spheres_turned: bool,
-    /// Those of planes do.
+    /// Plane normals are negated.
     pub planes_turned: bool,
-    /// Which normals of a triangle's corners its three weights belong to; 0 is right.
+    /// Permutation of the vertex normals of a triangle; 0 is correct.
     pub mixed_otherwise: usize,
-    /// Shaded normals always face the eye.
+    /// Shading normals always face the eye.
     pub faced: bool,
     /// Ambient light.
     pub ambient: Ambient,
-    /// The diffuse term.
+    /// Diffuse term.
     pub cosine: Cosine,
-    /// It has not the surface's colour.
+    /// The diffuse term lacks the surface's colour.
     pub plain_diffuse: bool,
-    /// It has not the light's colour.
+    /// The diffuse term lacks the light's colour.
     pub diffuse_lightless: bool,
-    /// By what it is multiplied, if given.
+    /// Additional factor of the diffuse term.
     pub diffuse_factor: Option<f32>,
-    /// What rays of the camera bring that hit nothing, if given, and whether others do too.
+    /// Colour of camera rays that miss, and true if other rays return it too.
     pub sky: Option<(Color, bool)>,
     /// Lights.
     pub lamps: Lamps,
@@ -367,46 +367,46 @@ pub struct Habits {
     pub highlights: Highlights,
     /// Shadow rays.
     pub shadows: Shadows,
-    /// How lights are added.
+    /// Accumulation of lights.
     pub sum: Sum,
     /// Secondary rays.
     pub bounces: Bounces,
 }
 
-/// To which sides of a picture that is not square the angle belongs.
+/// Sides of a non-square picture to which the field of view applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Aspect {
-    /// As the year has it.
+    /// As in that year's program.
     #[default]
     Right,
     /// The smaller side spans the angle.
     Smaller,
-    /// The smaller side spans as much more as it should span less.
+    /// The smaller side spans more by the factor by which it should span less.
     Turned,
 }
 
-/// Where the rays of a pixel go, beside what the scene's rules say.
+/// Deviations of camera rays, beside the scene's rules.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aim {
-    /// The place in a pixel, of which (0.5, 0.5) is the middle.
+    /// Position in the pixel; (0.5, 0.5) is the centre.
     pub place: Vec2,
-    /// By what the point in the picture is multiplied.
+    /// Scale of the point in the picture.
     pub scale: f32,
-    /// What becomes of a picture that is not square.
+    /// Treatment of non-square pictures.
     pub aspect: Aspect,
-    /// How many rays a pixel has.
+    /// Number of rays a pixel.
     pub rays: Rays,
 }
 
-/// How many rays a pixel has.
+/// Number of rays a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rays {
-    /// As asked for.
+    /// As the job says.
     #[default]
     Right,
     /// One.
     One,
-    /// Four by four, evenly.
+    /// A regular grid of four by four.
     Sixteen,
 }
 
@@ -417,7 +417,7 @@ impl Default for Aim {
 }
 
 impl Aim {
-    /// By what points of a picture are multiplied.
+    /// Returns the scale of picture points.
     pub fn factor(&self, width: u32, height: u32) -> Vec2 {
         let (w, h) = (width as f32, height as f32);
         let ratio = w.max(h) / w.min(h);
@@ -431,36 +431,36 @@ impl Aim {
     }
 }
 
-/// What becomes of light in a file.
+/// Deviations in the conversion of light to a file.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Output {
-    /// What the transfer curve says.
+    /// The transfer curve.
     #[default]
     Right,
-    /// 255 times the value, of which eight bits are kept.
+    /// 255 times the value, modulo 256.
     Wrapped,
-    /// Divided by the brightest of the picture.
+    /// Divided by the brightest value of the picture.
     Scaled,
-    /// Rounded where it should be cut off, or the other way.
+    /// Rounded instead of truncated, or the reverse.
     OtherRounding,
-    /// Values to the power of one over this; the curve of sRGB for 0.
+    /// Values to the power of the reciprocal; 0 means the sRGB curve.
     CurveMore(f32),
     /// c / (1 + c).
     Toned,
-    /// Times this.
+    /// Times this factor.
     Times(f32),
     /// 1 - c.
     Negative,
-    /// Grey: 0 the mean of the channels, 1 and 2 as television weighs them, 3 the greatest, 4 red,
-    /// 5 green, 6 blue.
+    /// Grey: 0 the mean of the channels, 1 and 2 luma of Rec. 601 and luminance, 3 the maximum, 4
+    /// red, 5 green, 6 blue.
     Grey(u32),
-    /// In so many steps.
+    /// This many levels.
     Steps(u32),
-    /// Values to the power of this; without the curve of sRGB, or its inverse, for 0.
+    /// Values to this power; 0 means without the sRGB curve, or its inverse.
     CurveLess(f32),
 }
 
-/// Where a pixel of the file comes from.
+/// Source of a pixel in the file.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Turn {
     /// Columns and rows are exchanged, in a square picture.
@@ -471,24 +471,24 @@ pub struct Turn {
     pub rows_back: bool,
     /// Red and blue are exchanged.
     pub bgr: bool,
-    /// By how many pixels the picture is moved to the right and down.
+    /// Shift of the picture in pixels, to the right and down.
     pub moved: (i32, i32),
-    /// What nothing is moved to is black, and does not repeat the border.
+    /// Pixels without a source are black instead of repeating the border.
     pub black_border: bool,
-    /// What leaves the picture comes in on the other side.
+    /// Pixels wrap around at the border.
     pub rolled: bool,
-    /// Two by two pixels are one.
+    /// Blocks of two by two pixels are averaged.
     pub halved: bool,
 }
 
 impl Turn {
-    /// Whether no pixel of the right picture comes to a place.
+    /// Returns true if no source pixel maps to a position.
     pub fn is_empty(self, width: u32, height: u32, (x, y): (u32, u32)) -> bool {
         let out = |at: u32, by: i32, size: u32| !(0..i64::from(size)).contains(&(i64::from(at) - i64::from(by)));
         self.black_border && (out(x, self.moved.0, width) || out(y, self.moved.1, height))
     }
 
-    /// The pixel of the right picture that comes to a place.
+    /// Returns the source pixel of a position.
     pub fn source(self, width: u32, height: u32, (x, y): (u32, u32)) -> (u32, u32) {
         let x = if self.columns_back { width - 1 - x } else { x };
         let y = if self.rows_back { height - 1 - y } else { y };

@@ -1,8 +1,8 @@
-//! The usual mistakes as one table, and the pictures that they make of a scene.
+//! Common mistakes as one table, and their pictures of a scene.
 //!
-//! A row of [`MISTAKES`] says what a pupil's program does wrong, in words and in both forms of the
+//! A row of [`MISTAKES`] states an error of a student's program in words and in both forms of the
 //! code, and changes a [`Variant`] so that a [`Pupil`]'s picture shows it. [`diagnose()`] renders
-//! the rows, alone and in pairs, and names the one that makes a given picture; the lesson shows
+//! the rows, alone and in pairs, and names the one that explains a given picture; the lesson shows
 //! some of them. A new mistake is a new row.
 
 mod diagnose;

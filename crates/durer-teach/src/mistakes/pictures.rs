@@ -8,21 +8,21 @@ use durer_render::render::{Job, sample_places};
 use durer_scene::math::{Color, LUMINANCE, Vec2, Vec3, fp};
 use rayon::prelude::*;
 
-/// Where pictures are looked at, and how.
+/// Resolution, sampling and transfer of the pictures.
 #[derive(Clone, Debug)]
 pub(super) struct View<'j> {
-    /// Columns and rows of the picture, and its samples.
+    /// Size and samples of the picture.
     pub job: &'j Job,
-    /// Whether values are of a screen or of light.
+    /// Scale of the values: display or linear light.
     pub scale: Scale,
-    /// What makes a screen's values.
+    /// Transfer curve for display values.
     pub transfer: Transfer,
-    /// The brightest value of the right picture.
+    /// Brightest value of the correct picture.
     pub brightest: f32,
 }
 
 impl View<'_> {
-    /// The light of some pixels.
+    /// Renders the linear light of pixels.
     pub fn light(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Color> {
         let raster = variant.raster(self.job.width, self.job.height);
         let pupil = Pupil::new(&variant.world, variant.settings, &variant.habits);
@@ -49,12 +49,12 @@ impl View<'_> {
         places.par_iter().with_min_len(16).map(pixel).collect()
     }
 
-    /// What a picture's file has of some light.
+    /// Converts light to the values of a file.
     pub fn values(&self, output: Output, light: &[Color]) -> Vec<Vec3> {
         light.iter().map(|&light| self.value(output, light)).collect()
     }
 
-    /// The values of some pixels of a variant's picture.
+    /// Renders the file values of pixels of a variant.
     pub fn picture(&self, variant: &Variant, places: &[(u32, u32)]) -> Vec<Vec3> {
         let (width, height) = (self.job.width, self.job.height);
         let sources: Vec<(u32, u32)> = places.iter().map(|place| variant.turn.source(width, height, *place)).collect();
@@ -71,8 +71,7 @@ impl View<'_> {
     }
 
     fn value(&self, output: Output, light: Color) -> Vec3 {
-        // Values beyond all measure are white, whatever an old program's whole numbers made of
-        // them.
+        // Extremely large values are white, whatever the integer overflow of an old program gave.
         let light = if light.is_finite() { light.min(Color::splat(1e6)) } else { light };
         let light = if output == Output::Toned { light.map(|v| v / (1.0 + v.max(0.0))) } else { light };
         let light = match output {
@@ -92,7 +91,7 @@ impl View<'_> {
         let transfer = match (output, self.transfer) {
             (Output::OtherRounding, Transfer::Course) => Transfer::Linear,
             (Output::OtherRounding, Transfer::Linear) => Transfer::Course,
-            // Who leaves the curve out writes what is there.
+            // Leaving the curve out writes linear values.
             (Output::CurveLess(0.0), Transfer::Srgb) => Transfer::Linear,
             (_, transfer) => transfer,
         };
@@ -101,8 +100,7 @@ impl View<'_> {
             return light.map(|v| ((v * 255.0 + half).floor() as i64).rem_euclid(256) as f32 / 255.0);
         }
         let eight = |transfer: Transfer, v: Vec3| Vec3::from(transfer.encode_pixel(v).map(f32::from)) / 255.0;
-        // A curve on top of what the transfer makes is reckoned from values that are not cut to
-        // eight bits yet.
+        // A second curve applies to values before quantisation.
         let curved = |v: f32| if transfer == Transfer::Srgb { linear_to_srgb(v.clamp(0.0, 1.0)) } else { v.max(0.0) };
         let plain = if transfer == Transfer::Course { Transfer::Course } else { Transfer::Linear };
         match output {
@@ -117,7 +115,7 @@ impl View<'_> {
     }
 }
 
-/// A colour as grey.
+/// Converts a colour to grey.
 fn grey(how: u32, color: Color) -> f32 {
     match how {
         0 => (color.x + color.y + color.z) / 3.0,

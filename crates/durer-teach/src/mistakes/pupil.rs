@@ -1,7 +1,7 @@
-//! A pupil's tracer: Whitted's algorithm once more, with any of the usual mistakes.
+//! A student's tracer: a second implementation of Whitted's algorithm with optional mistakes.
 //!
-//! It is apart from [`Whitted`], so that what renders pictures asks for no mistakes. Without any it
-//! gives the same colours, to the bit: a test holds the two together.
+//! It is separate from [`Whitted`], so that the renderer never checks for mistakes. Without
+//! mistakes it returns the same colours bit for bit, which a test verifies.
 
 use super::habits::{
     Ambient, Behind, Cosine, Fading, Fresnel, Glass, Habits, Half, Mirror, Normals, Pick, PointLamp, ShadowWay, Sum,
@@ -19,7 +19,7 @@ use durer_scene::shape::Surface;
 use glam::DVec3;
 use smallvec::SmallVec;
 
-/// The tracer.
+/// A student's tracer.
 #[derive(Clone, Copy, Debug)]
 pub struct Pupil<'w> {
     world: &'w World,
@@ -28,7 +28,7 @@ pub struct Pupil<'w> {
     right: Whitted<'w>,
 }
 
-/// What a ray carries from bounce to bounce.
+/// State of a ray from bounce to bounce.
 #[derive(Clone)]
 struct Path {
     bounces: u32,
@@ -38,12 +38,12 @@ struct Path {
 }
 
 impl<'w> Pupil<'w> {
-    /// For a world, with settings and habits.
+    /// Creates a tracer for a world with settings and mistakes.
     pub fn new(world: &'w World, settings: Settings, habits: &'w Habits) -> Self {
         Pupil { world, settings, habits, right: Whitted { world, settings, cancel: None } }
     }
 
-    /// The light that comes along a camera ray.
+    /// Returns the radiance along a camera ray.
     pub fn radiance(&self, ray: &Ray) -> Color {
         let path = Path { bounces: self.settings.bounces, media: Media::default(), weight: 1.0, first: true };
         self.trace(&ray.into(), path)
@@ -51,7 +51,7 @@ impl<'w> Pupil<'w> {
 
     fn trace(&self, ray: &Ray64, mut path: Path) -> Color {
         let mut rest = *ray;
-        // Some habits find the same hidden surface again.
+        // Some mistakes find the same hidden surface again; limit the loop.
         for _ in 0..64 {
             let behind = self.habits.behind.is_some_and(|rays| rays == Behind::All || path.first);
             let from = if behind { f32::NEG_INFINITY } else { rest.rounded.t_min };
@@ -74,7 +74,7 @@ impl<'w> Pupil<'w> {
         }
     }
 
-    /// The hit, and the `t` at which the pupil takes it to be.
+    /// Returns the selected hit, and the `t` that the tracer assigns to it.
     fn closest(&self, ray: &Ray64) -> Option<(Hit, f32)> {
         if self.habits.local_unit {
             let mut whole = *ray;
@@ -107,7 +107,7 @@ impl<'w> Pupil<'w> {
         hit.map(|hit| (hit, hit.t))
     }
 
-    /// The nearest hit of each object, and of meshes all.
+    /// Iterates over the nearest hit of each object, and all hits of meshes.
     fn faces<'r>(&'r self, ray: &'r Ray64) -> impl Iterator<Item = Hit> + 'r {
         let mut known = SmallVec::<[u32; 16]>::new();
         self.world.all_hits(ray).filter(move |hit| {
@@ -118,13 +118,13 @@ impl<'w> Pupil<'w> {
         })
     }
 
-    /// Whether a ray comes from inside of a sphere that it hits.
+    /// Returns true if a ray hits a sphere from inside.
     fn leaves_sphere(&self, ray: &Ray64, hit: &Hit) -> bool {
         let object = &self.world.objects()[hit.object as usize].geometry;
         taught(object) == Some(Taught::Sphere) && self.world.interaction(ray, *hit).inside()
     }
 
-    /// The length of the way to a hit in the object's own space.
+    /// Returns the distance to a hit in object space.
     fn own_t(&self, ray: &Ray64, hit: &Hit) -> f32 {
         let to_world = self.world.objects()[hit.object as usize].to_world.as_ref();
         hit.t * to_world.map_or(1.0, |to_world| to_world.inverse_ray(ray).dir.length())
@@ -141,7 +141,7 @@ impl<'w> Pupil<'w> {
         self.world.occluded(&ray, &mut ())
     }
 
-    /// What a ray met, with the pupil's place and normals.
+    /// Adjusts position and normals of an interaction.
     fn met(&self, mut at: Interaction, t: f32) -> Interaction {
         let (habits, object) = (self.habits, &self.world.objects()[at.hit.object as usize]);
         let Interaction { ray, hit, surface, .. } = &mut at;
@@ -151,7 +151,7 @@ impl<'w> Pupil<'w> {
         if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.long_mixed)
             && let Some(mixed) = tree.mesh.mixed_normal(hit.part, hit.uv)
         {
-            // Transforms that turn and scale evenly keep the share of its length that it lost.
+            // Rotations and uniform scales preserve the length that interpolation lost.
             surface.n_shade *= mixed.length();
         }
         if let (Geometry::Mesh(tree), true) = (&object.geometry, habits.mixed_otherwise > 0) {
@@ -268,7 +268,7 @@ impl<'w> Pupil<'w> {
         color
     }
 
-    /// What arrives of a light, as the pupil reckons it.
+    /// Returns the light that arrives, with the tracer's mistakes.
     fn illuminated(&self, light: &Light, point: DVec3) -> Illumination {
         let mut seen = light.illuminate(point);
         if self.habits.lamps.all_negated {
@@ -317,7 +317,7 @@ impl<'w> Pupil<'w> {
         seen
     }
 
-    /// The vector to a light as it enters products: of length 1, but for mistakes.
+    /// Returns the light vector used in products; unit length unless a mistake changes that.
     fn lamp(&self, light: &Light, seen: &Illumination) -> Vec3 {
         match light {
             Light::Directional(lamp) if self.habits.lamps.long => seen.to_light * lamp.direction.length(),
@@ -326,7 +326,7 @@ impl<'w> Pupil<'w> {
         }
     }
 
-    /// Diffuse term and highlight of one light.
+    /// Returns the diffuse term and highlight of one light.
     fn direct(&self, phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, light: &Light, seen: &Illumination) -> Color {
         let habits = self.habits.highlights;
         let lamp = self.lamp(light, seen);
@@ -347,7 +347,7 @@ impl<'w> Pupil<'w> {
         let plain = self.habits.plain_diffuse && diffuse != Color::ZERO;
         let mut color = factor * if plain { Color::ONE } else { diffuse };
         if self.habits.diffuse_lightless {
-            // What is divided here is multiplied again below.
+            // Cancels the multiplication below.
             color /= seen.color.max(Color::splat(1e-6));
         }
         if let Some((specular, exponent, model)) = phong.highlight {
@@ -378,7 +378,7 @@ impl<'w> Pupil<'w> {
         color * seen.color
     }
 
-    /// The share of a light that arrives.
+    /// Returns the share of a light that arrives.
     fn visible(&self, surface: &Surface, seen: &Illumination, first: bool) -> Color {
         let habits = self.habits.shadows;
         let unshadowed = self.habits.bounces.unshadowed && !first;
@@ -424,7 +424,7 @@ impl<'w> Pupil<'w> {
         Color::ZERO
     }
 
-    /// Whether only things that let light through are in the way.
+    /// Returns black if an opaque object occludes the light; transparent ones do not.
     fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<f32>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
@@ -438,7 +438,7 @@ impl<'w> Pupil<'w> {
         Color::ZERO
     }
 
-    /// Mirrored and transmitted light.
+    /// Returns reflected and transmitted light.
     fn secondary(&self, at: &Interaction, parts: &[WeightedMaterial], passage: Passage, path: Path) -> Color {
         let habits = self.habits.bounces;
         let Blend { mut reflective, mut transparent, ior, fresnel } = Blend::of(parts);

@@ -1,21 +1,21 @@
-//! Acne: rays that hit the surface which they leave, at places that rounding decides.
+//! Acne: rays that hit the surface they leave, at points that depend on rounding.
 
 use super::search::SEEN;
 use durer_scene::math::Vec3;
 
-/// How many of the speckles must be of the kind.
+/// Minimum share of the speckles that must match the hypothesis.
 const MOST: f64 = 0.94;
-/// Of neighbours where there are speckles, so many must be without, at least; and as many more as
-/// there are at the border of some regions of so many pixels: 2.3 / √count for one disc.
+/// Minimum share of neighbour pairs of which only one is a speckle: a constant, and a term for the
+/// border of a few regions with the same number of pixels. One disc has 2.3 / √count.
 const BROKEN: f64 = 0.06;
 const BORDERS: f64 = 4.0;
 
-/// The pixels in which two pictures differ, if they are speckles and not regions.
+/// Returns the differing pixels if they are isolated speckles, not regions.
 pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Option<Vec<usize>> {
     let differs = |i: usize| (reference[i] - test[i]).abs().max_element() > SEEN;
     let all: Vec<bool> = (0..reference.len()).map(differs).collect();
     let differ: Vec<usize> = (0..all.len()).filter(|i| all[*i]).collect();
-    // A region has a border; speckles are nothing but borders.
+    // A region has an interior; speckles consist of borders.
     let (mut pairs, mut broken) = (0_usize, 0_usize);
     for i in 0..reference.len() {
         let right = (i + 1) % width != 0 && i + 1 < all.len();
@@ -31,8 +31,8 @@ pub(super) fn speckled(reference: &[Vec3], test: &[Vec3], width: usize) -> Optio
     (differ.len() * 500 > reference.len() && speckled).then_some(differ)
 }
 
-/// The share of the pixels that differ which are as dark as in the full shadow of some lights, if
-/// nearly all are. `shadowed` are these pixels of the pictures in which one or more lights are off.
+/// Returns the share of the differing pixels that are as dark as in full shadow of some lights, if
+/// it is at least `MOST`. `shadowed` has these pixels of the pictures with one or more lights off.
 pub(super) fn share(test: &[Vec3], differ: &[usize], shadowed: &[Vec<Vec3>]) -> Option<f64> {
     let alike =
         |(at, &i): (usize, &usize)| shadowed.iter().any(|dark| (dark[at] - test[i]).abs().max_element() <= SEEN);

@@ -1,4 +1,4 @@
-//! The pupil without mistakes, and the table.
+//! Tests of the student's tracer without mistakes, and of the table.
 
 use super::pictures::View;
 use super::table::MISTAKES;
@@ -53,8 +53,7 @@ fn job() -> Job {
     Job { settings: durer_render::integrator::Settings { bounces: 3, least_weight: 0.0, ..job.settings }, ..job }
 }
 
-/// Whatever year's rules hold, a pupil without mistakes makes the picture that is rendered, to the
-/// bit.
+/// In every dialect, a student's tracer without mistakes returns the rendered picture bit for bit.
 #[test]
 fn without_mistakes_the_picture_is_right() {
     for dialect in Dialect::ALL {
@@ -86,7 +85,7 @@ fn every_row_has_a_name_of_its_own_and_a_step_of_the_lesson() {
     }
 }
 
-/// The picture of a variant, as eight bits have it, and the brightest of its light.
+/// Renders the eight-bit picture of a variant; also returns its brightest value.
 fn picture(variant: &Variant, job: &Job, brightest: f32) -> (Picture, f32) {
     let places: Vec<(u32, u32)> = job.whole().places().collect();
     let view = View { job, scale: Scale::Display, transfer: Transfer::Course, brightest };
@@ -131,7 +130,7 @@ fn mistakes_are_named_alone_and_in_pairs() {
     assert_eq!(names, BTreeSet::from(["no-ambient", "no-shadows"]));
 }
 
-/// The mistakes that everybody makes, each with its value.
+/// The most common mistakes, each with its value.
 const USUAL: [(&str, f32); 49] = [
     ("no-ambient", 0.0),
     ("no-diffuse", 0.0),
@@ -195,7 +194,7 @@ fn each_usual_mistake_is_named() {
             wrong.push(format!("{name} {value}: {said:?}"));
         }
     };
-    // Bright enough for what is clamped, and with little glass, so that every term is seen.
+    // Bright enough to clamp, and with little glass, so that every term is visible.
     let bright = SCENE.replace("0.6 0.5 0.5", "1.1 1.0 1.0");
     for (name, value) in USUAL {
         judge(&bright, job(), name, value);
@@ -212,8 +211,7 @@ fn each_usual_mistake_is_named() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// A picture of something else is no mistake of this scene, and a reference of something else is
-/// said to be so.
+/// An unrelated picture matches no mistake, and an unrelated reference is reported as such.
 #[test]
 fn what_is_no_mistake_is_not_named() {
     let (scene, world) = world(Dialect::F04.rules());

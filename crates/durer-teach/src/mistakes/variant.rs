@@ -1,4 +1,4 @@
-//! A scene with its rules, and what a pupil does otherwise with it.
+//! A scene with its rules, and the deviations of a student's tracer.
 
 use super::habits::{Aim, Habits, Output, Turn};
 use durer_bvh::BuildQuality;
@@ -17,26 +17,26 @@ use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// What a mistake changes.
+/// State that a mistake can change.
 #[derive(Clone, Debug)]
 pub struct Variant<'s> {
-    /// The scene as it is written.
+    /// The scene as written.
     pub scene: &'s Scene,
-    /// What rays meet, with the lights, materials, camera and rules.
+    /// The world: geometry, lights, materials, camera and rules.
     pub world: World,
-    /// What is taken into account.
+    /// Whitted's settings.
     pub settings: Settings,
-    /// What the tracer does otherwise.
+    /// Deviations of the tracer.
     pub habits: Habits,
-    /// Where rays go.
+    /// Deviations of camera rays.
     pub aim: Aim,
-    /// What becomes of light.
+    /// Deviations of the output curve.
     pub output: Output,
-    /// What becomes of pixels.
+    /// Deviations of pixel order.
     pub turn: Turn,
 }
 
-/// Whether some light of a scene is written with the three factors of an attenuation.
+/// Returns true if some light is written with three attenuation factors.
 pub fn three_factors(scene: &Scene) -> bool {
     let factors = |light: &Light| match light {
         Light::Point(p) => p.attenuation.is_some() && p.falloff.is_none(),
@@ -45,7 +45,7 @@ pub fn three_factors(scene: &Scene) -> bool {
     scene.lights.iter().flatten().any(|light| factors(&light.value))
 }
 
-/// Kind of geometry that the course's programs have code of their own for, and so mistakes in it.
+/// Kinds of geometry that the course's programs implement, and can therefore get wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Taught {
     /// `Sphere`.
@@ -58,7 +58,7 @@ pub enum Taught {
     Mesh,
 }
 
-/// The course's kind of a geometry; `None` if the course has none.
+/// Returns the course's kind of a geometry; `None` if the course has none.
 pub fn taught(geometry: &Geometry) -> Option<Taught> {
     match geometry {
         Geometry::Mesh(_) => Some(Taught::Mesh),
@@ -79,17 +79,17 @@ pub fn taught(geometry: &Geometry) -> Option<Taught> {
     }
 }
 
-/// How the matrices of a transform become one.
+/// Computes the product of a transform's matrices.
 pub type Product = fn(&[MatrixOp], MatrixRules) -> DAffine3;
 
 impl<'s> Variant<'s> {
-    /// Without any mistake.
+    /// Creates a variant without mistakes.
     pub fn new(scene: &'s Scene, world: World, settings: Settings) -> Self {
         let (habits, aim, output, turn) = Default::default();
         Variant { scene, world, settings, habits, aim, output, turn }
     }
 
-    /// The ray of a pixel through a place in the picture, in pixels from the upper left corner.
+    /// Returns the ray of a pixel through a position in pixels from the upper left corner.
     pub fn ray(&self, raster: &Raster, (x, y): (u32, u32), place: Vec2, lens: Vec2) -> Option<Ray> {
         let point =
             |place: Vec2| raster.point(place + self.aim.place - 0.5) * self.aim.factor(raster.width, raster.height);
@@ -97,34 +97,34 @@ impl<'s> Variant<'s> {
         self.world.camera().ray(self.world.camera_frame(), &CameraSample { point: point(place), pixel, lens })
     }
 
-    /// The pixels of a picture of some size.
+    /// Returns the raster of a picture of a given size.
     pub fn raster(&self, width: u32, height: u32) -> Raster {
         raster(&self.world, width, height)
     }
 
-    /// Whether some light is written with the three factors of an attenuation.
+    /// Returns true if some light is written with three attenuation factors.
     pub fn has_three_factors(&self) -> bool {
         three_factors(self.scene)
     }
 
-    /// Turns a habit of the rules round.
+    /// Toggles a quirk of the rules.
     pub fn toggle(&mut self, compat: Compat) {
         self.change_rules(|rules| rules.compat ^= compat.bit());
     }
 
-    /// Changes the dialect's rules. The camera's axes, lights, materials and objects stay.
+    /// Changes the dialect's rules. Camera basis, lights, materials and objects stay.
     pub fn change_rules(&mut self, change: impl FnOnce(&mut Rules)) {
         let mut rules = self.world.rules().clone();
         change(&mut rules);
         self.world.edit().set_rules(rules);
     }
 
-    /// Makes the camera's axes anew, by the rules.
+    /// Recomputes the camera basis from the rules.
     pub fn reframe(&mut self) {
         self.world.edit().frame = CameraBasis::of(self.world.camera(), self.world.camera_rules());
     }
 
-    /// The field of view of a perspective camera, in degrees.
+    /// Returns the field of view of a perspective camera, in degrees.
     pub fn angle(&self) -> Option<f32> {
         match self.world.camera() {
             Camera::Perspective(camera) => Some(camera.angle),
@@ -132,7 +132,7 @@ impl<'s> Variant<'s> {
         }
     }
 
-    /// Changes all materials that are not made of others.
+    /// Changes all Phong materials.
     pub fn phongs(&mut self, change: impl Fn(&mut Phong)) {
         for material in &mut self.world.edit().materials {
             if let Material::Phong(phong) = material {
@@ -141,7 +141,7 @@ impl<'s> Variant<'s> {
         }
     }
 
-    /// Changes the model of highlights: Blinn's to Phong's and back.
+    /// Changes the model of highlights from Blinn's to Phong's and back.
     pub fn other_highlights(&mut self) {
         let behind = self.world.rules().has(Compat::HighlightBehind);
         self.phongs(|phong| {
@@ -154,10 +154,9 @@ impl<'s> Variant<'s> {
         });
     }
 
-    /// Gives highlights to materials that have a specular colour, in years whose program has none.
+    /// Adds highlights to materials with a specular colour, in dialects without highlights.
     ///
-    /// Their form is 0 for Phong's, 1 for Phong's where the light is on the surface's side, 2 for
-    /// Blinn's.
+    /// `form` is 0 for Phong's model, 1 for Phong's on the light's side only, 2 for Blinn's.
     pub fn add_highlights(&mut self, form: f32) {
         if self.world.rules().highlight != Highlight::None {
             return;
@@ -172,7 +171,7 @@ impl<'s> Variant<'s> {
         }
     }
 
-    /// Gives a black highlight to materials that have none.
+    /// Adds a black highlight to materials that have none.
     pub fn highlights_everywhere(&mut self) {
         let behind = self.world.rules().has(Compat::HighlightBehind);
         let model = match self.world.rules().highlight {
@@ -188,20 +187,20 @@ impl<'s> Variant<'s> {
         }
     }
 
-    /// Places all objects anew.
+    /// Recomputes the transforms of all objects.
     pub fn place(&mut self, product: Product) {
         let rules = matrix_rules(self.world.rules());
         let mut places = Vec::new();
         if let Some(root) = &self.scene.root {
             placed(root, DAffine3::IDENTITY, &|ops| product(ops, rules), &mut places);
         }
-        // Solids fall into pieces; what is not one to one is left as it is.
+        // Solids are split into pieces; skip if objects and transforms do not correspond.
         if places.len() != self.world.objects().len() {
             return;
         }
         for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
             if !matches!(object.geometry, Geometry::Solid(_)) {
-                // What was moved about the origin is moved back first.
+                // Objects moved to the origin must be moved back first.
                 let place = place * DAffine3::from_translation(object.center.as_dvec3());
                 object.to_world = Affine::new(place).filter(|affine| !affine.is_identity());
             }
@@ -210,11 +209,11 @@ impl<'s> Variant<'s> {
     }
 
     fn rebuild(&mut self) {
-        // Unlike a grid, a tree can always be made.
+        // Building a tree never fails, unlike a grid.
         let _ = compile::rebuild(&mut self.world, AccelKind::Bvh);
     }
 
-    /// Adds to every triangle the other half of its parallelogram.
+    /// Adds the other half of its parallelogram to every triangle.
     pub fn parallelograms(&mut self) {
         let mut halves = Vec::new();
         for object in &mut self.world.edit().objects {
@@ -244,7 +243,7 @@ impl<'s> Variant<'s> {
     }
 }
 
-/// The matrices of all objects, in the order in which they are compiled.
+/// Collects the matrices of all objects in the order of compilation.
 fn placed(group: &Group, to_world: DAffine3, product: &dyn Fn(&[MatrixOp]) -> DAffine3, places: &mut Vec<DAffine3>) {
     fn one(
         object: &scene::Object,

@@ -61,7 +61,7 @@ fn options_are_set_by_name_and_spelled_again() {
     assert_eq!(again.spelled().join(" "), words);
     let text = |job: &Job| serde_json::to_string(job).unwrap();
     assert_eq!(text(&again.resolve(&context(&scene, rules), None).unwrap()), text(&job));
-    // Of a scene's defaults nothing is spelled but how many samples that is.
+    // A job of defaults spells only its number of samples.
     let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
     assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).spelled(), ["--samples 16"]);
 }

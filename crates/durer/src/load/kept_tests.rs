@@ -1,4 +1,4 @@
-//! What did not change from one picture to the next is neither read nor built again.
+//! Tests that unchanged files are neither read nor built again.
 
 use super::*;
 use durer_render::compile::Reuse;
@@ -13,7 +13,7 @@ Materials { PhongMaterial { diffuseColor 1 1 1 texture a.ppm } PrincipledMateria
 Group { MaterialIndex 0 TriangleMesh { obj_file a.obj } MaterialIndex 1 TriangleMesh { obj_file b.obj } }";
 const MESH: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
 
-/// A folder with a scene in it, and what is kept of it.
+/// A folder with a scene, and its cached parts.
 struct Place {
     folder: tempfile::TempDir,
     kept: Option<Arc<Kept>>,
@@ -36,7 +36,7 @@ impl Place {
         fs::write(self.path(name), content).unwrap();
     }
 
-    /// Writes a file that looks as it did: of the same size, and as old.
+    /// Replaces a file by one of the same size and age.
     fn replace(&self, name: &str, content: &[u8]) {
         let old = fs::metadata(self.path(name)).unwrap();
         assert_eq!(old.len(), content.len() as u64);
@@ -48,7 +48,7 @@ impl Place {
         fs::File::options().write(true).open(self.path(name)).unwrap().set_modified(when).unwrap();
     }
 
-    /// The hash of all that a scene is made of, and the files that it names; `None` after errors.
+    /// Returns the digest of the world, and the files that were read; `None` after errors.
     fn world(&self, scene: &str, kept: bool) -> Option<(Digest, BTreeSet<PathBuf>)> {
         let options = LoadOptions { kept: self.kept.clone().filter(|_| kept), dialect: None, ..LoadOptions::default() };
         let (mut files, mut found) = (Files::default(), Diagnostics::default());
@@ -57,7 +57,7 @@ impl Place {
         Some((world.digest(), loaded.files().into_iter().collect()))
     }
 
-    /// The same of a scene that is watched: it is what it is without that.
+    /// Checks that the cache does not change the world, and returns the reuse counts.
     #[track_caller]
     fn watched(&self, scene: &str) -> (usize, usize) {
         assert_eq!(self.world(scene, true).unwrap(), self.world(scene, false).unwrap());
@@ -76,13 +76,12 @@ fn what_did_not_change_is_not_read_again() {
     assert_eq!(place.watched("scene.txt"), (4, 0));
     place.put("scene.txt", SCENE.replace("color 1 1 1 }", "color 1 0 0 }").as_bytes());
     assert_eq!(place.watched("scene.txt"), (0, 4));
-    // What another program made of a mesh is not even looked at, as long as it seems to be as it
-    // was.
+    // A mesh that seems unchanged by size and time is not even read.
     place.replace("a.obj", format!("{:1$}", "f 7 8 9", MESH.len()).as_bytes());
     assert!(place.world("scene.txt", true).is_some() && place.reuse() == (0, 4));
     assert!(place.world("scene.txt", false).is_none());
     place.replace("a.obj", MESH.as_bytes());
-    // Another size, and another time.
+    // Change the size of one file and the time of another.
     place.put("b.obj", [MESH, MESH].concat().as_bytes());
     place.date("b.ppm", SystemTime::UNIX_EPOCH);
     assert_eq!(place.watched("scene.txt"), (2, 2));

@@ -1,4 +1,4 @@
-//! Models as scenes: what is read of them, what is refused, and where.
+//! Tests of models as scenes: contents, errors and their positions.
 
 use super::*;
 use durer_diag::Diagnostic;
@@ -10,7 +10,7 @@ use durer_scene::source::Digest;
 use durer_scene::texture::Channel;
 use std::fs;
 
-/// Loads a file of a folder; findings as `code: message`.
+/// Loads a file of a folder; returns diagnostics as `code: message`.
 fn read(folder: &Path, name: &str, options: &LoadOptions) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap();
@@ -21,7 +21,7 @@ fn read(folder: &Path, name: &str, options: &LoadOptions) -> (Option<Scene>, Vec
     (loaded.filter(|_| compiled.flatten().is_some()).map(|loaded| loaded.scene), found)
 }
 
-/// The hash of a small picture of a file.
+/// Returns the digest of a small render of a file.
 fn hash(folder: &Path, name: &str, options: &LoadOptions) -> Digest {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let loaded = load(&folder.join(name), options, &mut files, &mut diagnostics).unwrap().unwrap();
@@ -40,7 +40,7 @@ fn principled(scene: &Scene, number: usize) -> &PrincipledMaterial {
 const TETRAHEDRON: [[f32; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.25], [0.5, 1.0, 0.5], [0.25, 0.125, 1.0]];
 const FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
-/// The same tetrahedron in a folder, as all formats have it.
+/// Writes the same tetrahedron into a folder in every format.
 fn tetrahedra() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let put = |name: &str, bytes: &[u8]| fs::write(folder.path().join(name), bytes).unwrap();
@@ -96,7 +96,7 @@ const GLTF: &str = r#"{
   "scenes": [{ "nodes": [0] }]
 }"#;
 
-/// A folder with the tetrahedron's glTF changed in one place.
+/// Returns a folder with the tetrahedron's glTF changed in one place.
 fn changed(from: &str, to: &str) -> tempfile::TempDir {
     let folder = tetrahedra();
     assert!(GLTF.contains(from), "{from}");
@@ -116,11 +116,12 @@ fn one_model_is_one_picture_in_every_format() {
     for name in ["a.ply", "a.stl"] {
         assert_eq!(hash(folder.path(), name, &up), obj, "{name}");
     }
-    // Without normals glTF means flat triangles, where the others mean smooth ones up to a crease.
+    // Without normals, glTF means flat shading, and the other formats smooth shading up to a
+    // crease.
     assert_eq!(hash(folder.path(), "a.gltf", &up), hash(folder.path(), "a.glb", &up));
-    // STL means z by itself.
+    // STL files are z-up by default.
     assert_ne!(hash(folder.path(), "a.stl", &options), obj);
-    // Another view is another picture, and told apart by its digest.
+    // Another view is another picture with another digest.
     let front = LoadOptions { staging: Staging { view: Some(View::Front), ..Staging::default() }, ..options.clone() };
     assert_ne!(hash(folder.path(), "a.obj", &front), obj);
 }
@@ -164,7 +165,7 @@ fn meshes_are_written_and_read_as_the_same() {
     let options = LoadOptions::default();
     let loaded = load(&folder.path().join("a.ply"), &options, &mut files, &mut diagnostics).unwrap().unwrap();
     let (mesh, left_out) = loaded.compile(&options, &mut files, &mut diagnostics).unwrap().merged_mesh();
-    // The ground is no mesh.
+    // The ground is not a mesh.
     assert_eq!((mesh.triangles.len(), left_out), (4, 1));
     for format in durer_formats::MESH_FORMATS {
         let bytes = (format.write)(&mesh);
@@ -262,7 +263,7 @@ fn materials_of_gltf_are_told_in_openpbr_s_words() {
     assert_eq!((m.coat_weight, m.coat_roughness, m.coat_ior, m.coat_darkening), (0.5, 0.125, 1.5, 0.0));
     assert_eq!((m.fuzz_weight, m.fuzz_color), (0.5, Vec3::new(1.0, 0.5, 0.0)));
     assert_eq!((m.transmission_weight, m.transmission_depth, m.transmission_color), (0.75, 2.0, Vec3::Y));
-    // glTF's own default is a rough metal, white.
+    // The default material of glTF is a rough white metal.
     let m = principled(&scene, 1);
     assert_eq!((m.base_color, m.base_metalness, m.specular_roughness, m.opacity), (Vec3::ONE, 1.0, 1.0, 1.0));
 }
@@ -310,7 +311,7 @@ fn obj_is_parted_by_material_and_reads_mtl() {
     let (scene, found) = read(folder.path(), "m.obj", &LoadOptions::default());
     assert!(found[0].starts_with("no-material: no file of materials has `gone`") && found.len() == 1, "{found:?}");
     let scene = scene.unwrap();
-    // Three meshes in the order of their names' first triangles, then the ground.
+    // Three meshes in the order of each material's first triangle, then the ground.
     let objects = &scene.root.as_ref().unwrap().objects;
     let triangles = objects.iter().filter_map(|object| match &object.node {
         Node::Mesh(mesh) => Some((scene.assets.meshes[&mesh.obj_file.path].triangles.len(), object.material)),
@@ -344,9 +345,9 @@ fn pictures_of_mtl_change_their_parameters() {
     assert_eq!(mapping(&m.specular_roughness_texture).channel, Some(Channel::Green));
     assert_eq!(mapping(&m.base_metalness_texture).range, [0.25, 0.75]);
     assert!(m.specular_color_texture.is_some() && m.opacity_texture.is_some() && m.emission_texture.is_some());
-    // What has a picture and no number is that of the picture.
+    // A parameter with a texture and without a number uses the texture unscaled.
     assert_eq!((m.specular_roughness, m.base_metalness, m.coat_weight, m.emission_luminance), (1.0, 1.0, 1.0, 1.0));
-    // A bump map's height is in sizes of the model, here 5.
+    // A bump map's height is relative to the size of the model, here 5.
     assert!(m.bump_texture.is_some() && (m.bump_height - 3.0 * 0.002 * 5.0).abs() < 1e-6, "{}", m.bump_height);
     assert!(other.bump_texture.is_none() && other.normal_texture.is_some());
 }

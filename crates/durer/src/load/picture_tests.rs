@@ -1,4 +1,4 @@
-//! Pictures of materials keep what their files hold: sixteen bits, floating point, opacity.
+//! Tests that textures keep the precision of their files: sixteen bits, floating point, opacity.
 
 use super::*;
 use ::image::{ExtendedColorType, ImageEncoder, codecs::png::PngEncoder};
@@ -8,7 +8,7 @@ use durer_render::render::{Control, Job, Sampling, render};
 use durer_scene::math::{Color, Vec2};
 use durer_scene::texture::{Mapping, Texture};
 
-/// The texture that a scene makes of a picture named by a field, or what is said.
+/// Returns the texture compiled from a picture, or the error.
 fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result<Texture, String> {
     let text = format!(
         "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 40 }} Materials {{ PrincipledMaterial {{ {field} {name} }} }}
@@ -23,7 +23,7 @@ fn texture(field: &str, name: &str, bytes: &[u8], memory: Option<u64>) -> Result
     world.map(|world| world.textures()[0].clone()).ok_or_else(said)
 }
 
-/// One pixel of floating point.
+/// Encodes one floating-point pixel as PFM.
 fn pfm(pixel: [f32; 3]) -> Vec<u8> {
     [b"PF\n1 1\n-1.0\n".to_vec(), pixel.iter().flat_map(|x| x.to_le_bytes()).collect()].concat()
 }
@@ -56,18 +56,18 @@ fn sixteen_bits_stay_with_their_opacity() {
 fn memory_is_counted_before_it_is_taken() {
     let large = [b"PF\n400 400\n-1.0\n".to_vec(), vec![0; 400 * 400 * 12]].concat();
     let read = |memory| texture("emissionTexture", "a.pfm", &large, Some(memory)).map(|texture| texture.bytes());
-    // The picture, and the texture that is made of it with it.
+    // The picture and the texture made of it count together.
     assert_eq!(read(6_000_000), Ok(400 * 400 * 12));
     let said = read(3_000_000).unwrap_err();
     assert!(said.contains("memory"), "{said}");
 }
 
-/// Mean and variance of the pixels of a far wall of thin shining stripes, seen straight or in a
-/// mirror with 16 samples each.
+/// Returns mean and variance of the pixels of a far wall with thin emissive stripes, seen directly
+/// or in a mirror with 16 samples each.
 fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
     let picture =
         [b"P6 64 64 255\n".to_vec(), (0..64 * 64).flat_map(|i| [255 * (i / 4 % 2) as u8; 3]).collect()].concat();
-    // The mirror turns what is to the left into what is ahead.
+    // The mirror turns the left side to the front.
     let (wall, mirror) = match mirrored {
         false => ("corner -20 -20 -90 edge0 40 0 0 edge1 0 40 0", ""),
         true => (
@@ -105,7 +105,7 @@ fn stripes(minified: &str, mirrored: bool) -> (f64, f64) {
 fn smaller_versions_of_pictures_have_less_noise_and_the_same_mean_also_in_mirrors() {
     for mirrored in [false, true] {
         let [(plain, noise), (mean, less)] = ["texels", "mipmaps"].map(|minified| stripes(minified, mirrored));
-        // Half of the wall shines.
+        // Half of the wall emits.
         let error = (noise / f64::from(48 * 48)).sqrt();
         assert!((plain - 0.5).abs() < 4.0 * error + 0.005, "{mirrored}: {plain} +- {error}");
         assert!((mean - 0.5).abs() < 0.005, "{mirrored}: {mean}");

@@ -7,7 +7,7 @@ const LIGHT: &str = "Lights { numLights 1 DirectionalLight { direction 0 0 -1 co
 const MATERIAL: &str = "Materials { numMaterials 1 PhongMaterial { diffuseColor 1 1 1 } }\n";
 const TRIANGLE: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
-/// A scene of these objects in a folder `scene` of its own, with a mesh `tri.obj`.
+/// Writes a scene with these objects into a folder `scene`, with a mesh `tri.obj`.
 fn house(objects: &str) -> tempfile::TempDir {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir(root.path().join("scene")).unwrap();
@@ -18,8 +18,8 @@ fn house(objects: &str) -> tempfile::TempDir {
     root
 }
 
-/// Loads and compiles; findings as `file:line:column severity: message (help)`, without the
-/// folder's name.
+/// Loads and compiles; returns diagnostics as `file:line:column severity: message (help)`, without
+/// the folder's name.
 fn made(root: &tempfile::TempDir, options: &LoadOptions) -> (Option<World>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = root.path().join("scene/scene.txt");
@@ -83,7 +83,7 @@ fn a_missing_mesh_is_told_once_with_a_near_name() {
           for scene/tir.obj)"
         ]
     );
-    // Thousands of them do not take long.
+    // Thousands of them take little time.
     let many: String = (0..20_000).map(|i| mesh(&format!("{i}.obj"))).collect();
     assert_eq!(findings(&many).len(), 20);
 }
@@ -163,11 +163,12 @@ fn the_digest_is_that_of_all_that_the_picture_depends_on() {
     let (root, again) = (house(&mesh("tri.obj")), house(&mesh("tri.obj")));
     let options = LoadOptions::default();
     let first = digest(&root, &options);
-    // Where the files lie does not matter, nor how hits are found, nor what lies beside them.
+    // The digest does not depend on the folder, the acceleration structure, or other files in the
+    // folder.
     fs::write(again.path().join("scene/other.obj"), "v 1 2 3\n").unwrap();
     assert_eq!(digest(&again, &LoadOptions { accel: AccelKind::None, ..options.clone() }), first);
     assert_eq!(digest(&again, &LoadOptions { threads: Some(1), ..options.clone() }), first);
-    // The rules do, and every file that is read.
+    // It depends on the rules and every file that is read.
     let asked = LoadOptions { dialect: Some(Dialect::F04), ..options.clone() };
     assert_ne!(digest(&again, &LoadOptions { allow_outside: true, ..asked }), first);
     fs::write(again.path().join("scene/tri.obj"), TRIANGLE.replace("v 1 0 0", "v 1.0001 0 0")).unwrap();

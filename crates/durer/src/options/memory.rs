@@ -1,4 +1,4 @@
-//! Limits of memory: bytes, or a share of the machine.
+//! Memory limits: bytes, or a share of the machine.
 
 use sysinfo::System;
 
@@ -22,7 +22,7 @@ impl Memory {
     ///
     /// # Errors
     ///
-    /// A sentence, if the text is something else.
+    /// A sentence, for any other text.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || "say it as 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {
@@ -42,7 +42,7 @@ impl Memory {
         Ok(Memory::Bytes((number * (1_u64 << shift) as f64) as u64))
     }
 
-    /// Bytes; `None` where the system does not tell how much memory it has.
+    /// Returns the limit in bytes; `None` if the size of the machine's memory is unknown.
     pub fn bytes(self) -> Option<u64> {
         let percent = match self {
             Memory::Bytes(bytes) => return Some(bytes),
@@ -50,7 +50,7 @@ impl Memory {
         };
         let mut system = System::new();
         system.refresh_memory();
-        // Where there is no /proc nothing is known, and control groups must not be asked for.
+        // Without /proc the size is unknown, and asking for control groups would fail.
         let machine = Some(system.total_memory()).filter(|&bytes| bytes > 0)?;
         let of_group = system.cgroup_limits().map(|limits| limits.total_memory).filter(|&bytes| bytes > 0);
         let all = of_group.unwrap_or(machine).min(machine);

@@ -1,7 +1,8 @@
-//! Options of a render as pairs of name and text, as the command line and Python have them.
+//! Options of a render as pairs of name and text, for the command line and Python.
 //!
-//! [`statements`] lists all options with their meaning, [`RenderOptions::set`] reads one. What is not
-//! given has the command's defaults, so equal options give equal bits in every language.
+//! [`statements`] lists all options with their meaning, [`RenderOptions::set`] parses one. Options
+//! that are not set have the command's defaults, so equal options give equal bits in every
+//! language.
 //!
 //! ```
 //! use durer::options::RenderOptions;
@@ -28,17 +29,17 @@ use rows::{READING, VIEW, WORK};
 pub use rows::{compat, crop, doc, grid_cells};
 use std::time::Duration;
 
-/// Everything that options decide about a render.
+/// Options of a render.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct RenderOptions {
-    /// How the scene is read and compiled.
+    /// Options of reading and compiling the scene.
     pub load: LoadOptions,
-    /// The picture: size, samples, integrator.
+    /// Options of the picture: size, samples, integrator.
     pub job: RenderJob,
-    /// Which pictures are made of which part.
+    /// Crop and selection of output pictures.
     pub view: View,
-    /// Memory that scene and picture may take.
+    /// Memory limit of scene and picture.
     pub memory: Memory,
     /// Threads; `None`: one for each processor.
     pub threads: Option<usize>,
@@ -66,12 +67,12 @@ impl Default for RenderOptions {
 }
 
 impl RenderOptions {
-    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name several
-    /// things (`assets`, `compat`) add to what was set before.
+    /// Sets an option by its name without dashes. `text` is empty for a flag. Options that name
+    /// several things (`assets`, `compat`) add to what was set before.
     ///
     /// # Errors
     ///
-    /// A sentence, if there is no such option, or the text is not a value of it.
+    /// A sentence, for an unknown option or a text that is not a value of it.
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let mut rows = READING.iter().chain(VIEW).chain(WORK);
         let set = match rows.find(|row| row.option.name == name) {
@@ -85,7 +86,7 @@ impl RenderOptions {
         })
     }
 
-    /// How the scene is read and compiled, with what the picture's size and the machine have to do with it.
+    /// Returns the options for loading, with the threads, memory and aspect ratio filled in.
     pub fn load_options(&self) -> LoadOptions {
         let mut load = self.load.clone();
         load.threads = self.threads;
@@ -94,7 +95,7 @@ impl RenderOptions {
         load
     }
 
-    /// The job for a scene.
+    /// Resolves the options into a job for a scene.
     ///
     /// # Errors
     ///
@@ -103,7 +104,7 @@ impl RenderOptions {
         self.job.resolve(&loaded.job_context(self.time_limit.is_some()), Some(&self.view))
     }
 
-    /// How the work is done.
+    /// Returns the execution options.
     pub fn control(&self) -> Control {
         Control {
             threads: self.threads,
@@ -115,7 +116,7 @@ impl RenderOptions {
     }
 }
 
-/// Checks a text by what an option may be.
+/// Checks a text against an option's form.
 fn check(form: OptionForm, text: &str) -> Result<(), String> {
     match form {
         OptionForm::Whole(least, most) => match text.parse::<u32>() {
@@ -129,10 +130,10 @@ fn check(form: OptionForm, text: &str) -> Result<(), String> {
     }
 }
 
-/// What an option concerns.
+/// Subject of an option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
-    /// How the scene is read and compiled.
+    /// Reading and compiling the scene.
     Reading,
     /// The picture. These options decide every bit of it.
     Picture,
@@ -148,15 +149,15 @@ pub struct OptionStatement {
     pub name: &'static str,
     /// Meaning, unit and default.
     pub help: String,
-    /// Name of its value; `None` for a flag.
+    /// Name of the value; `None` for a flag.
     pub value: Option<String>,
-    /// The words that its value may be, where only some are allowed.
+    /// Allowed words, if only some are allowed.
     pub words: Vec<&'static str>,
-    /// What it concerns.
+    /// Subject of the option.
     pub group: OptionGroup,
 }
 
-/// All options.
+/// Returns the statements of every option.
 pub fn statements() -> Vec<OptionStatement> {
     let of = |group| move |option: &JobOption| stated(option, group);
     let rows = |rows: &[rows::Row], group| rows.iter().map(|row| stated(&row.option, group)).collect::<Vec<_>>();
@@ -207,7 +208,7 @@ fn unknown(name: &str) -> String {
     }
 }
 
-/// Help of `--integrator`: each integrator with its meaning.
+/// Returns the help of `--integrator`: each integrator with its meaning.
 pub fn integrator_help() -> String {
     let kinds = Method::kinds();
     let listed: Vec<String> = kinds.iter().map(|kind| format!("{} ({})", kind.name(), one_line(kind.doc()))).collect();
@@ -218,7 +219,7 @@ pub fn integrator_help() -> String {
     )
 }
 
-/// Options that integrators state, each once, with their help.
+/// Returns the options of the integrators, each once, with their help.
 pub fn integrator_options() -> Vec<(Field, String)> {
     let kinds = Method::kinds();
     let mut all: Vec<(Field, String)> = Vec::new();
@@ -236,7 +237,7 @@ pub fn integrator_options() -> Vec<(Field, String)> {
     all
 }
 
-/// A statement's text in one line.
+/// Joins a statement's text into one line.
 pub fn one_line(doc: &str) -> String {
     doc.split_whitespace().collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! Options that are not the picture's own: reading, view and work.
+//! Options of reading, view and work.
 
 use super::RenderOptions;
 use super::memory::Memory;
@@ -10,7 +10,7 @@ use durer_render::render::ShardBy;
 use durer_scene::dialect::{Compat, Dialect};
 use durer_scene::scene::{Axis, Studio, View};
 
-/// An option and how its text is understood, once it fits its form.
+/// An option, and a setter that parses text of its form.
 pub(super) struct Row {
     pub option: JobOption,
     pub set: fn(&mut RenderOptions, &str) -> Result<(), String>,
@@ -27,7 +27,7 @@ const fn row(
 
 const SAY_NUMBER: &str = "it is a number";
 
-/// How a scene is read and compiled.
+/// Options of reading and compiling a scene.
 pub(super) const READING: &[Row] = &[
     row(
         "dialect",
@@ -154,7 +154,7 @@ pub(super) const READING: &[Row] = &[
     ),
 ];
 
-/// Which pictures are made.
+/// Options that select output pictures.
 pub(super) const VIEW: &[Row] = &[
     row(
         "crop",
@@ -178,7 +178,7 @@ pub(super) const VIEW: &[Row] = &[
     ),
 ];
 
-/// When and with how much the work is done.
+/// Options of execution: threads, time, shards.
 pub(super) const WORK: &[Row] = &[
     row(
         "threads",
@@ -244,7 +244,7 @@ fn flag(text: &str) -> Result<bool, String> {
     }
 }
 
-/// Meaning of an option of reading, view or work; empty if there is none of this name.
+/// Returns the help of an option of reading, view or work; empty for other names.
 pub fn doc(name: &str) -> &'static str {
     let mut rows = READING.iter().chain(VIEW).chain(WORK);
     rows.find(|row| row.option.name == name).map_or("", |row| row.option.doc)
@@ -254,7 +254,7 @@ pub fn doc(name: &str) -> &'static str {
 ///
 /// # Errors
 ///
-/// A sentence, if there is no such quirk.
+/// A sentence, for unknown quirks.
 pub fn compat(text: &str) -> Result<(Compat, bool), String> {
     let (name, on) = text.strip_prefix("no-").map_or((text, true), |name| (name, false));
     Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
@@ -270,7 +270,7 @@ pub fn compat(text: &str) -> Result<(Compat, bool), String> {
 ///
 /// # Errors
 ///
-/// A sentence, if the text is something else.
+/// A sentence, for any other text.
 pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
     let numbers = || {
         let mut parts = text.splitn(3, ',');
@@ -286,7 +286,7 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 ///
 /// # Errors
 ///
-/// A sentence, if the text is something else.
+/// A sentence, for any other text.
 pub fn grid_cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());

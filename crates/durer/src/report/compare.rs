@@ -3,8 +3,8 @@
 use durer_image::compare::Comparison;
 use serde_json::{Value, json};
 
-/// Makes the measures of a pair of pictures as `durer compare --json` lists them. `there` says what the
-/// scene has at each region, in the order of the regions; it may be shorter.
+/// Makes the measures of a pair of pictures as `durer compare --json` lists them. `there` has the
+/// scene's objects at each region, in the order of the regions; it may be shorter.
 pub fn comparison(found: &Comparison, there: &[Value]) -> Value {
     let m = &found.measures;
     json!({

@@ -6,7 +6,7 @@ use durer_render::render::explain::{Explanation, Names};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeSet;
 
-/// Version of the document.
+/// Version of the document's format.
 const VERSION: u32 = 2;
 
 /// Subject of an explanation.
@@ -18,7 +18,7 @@ pub enum Subject {
 }
 
 /// Makes the document of `durer explain --json`: the tree of terms, and the names of the objects,
-/// materials and lights that it numbers.
+/// materials and lights that it refers to by index.
 pub fn explanation(subject: &Subject, names: &Names) -> Value {
     let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut note = |node: &TraceNode| match &node.what {

@@ -1,6 +1,6 @@
-//! Answers as JSON, in the form of the command's `--json`: explanations, findings, comparisons.
+//! Reports as JSON, in the form of the command's `--json`: explanations, findings, comparisons.
 //!
-//! [`explanation`] tells why a pixel has its colour, [`findings`] why a scene's picture may be odd,
+//! [`explanation`] shows why a pixel has its colour, [`findings`] why a scene's picture may be odd,
 //! [`comparison`] how two pictures differ. [`outlines`] and [`lights`] draw the scene around them.
 
 mod check;

@@ -1,4 +1,4 @@
-//! Line drawings of a scene, for a view of it in space.
+//! Line drawings of a scene in world space.
 
 use durer_render::world::{Geometry, Object, World};
 use durer_scene::light::{Emitter, Light};
@@ -6,18 +6,19 @@ use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};
 
-/// Objects drawn at most: more would hide each other.
+/// Maximum number of objects drawn; more would hide each other.
 const MAX_OBJECTS: usize = 400;
-/// Triangles drawn of a mesh at most.
+/// Maximum number of triangles drawn of a mesh.
 const MAX_TRIANGLES: usize = 600;
 
-/// Polylines that outline the objects, in world space.
+/// Returns polylines that outline the objects, in world space.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
     let ends = world.bounds().union(Aabb::around([world.camera_frame().eye]));
     world.objects().iter().take(MAX_OBJECTS).flat_map(|object| outline(object, &ends)).collect()
 }
 
-/// Lights by name, each with its position; of directional lights, a point from where they shine.
+/// Returns the lights with name and position; for directional lights, a point in the direction they
+/// come from.
 pub fn lights(world: &World) -> Vec<Value> {
     let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
     let reach = 0.6 * bounds.size().length();

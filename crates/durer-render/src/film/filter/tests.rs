@@ -6,8 +6,8 @@ fn sizes() -> impl Iterator<Item = Filter> {
     Filter::NAMES.into_iter().flat_map(|(_, f)| [f, f.with_radius(0.7), f.with_radius(3.3)])
 }
 
-/// Integral of the absolute filter over cell (i, j) of a grid over its support, by the midpoint
-/// rule.
+/// Returns the integral of the absolute filter over cell (i, j) of a grid over its support, by the
+/// midpoint rule.
 fn mass(filter: Filter, cells: usize, i: usize, j: usize) -> f64 {
     let at = |cell: usize, k: usize| {
         let u = (cell as f32 + (k as f32 + 0.5) / 16.0) / cells as f32;
@@ -32,7 +32,7 @@ fn offsets_follow_the_filter() {
         }
         let expected: Vec<f64> = (0..CELLS * CELLS).map(|c| mass(filter, CELLS, c % CELLS, c / CELLS)).collect();
         let scale = f64::from(n) / expected.iter().sum::<f64>();
-        // Cells that expect fewer than five samples are pooled into one.
+        // Pool cells with fewer than five expected samples.
         let (mut o, mut e) = (vec![0], vec![0.0]);
         for (&count, mass) in observed.iter().zip(expected) {
             if mass * scale < 5.0 {
@@ -115,7 +115,7 @@ fn warps_are_exact_where_they_can_be() {
         let u = i as f32 / 1000.0;
         assert!((boxed.warp(u) - (u - 0.5)).abs() < 1e-7);
         let exact = if u < 0.5 { (2.0 * u).sqrt() - 1.0 } else { 1.0 - (2.0 - 2.0 * u).sqrt() };
-        // Between knots h apart a chord is off by h^2 / 8 times the second derivative, in the last
+        // Between knots h apart, a chord is off by h^2 / 8 times the second derivative, in the last
         // share by less than a quarter of it.
         let rest = 1.0 - (2.0 * f64::from(u) - 1.0).abs();
         let off = (7.5e-9 / (rest * rest.sqrt())).min(0.006) + 1e-6;

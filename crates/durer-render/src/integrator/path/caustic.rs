@@ -1,4 +1,4 @@
-//! Light that photons bring to a vertex.
+//! Light of photons at a vertex.
 
 use super::Path;
 use super::photons::Gathered;

@@ -18,20 +18,20 @@ use durer_scene::math::{Color, Ray64, Vec2};
 use durer_scene::medium::Way;
 use durer_scene::spectrum::Spectrum;
 
-/// A sampled point of a light, as a vertex sees it.
+/// Sampled point of a light, as seen from a vertex.
 struct LightLiSample {
     light: LightSample,
     /// BSDF · cosine at the vertex.
     value: Spectrum,
-    /// Density per steradian with which the BSDF samples its direction.
+    /// Density per steradian with which the BSDF samples this direction.
     bsdf_pdf: f32,
-    /// Density per steradian with which it was sampled; a probability for a light without extent.
+    /// Density per steradian of the light sample; a probability for a light without extent.
     pdf: f32,
-    /// Density per steradian with which it is a candidate, taken or not; MIS weighs by it.
+    /// Density per steradian of a candidate, selected or not. MIS weights use this one.
     candidate_pdf: f32,
 }
 
-/// Step between the numbers of several candidates, so that they are stratified: the R2 sequence.
+/// Step between the random numbers of several candidates, which stratifies them: the R2 sequence.
 ///
 /// Source: Martin Roberts, *The Unreasonable Effectiveness of Quasirandom Sequences*, 2018.
 const R2_STEP: Vec2 = Vec2::new(0.754_877_7, 0.569_840_3);
@@ -42,7 +42,7 @@ impl Path<'_> {
         self.world.emitters().choose(self.world, &vertex.receiver, vertex.random(Dimension::Choices).y)
     }
 
-    /// Samples a point on a chosen light and adds what arrives of it and is scattered.
+    /// Samples a point on a chosen light and adds the light from it that arrives and is scattered.
     pub(super) fn add_direct<T: TraceListener>(
         &self,
         choice: &Choice,
@@ -64,7 +64,7 @@ impl Path<'_> {
             return;
         }
         let (visibility, sheets) = self.visibility(&light, vertex, state, context, output.tally);
-        // A path needs a bounce for each sheet; where it has too few, it never hits the light.
+        // A path needs one bounce per sheet. With too few left, it never hits the light.
         let mis = weight_of(if state.depth + sheets > self.max_depth() { 0.0 } else { bsdf_pdf });
         let contribution = Contribution {
             factor: value * (mis / pdf) * visibility,
@@ -101,8 +101,8 @@ impl Path<'_> {
         Some(LightLiSample { light, value, bsdf_pdf, pdf, candidate_pdf: pdf })
     }
 
-    /// Samples several directions to the environment and takes one of them, in proportion to what
-    /// each would bring if nothing were in the way.
+    /// Samples several directions to the environment and selects one of them in proportion to its
+    /// unoccluded, MIS-weighted contribution.
     ///
     /// Source: Talbot, Cline and Egbert, *Importance Resampling for Global Illumination*, EGSR
     /// 2005.
@@ -163,7 +163,7 @@ impl Path<'_> {
             }
             None => Spectrum::ONE,
         };
-        // Lights that directions hit too must agree with those, which hit both sides.
+        // Directions hit both sides of a light, so light samples of such lights must find both too.
         let hides_backs = self.world.hides_backs() && light.pdf == 0.0;
         if !self.world.has_cutouts() && !self.world.has_interfaces() && !self.world.has_sheets() {
             match self.world.occluded(&ray, tally) {
@@ -173,7 +173,7 @@ impl Path<'_> {
             }
         }
         let mut media = media.clone();
-        // Beyond so many layers the light counts as blocked.
+        // After 64 layers, the light counts as blocked.
         for _ in 0..64 {
             let Some(hit) = self.world.closest(&ray, tally) else {
                 return (left * pass(&media, &ray, ray.rounded.t_max), sheets);
@@ -197,8 +197,8 @@ impl Path<'_> {
         (Spectrum::ZERO, 0)
     }
 
-    /// Fraction of light that goes straight through an open surface, such as a pane. Where photons
-    /// are sent to it, they bring that light.
+    /// Fraction of light that passes straight through an open surface, such as a pane. If photons
+    /// are sent to the surface, they account for that light.
     fn straight_transmittance(&self, at: &Interaction, context: &SampleContext) -> Spectrum {
         let opacity = self.world.opacity(at);
         let around = Spectrum::splat(1.0 - opacity);
@@ -208,18 +208,18 @@ impl Path<'_> {
         around + opacity * self.world.shading(at, 1.0, &context.lanes).bsdf.straight()
     }
 
-    /// Whether a lobe lets light through as [`Path::straight_transmittance`] has it: then light
-    /// samples of the vertex before see what is behind.
+    /// Returns true if a lobe transmits light as in [`Path::straight_transmittance`]: light samples
+    /// of the previous vertex already include what lies behind.
     pub(super) fn is_seen_through(&self, vertex: &Vertex, lobe: usize, state: &PathState) -> bool {
         self.world.has_sheets() && !state.prev_is_target && vertex.kind.goes_straight(lobe)
     }
 
-    /// Whether photons are sent to the object that was hit.
+    /// Returns true if photons are sent to the hit object.
     pub(super) fn is_photon_target(&self, at: &Interaction) -> bool {
         self.photons.as_ref().is_some_and(|photons| photons.reaches(at.hit.object))
     }
 
-    /// Shadow ray as the trace has it.
+    /// Shadow ray for the trace.
     fn shadow(&self, vertex: &VertexKind, light: &LightSample, share: TermValue) -> Shadow {
         let ray = vertex.shadow_ray(light);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
@@ -228,19 +228,19 @@ impl Path<'_> {
 }
 
 impl Direct {
-    /// MIS weight of a light sample of density `light`, whose direction the BSDF samples with
+    /// MIS weight of a light sample with density `light`, if the BSDF samples its direction with
     /// density `bsdf`.
     fn of_light(self, light: f32, bsdf: f32) -> f32 {
         match self {
             Direct::Both => power_heuristic(light, bsdf),
             Direct::Lights | Direct::Middle => 1.0,
-            // What no direction hits is left to light samples.
+            // Light samples keep only the lights that no direction hits.
             Direct::Bsdf => f32::from(u8::from(bsdf == 0.0)),
         }
     }
 
-    /// MIS weight of a light that was hit by a direction of density `bsdf`, where light sampling
-    /// has density `light`.
+    /// MIS weight of a light hit by a direction with density `bsdf`, if light sampling has density
+    /// `light`.
     pub(super) fn of_direction(self, bsdf: f32, light: f32) -> f32 {
         match self {
             Direct::Both => power_heuristic(bsdf, light),
@@ -250,7 +250,8 @@ impl Direct {
     }
 }
 
-/// The power heuristic: MIS weight of a strategy of density `a` beside one of density `b`.
+/// The power heuristic: MIS weight of a strategy with density `a`, combined with one of density
+/// `b`.
 fn power_heuristic(a: f32, b: f32) -> f32 {
     if b == 0.0 {
         return 1.0;

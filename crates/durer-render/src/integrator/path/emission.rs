@@ -20,7 +20,7 @@ impl Path<'_> {
         let dir = state.ray.dir();
         let (sky, pdf) = emitters.sky(self.world, dir);
         let mut light = context.lanes.light(sky);
-        // Suns are visible to the camera, also by delta lobes; elsewhere they are sampled as lights.
+        // The camera sees suns, also through delta lobes; elsewhere they are sampled as lights.
         if state.camera_distance.is_some() {
             let suns = emitters.suns(dir);
             light += suns
@@ -54,7 +54,7 @@ impl Path<'_> {
         self.add(contribution, || TermKind::Emission { mis }, state, context, output);
     }
 
-    /// MIS weight of a light that a sampled direction hit. `is_sampled`: photons are sent from it;
+    /// MIS weight of a light hit by a sampled direction. `is_sampled`: photons are sent from it;
     /// `light_pdf`: density per steradian with which it is sampled as a light.
     fn hit_weight(&self, state: &PathState, is_sampled: bool, light_pdf: impl Fn(&PrevVertex) -> f32) -> f32 {
         match &state.prev_vertex {

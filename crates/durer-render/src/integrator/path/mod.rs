@@ -1,17 +1,16 @@
 //! Path tracing with next-event estimation, multiple importance sampling and Russian roulette.
 //!
-//! A path is a loop over a `PathState`, as pbrt's and Mitsuba's are. Each bounce runs these
-//! stages, none of which calls another bounce, so that a wavefront can run each over an array of
-//! states:
+//! A path is a loop over a `PathState`, as in pbrt and Mitsuba. Each bounce runs these stages. None
+//! of them calls another bounce, so a wavefront can run each over an array of states:
 //!
 //! 1. `Path::propagate`: the ray flies to the next vertex, through media and past surfaces that
 //!    change nothing.
-//! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighed against
-//!    light sampling at the vertex before.
+//! 2. `Path::add_background`, `Path::add_emission`: light at the end of the ray, weighted
+//!    against light sampling at the previous vertex.
 //! 3. `Path::choose_light`, `Path::add_direct`: a point on a light, with its shadow ray.
-//! 4. `Path::add_caustic`: light that photons bring.
-//! 5. `Path::scatter`: a sampled direction, roulette, and the next ray. The first glossy vertex
-//!    under an environment follows several; they wait on the `PathStack`.
+//! 4. `Path::add_caustic`: light of photons.
+//! 5. `Path::scatter`: a sampled direction, roulette, and the next ray. With an environment,
+//!    the first glossy vertex follows several directions; they wait on the `PathStack`.
 //!
 //! The radiance of a camera ray is the sum of throughput · light over all terms, in the order in
 //! which they are found.
@@ -50,15 +49,15 @@ pub struct Path<'w> {
     pub settings: Settings,
     /// Sampling of lights, colour mode, clamp.
     pub transport: Transport,
-    /// Photons that bring caustics; without them, paths find those by chance.
+    /// Photons for caustics; without them, paths find caustics by chance.
     pub photons: Option<Arc<Photons>>,
-    /// Footprint of a sample, if some texture is filtered by it.
+    /// Footprint of a sample, if a texture is filtered by it.
     pub cone: Option<RayCone>,
     /// Once set, no more rays are traced and all results are meaningless.
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// Branches of a camera ray: the one that is followed, and those that wait.
+/// Branches of a camera ray: the active one and the pending ones.
 struct PathStack {
     active: PathState,
     /// Branches of the first vertex, the next one last.
@@ -119,7 +118,7 @@ impl<'w> Path<'w> {
         Path { world, settings, transport, photons: None, cone: None, cancel: None }
     }
 
-    /// Irradiance at a point, on the side of a unit normal, by the random numbers of a sample: pi
+    /// Irradiance at a point, on the side of a unit normal, with the random numbers of a sample: pi
     /// times the radiance of a white matte surface.
     pub fn irradiance<T: TraceListener>(&self, point: DVec3, normal: Vec3, id: SampleId, tally: &mut T) -> Color {
         self.irradiance_on(&Surface::around(point, normal), normal, id, tally)
@@ -150,7 +149,7 @@ impl<'w> Path<'w> {
         std::f32::consts::PI * context.lanes.color(output.radiance)
     }
 
-    /// What the branches of a camera ray share.
+    /// State shared by the branches of a camera ray.
     fn context(&self, id: SampleId) -> SampleContext {
         match &self.photons {
             Some(photons) => {
@@ -161,7 +160,7 @@ impl<'w> Path<'w> {
         }
     }
 
-    /// State of a path along a ray from wherever it starts.
+    /// State of a path that starts along a ray from any point.
     fn start(&self, ray: Ray64, id: SampleId) -> PathState {
         let media = Media::around(self.world, ray.origin().as_vec3());
         PathState::new(ray, id, media)
@@ -185,7 +184,7 @@ impl<'w> Path<'w> {
         output.radiance
     }
 
-    /// Follows all branches to their end: one bounce at a time, depth first.
+    /// Follows all branches to their end, one bounce at a time, depth first.
     fn follow<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -267,7 +266,8 @@ impl<'w> Path<'w> {
         }
         let vertex = self.vertex(kind, state);
         let is_broad = kind.is_broad();
-        // One of many lights lies far away in memory: the direction is sampled while it is fetched.
+        // With many lights, the chosen one is rarely in the cache: the direction is sampled while
+        // it is fetched.
         let light = if is_broad { self.choose_light(&vertex) } else { None };
         let sample = if vertex.directions == 1 { vertex.sample_bsdf() } else { None };
         if let Some(light) = light {

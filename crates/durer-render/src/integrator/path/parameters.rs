@@ -31,7 +31,7 @@ impl Parameters for Transport {
     type Integrator<'w> = Path<'w>;
 
     fn over(self, Setup { world, settings, cone, cancel, .. }: Setup<'_>) -> Path<'_> {
-        // Else nobody asks for it.
+        // Without mipmaps the footprint is unused.
         let cone = cone.filter(|_| world.has_mipmaps());
         Path { cancel, cone, ..Path::new(world, settings, self) }
     }
@@ -41,18 +41,17 @@ impl Parameters for Transport {
     }
 }
 
-/// Paths and photons.
+/// Options of path tracing with photons.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct PhotonParameters {
-    /// As for paths alone.
+    /// Options of path tracing.
     #[serde(flatten)]
     pub transport: Transport,
-    /// How many photons each sample sends out.
+    /// Number of photons a sample.
     pub count: u32,
-    /// How far the first sample looks for photons, in units of the world.
+    /// Search radius of the first sample, in units of the world.
     pub radius: Option<f32>,
-    /// Whether their bias is taken out to second order, with more noise: see
-    /// [`Photons::corrected`].
+    /// Removes the bias to second order, with more noise: see [`Photons::corrected`].
     pub corrected: bool,
 }
 
@@ -121,34 +120,33 @@ impl Parameters for PhotonParameters {
     }
 }
 
-/// How paths find light that comes straight from lamps and surroundings with an extent. All but
-/// [`Direct::Middle`] have the same mean; they differ in noise.
+/// Strategy for direct light from emitters with extent. All except [`Direct::Middle`] have the same
+/// mean; they differ in noise.
 ///
 /// Source: Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, 1997, chapter 9.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direct {
-    /// Points of lights and directions of the surface are chosen; what both can find is weighed by
-    /// the power heuristic.
+    /// Light and BSDF sampling, combined by the power heuristic.
     #[default]
     Both,
-    /// Points of lights alone; a direction counts only where it meets what is never chosen.
+    /// Light sampling alone; BSDF samples count only for emitters that light sampling never finds.
     Lights,
-    /// Directions alone; points only of lights that no direction meets.
+    /// BSDF sampling alone; light samples count only for lights that no direction hits.
     Bsdf,
-    /// As [`Direct::Lights`], but always the same point of a surface that shines, the middle of a
-    /// sphere, disc or rectangle. Shadows are hard: wrong, and for lessons alone.
+    /// [`Direct::Lights`] with a fixed point of each emitter: the centre of a sphere, disc or
+    /// rectangle. Shadows are hard; wrong, for teaching only.
     Middle,
 }
 
 impl Direct {
-    /// Those that can be asked for.
+    /// The public choices.
     pub const CHOICES: [Direct; 3] = [Direct::Both, Direct::Lights, Direct::Bsdf];
 
-    /// Their names.
+    /// Names of the choices.
     const NAMES: [&str; 3] = [Direct::CHOICES[0].name(), Direct::CHOICES[1].name(), Direct::CHOICES[2].name()];
 
-    /// Its name.
+    /// Returns the name.
     pub const fn name(self) -> &'static str {
         match self {
             Direct::Both => "both",

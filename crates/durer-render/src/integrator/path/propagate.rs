@@ -17,19 +17,19 @@ pub(super) enum Event {
     Absorbed,
     /// The ray left the scene.
     Escaped,
-    /// A medium through which lights are visible scattered it at a point, along a unit direction.
+    /// A medium that does not hide lights scattered the ray at a point, along a unit direction.
     Medium(DVec3, Vec3, HenyeyGreenstein),
-    /// It hit a surface; with a passage where light may enter or leave the object.
+    /// The ray hit a surface; with a passage if light may enter or leave the object.
     Surface(Option<Passage>),
 }
 
-/// Most scatterings inside one object before the path is given up.
+/// Maximum number of scatterings inside one object before the path ends.
 const MAX_WALK: u32 = 10_000;
 
 impl Path<'_> {
     /// Follows a state's ray from its first hit to the next vertex. Updates the ray, throughput,
-    /// media and camera distance; writes the hit surface into `at`, which is reused since a copy of
-    /// it is slow.
+    /// media and camera distance. Writes the hit surface into `at`, which is reused to avoid slow
+    /// copies.
     pub(super) fn propagate<T: TraceListener>(
         &self,
         hit: Option<Hit>,
@@ -43,7 +43,7 @@ impl Path<'_> {
         event
     }
 
-    /// [`Path::propagate`], with what the flight leaves of the light.
+    /// [`Path::propagate`], also returning the transmittance.
     #[inline(always)]
     fn fly<T: TraceListener>(
         &self,
@@ -54,7 +54,7 @@ impl Path<'_> {
         tally: &mut T,
     ) -> (Event, Spectrum) {
         let lanes = &context.lanes;
-        // The ray from beyond the last surface that was passed.
+        // Ray from the last surface that was passed.
         let mut rest = state.ray;
         let mut transmittance = Spectrum::ONE;
         let (mut walked, mut layers, mut scatterings) = (0.0, 0, 0);
@@ -72,13 +72,14 @@ impl Path<'_> {
                         Flight::Scattered(distance, left) => {
                             transmittance *= left;
                             state.throughput = before * transmittance;
-                            // Never beyond the surface that bounds the medium.
+                            // Stay in front of the surface that bounds the medium.
                             let distance = distance.min(length * (1.0 - gamma(16)));
                             let point = way.origin + f64::from(distance) * way.dir.as_dvec3();
                             if self.world.is_open(state.media.object()) {
                                 return (Event::Medium(point, way.dir, medium.phase), transmittance);
                             }
-                            // No light is visible from inside: walk on until the object is left.
+                            // Lights are not visible from inside: continue the walk until it leaves
+                            // the object.
                             scatterings += 1;
                             let survival = match scatterings {
                                 0..16 => 1.0,
@@ -132,18 +133,18 @@ impl Path<'_> {
         }
     }
 
-    /// Whether the render was cancelled.
+    /// Returns true if the render was cancelled.
     pub(super) fn is_cancelled(&self) -> bool {
         self.cancel.is_some_and(|cancel| cancel.load(Relaxed))
     }
 
-    /// How light goes through the surface of an object that lets it in.
+    /// Passage of light through a surface; `None` if no light enters the object.
     pub(super) fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
         let ior = self.world.refracts(at, lanes)?;
         Some(media.nested_passage(self.world, at, ior, at.inside()))
     }
 
-    /// Whether a surface only bounds a medium and does not deflect light.
+    /// Returns true if a surface only bounds a medium and does not deflect light.
     pub(super) fn is_nothing(&self, at: &Interaction, passage: &Passage) -> bool {
         passage.hidden || passage.here == passage.there && self.world.is_interface(at)
     }

@@ -1,25 +1,25 @@
-//! Sum of all that a path finds.
+//! Sum of the light along a path.
 
 use super::Path;
 use super::state::{PathState, SampleContext};
 use crate::integrator::trace::{TermKind, TraceListener};
 use durer_scene::spectrum::Spectrum;
 
-/// Radiance along a camera ray as a path accumulates it, and who listens.
+/// Accumulated radiance along a camera ray, and the trace listener.
 pub(super) struct Output<'t, T> {
     /// Sum of throughput · light over all terms so far, by lane.
     pub(super) radiance: Spectrum,
-    /// Counts rays, and may keep every term.
+    /// Counts rays; may record every term.
     pub(super) tally: &'t mut T,
 }
 
-/// Light that reaches the present vertex.
+/// Light that arrives at the current vertex.
 pub(super) struct Contribution {
-    /// What the light is multiplied by at the vertex: MIS weight, BSDF · cosine / pdf, visibility.
+    /// Factor at the vertex: MIS weight, BSDF · cosine / pdf, visibility.
     pub(super) factor: Spectrum,
     /// Radiance of the source.
     pub(super) light: Spectrum,
-    /// How often the light was scattered on its way from the source to the camera.
+    /// Number of scatterings between the source and the camera.
     pub(super) scatterings: u32,
 }
 

@@ -1,4 +1,4 @@
-//! Scattering at a vertex: the next direction, Russian roulette, and the ray that goes on.
+//! Scattering at a vertex: the next direction, Russian roulette, and the next ray.
 
 use super::state::{Dimension, PathState, PrevVertex, SampleContext};
 use super::vertex::{BsdfSample, Vertex};
@@ -7,12 +7,12 @@ use crate::integrator::trace::{Bounce, RayKind, TermKind, TraceListener};
 use crate::world::Interaction;
 use durer_scene::spectrum::Spectrum;
 
-/// Highest probability with which roulette lets a path go on.
+/// Maximum survival probability in Russian roulette.
 const MAX_SURVIVAL: f32 = 0.95;
 
 impl Path<'_> {
-    /// Follows the sampled direction from a vertex, or several if the vertex splits: the active
-    /// state becomes the first branch, the others are pending. Returns whether a state is active.
+    /// Follows the sampled direction from a vertex, or several if the vertex splits: then all
+    /// branches are pending. Returns true if the active state continues.
     pub(super) fn scatter<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -33,13 +33,13 @@ impl Path<'_> {
                 stack.pending.push(branch);
             }
         }
-        // Depth first, in the order of their numbers.
+        // Depth first, in ascending order.
         stack.pending.reverse();
         false
     }
 
-    /// Turns a state into that of the ray along a sampled direction. Returns false if roulette ends
-    /// the path; the state is undefined then.
+    /// Turns a state into the state of the ray along a sampled direction. Returns false if roulette
+    /// ends the path; the state is undefined then.
     fn spawn<T: TraceListener>(
         &self,
         vertex: &Vertex,
@@ -94,8 +94,8 @@ impl Path<'_> {
         true
     }
 
-    /// Ends all wavelengths but the hero at a surface that disperses light: the others would be
-    /// refracted elsewhere, and the hero stands for all four.
+    /// Ends all wavelengths but the hero at a dispersive surface: the others would refract in other
+    /// directions. The hero then counts four times.
     pub(super) fn select_hero<T: TraceListener>(
         &self,
         at: &Interaction,

@@ -1,4 +1,4 @@
-//! Paths against answers in closed form. Their sources and derivations stand beside each.
+//! Tests of path tracing against closed forms, with sources and derivations.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -15,7 +15,7 @@ mod sheets;
 mod sides;
 mod terms;
 
-/// The mean of many samples along a ray, and its standard error.
+/// Returns the mean of many samples along a ray, and its standard error.
 fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     let settings = Settings { bounces, ..Job::default().settings };
     let path = Path::new(world, settings, Transport::default());
@@ -29,14 +29,14 @@ fn light(world: &World, ray: Ray, bounces: u32, samples: u32) -> (f64, f64) {
     (sum / n, ((squares / n - (sum / n) * (sum / n)).max(0.0) / n).sqrt())
 }
 
-/// Of points of lamps beside directions, of points, and of directions alone: the mean of many
-/// samples along a ray, and its variance, by colour.
+/// Returns mean and variance by colour of many samples along a ray, for combined, light and BSDF
+/// sampling.
 fn by_ways(world: &World, ray: Ray, settings: Settings, color: ColorMode) -> [[(f64, f64); 3]; 3] {
     [Direct::Both, Direct::Lights, Direct::Bsdf].map(|direct| {
         let path = Path::new(world, settings, Transport { color, direct, ..Transport::default() });
         let n = 1 << 14;
         let (mut sum, mut squares) = (DVec3::ZERO, DVec3::ZERO);
-        // Numbers apart, so that means are independent: of each way its own pixel.
+        // Different pixels, so that the estimates are independent.
         for sample in 0..n {
             let id = SampleId::new(7, (direct as u32, 5), sample);
             let value = path.radiance(&ray, id, &mut ()).as_dvec3();
@@ -48,7 +48,7 @@ fn by_ways(world: &World, ray: Ray, settings: Settings, color: ColorMode) -> [[(
     })
 }
 
-/// Asserts an answer within three standard errors and one part in a thousand.
+/// Asserts a radiance within three standard errors plus one part in a thousand.
 fn assert_light(name: &str, world: &World, ray: Ray, bounces: u32, expected: f64) {
     let (mean, error) = light(world, ray, bounces, 1 << 15);
     assert!((mean - expected).abs() <= 3.0 * error + 0.001 * expected, "{name}: {mean} ± {error}, not {expected}");
@@ -63,26 +63,26 @@ fn scene(materials: &str, lights: &str, group: &str) -> World {
 
 const MATTE: &str = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 }";
 
-/// A matte floor at y = 0 of albedo 0.5, seen from the side, and something that shines.
+/// Builds a matte floor at y = 0 of albedo 0.5, seen from the side, and an emitter.
 fn over_floor(lights: &str, shining: &str) -> World {
     let materials = format!("{MATTE} PrincipledMaterial {{ baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }}");
     let floor = "MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1";
     scene(&materials, lights, &format!("{floor} {shining}"))
 }
 
-/// A ray that meets the floor at the origin.
+/// Returns a ray that hits the floor at the origin.
 fn to_origin() -> Ray {
     Ray::new(Vec3::new(2.0, 2.0, 0.0), Vec3::new(-1.0, -1.0, 0.0).normalize())
 }
 
-/// What a floor of albedo 0.5 shows where its irradiance is E: 0.5 E / pi.
+/// Returns the radiance of a floor of albedo 0.5 with irradiance E: 0.5 E / pi.
 fn shown(irradiance: f64) -> f64 {
     0.5 * irradiance / std::f64::consts::PI
 }
 
 #[test]
 fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
-    // L = Le (1 - rho^n) / (1 - rho) with n scatterings and the light itself counted.
+    // L = Le (1 - rho^n) / (1 - rho) with n scatterings and the emission itself counted.
     for form in ["Sphere { center 0 0 0 radius 2 }", "Box { min -2 -2 -2 max 2 2 2 }"] {
         let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 walls thin }";
         let world = scene(material, "", &format!("MaterialIndex 0 {form}"));
@@ -94,7 +94,7 @@ fn a_closed_furnace_has_the_sum_of_a_geometric_series() {
     }
 }
 
-/// What is far for its size is known near itself: here a lamp alone, and the floor as well.
+/// Distant objects keep their precision: here an area light alone, and the floor as well.
 #[test]
 fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
     let words = |p: Vec3| format!("{} {} {}", p.x, p.y, p.z);
@@ -132,7 +132,7 @@ fn far_from_the_origin_lamps_light_a_floor_as_they_do_near_it() {
 
 #[test]
 fn suns_are_seen_straight_and_over_mirrors_and_light_as_much() {
-    // Irradiance pi c on what faces it, from a disc of radiance L: pi c = 2 pi (1 - cos) L.
+    // Irradiance pi c on a facing surface, from a disc of radiance L: pi c = 2 pi (1 - cos) L.
     let half: f64 = 2.0;
     let radiance = 0.5 / (1.0 - durer_scene::math::fp::sin_cos_degrees(half).1);
     let mirror = "PrincipledMaterial { baseMetalness 1 baseColor 1 1 1 specularRoughness 0 }";
@@ -154,11 +154,11 @@ fn suns_are_seen_straight_and_over_mirrors_and_light_as_much() {
         ("mirror", ray(10.0, 5.0, 1.0, -1.0), radiance),
         ("mirror, beside", ray(10.0, 5.0, 2.1, -1.0), 0.0),
         ("pane", ray(20.0, 0.5, 0.0, 1.0), radiance * 0.96 / 1.04),
-        // Half of it is what a matte floor shows, straight and by paths alike: none of it twice.
+        // Half of it is the radiance of a matte floor, counted once over light samples and paths.
         ("floor", ray(0.0, 1.0, 10.0, -1.0), 0.5),
         ("floor below the pane", ray(20.0, 0.5, 0.0, -1.0), 0.5 * 0.96 / 1.04),
     ] {
-        // Between floor and pane it goes to and fro.
+        // Light bounces between floor and pane.
         let bounces = if name.contains("below") { 0 } else { 3 };
         let (mean, error) = light(&world, ray, bounces, 4096);
         assert!((mean - expected).abs() <= 4.0 * error + 2e-3 * expected, "{name}: {mean} ± {error}, not {expected}");
@@ -189,18 +189,18 @@ fn lights_with_extent_shine_by_their_view_factors() {
     let triangles =
         "Triangle { vertex0 0 2 0 vertex1 3 2 0 vertex2 3 2 1 } Triangle { vertex0 0 2 0 vertex1 3 2 1 vertex2 0 2 1 }";
     assert_light("triangles", &over_floor("", triangles), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
-    // Moved, turned and stretched, it is the same rectangle.
+    // The same rectangle after a transform.
     let moved =
         "Transform { Translate 0 2 0 YRotate 90 Scale 1 1 3 Rectangle { corner 0 0 0 edge0 0 0 1 edge1 -1 0 0 } }";
     assert_light("moved rectangle", &over_floor("", moved), to_origin(), 0, shown(PI * 3.0 * factor(1.5, 0.5)));
-    // Seen from behind it is dark.
+    // The back is dark.
     let away = over_floor("", "Rectangle { corner 0 2 0 edge0 0 0 1 edge1 3 0 0 }");
     assert_light("from behind", &away, to_origin(), 0, 0.0);
 }
 
 #[test]
 fn what_is_there_in_part_shines_in_part() {
-    // A sphere of radius r at a height h makes pi L (r / h)^2.
+    // A sphere of radius r at height h gives pi L (r / h)^2.
     let whole = std::f64::consts::PI * 3.0 * 0.25 * 0.25;
     for (opacity, share) in [("1", 1.0), ("0.5", 0.5), ("0.25", 0.25)] {
         let lamp =
@@ -212,14 +212,14 @@ fn what_is_there_in_part_shines_in_part() {
 
 #[test]
 fn what_is_found_by_chance_and_what_is_connected_with_agree() {
-    // An ellipsoid has no points to choose: directions alone find it. Stretched by 1 it is the
-    // sphere that can be chosen.
+    // An ellipsoid cannot be sampled as a light: only BSDF sampling finds it. With equal radii it
+    // is the sphere, which can be sampled.
     let one = over_floor("", "Sphere { center -0.8 1.6 0 radius 0.8 }");
     let other = over_floor("", "Ellipsoid { center -0.8 1.6 0 radii 0.8 0.8 0.8 }");
     let ((a, ea), (b, eb)) = (light(&one, to_origin(), 2, 1 << 15), light(&other, to_origin(), 2, 1 << 15));
     assert!((a - b).abs() < 4.0 * (ea * ea + eb * eb).sqrt(), "{a} ± {ea}, {b} ± {eb}");
     assert!(ea < 0.5 * eb, "connecting has less noise: {ea} {eb}");
-    // A cylinder can be chosen, the same cut out of a longer one cannot.
+    // A cylinder can be sampled; the same shape cut out of a longer one cannot.
     let one = over_floor("", "Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 }");
     let cut =
         "Intersection { Cylinder { base -0.4 1.2 0.3 top 0.3 2 0 radius 0.4 } Sphere { center 0 1.6 0 radius 3 } }";
@@ -231,9 +231,9 @@ fn what_is_found_by_chance_and_what_is_connected_with_agree() {
 
 #[test]
 fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
-    // A glossy floor under a ball, a triangle and an even sky, with a light without extent and a
-    // mirror beside: whatever finds the light, its mean is the same. z-tests of means against each
-    // other, 18 in all: 3.6 standard errors are passed by chance once in 3000.
+    // A glossy floor under a sphere, a triangle and a uniform sky, with a point light and a mirror
+    // nearby: the mean does not depend on the strategy. 18 z-tests of pairs of means; 3.6 standard
+    // errors are exceeded by chance once in 3000.
     let materials = "PrincipledMaterial { baseColor 0.5 0.4 0.3 specularRoughness 0.35 }
         PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }
         PrincipledMaterial { baseColor 1 1 1 baseMetalness 1 specularRoughness 0 }
@@ -254,16 +254,16 @@ fn points_of_lights_and_directions_alone_have_the_mean_of_both() {
                 assert!((a - b).abs() < 3.6 * (va + vb).sqrt(), "{ways:?}");
             }
         }
-        // The two halves have more noise than their sum.
+        // Each strategy alone has more noise than the combination.
         assert!(ways[1..].iter().all(|half| half[1].1 > ways[0][1].1), "{ways:?}");
     }
 }
 
 #[test]
 fn several_directions_under_surroundings_have_the_mean_of_one() {
-    // Rough metal, glass and lacquer under a sky with a bright patch, which chance rarely meets, a
-    // light without extent, a lamp, and a wall: of each way the same mean, by z-tests as above (48:
-    // 4 standard errors are passed by chance once in 300 runs).
+    // Rough metal, glass and lacquer under a sky with a small bright patch, a point light, an area
+    // light, and a wall: all strategies have the same mean, by z-tests as above (48: 4 standard
+    // errors are exceeded by chance once in 300 runs).
     let folder = tempfile::tempdir().unwrap();
     let mut sky = b"PF\n32 16\n-1\n".to_vec();
     for texel in 0..32 * 16_usize {
@@ -296,7 +296,7 @@ fn several_directions_under_surroundings_have_the_mean_of_one() {
                 assert!((a - b).abs() < 4.0 * (va + vb).sqrt(), "{x} {y}: {ways:?}");
             }
         }
-        // From the first point of what is not matte two directions are followed, from all others one.
+        // The first non-matte vertex follows two directions, all others one.
         fn follow(node: &TraceNode, directions: u32) -> usize {
             let below = node.terms.iter().map(|term| match &term.what {
                 TermKind::Ray { bounce: Some(bounce), .. } => {
@@ -317,7 +317,7 @@ fn several_directions_under_surroundings_have_the_mean_of_one() {
 #[test]
 fn an_integrating_sphere_has_the_same_indirect_light_everywhere() {
     // A point light of intensity I anywhere in a sphere of area S and albedo rho: E = I cos / d^2 +
-    // 4 pi I / S rho / (1 - rho). A light of colour c makes an irradiance of pi c at distance 1.
+    // 4 pi I / S rho / (1 - rho). A light of colour c gives an irradiance of pi c at distance 1.
     let world = scene(
         MATTE,
         "PointLight { position 0.5 0.8 0 color 1 1 1 attenuation 0 0 1 }",
@@ -354,8 +354,7 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
         for x in [0.0, 0.6, 0.95] {
             let ray = Ray::new(Vec3::new(x, 0.0, 5.0), Vec3::NEG_Z);
             let (mean, error) = light(&world, ray, 200, 1 << 13);
-            // What the tables of rough glass leave unexplained: less than half a percent at two
-            // boundaries.
+            // Error of the tables of rough glass: less than half a percent at two boundaries.
             assert!((mean - 0.7).abs() < 3.0 * error + 0.005, "{material} at {x}: {mean} ± {error}");
         }
     }
@@ -363,8 +362,8 @@ fn bodies_that_absorb_nothing_vanish_in_even_light() {
 
 #[test]
 fn an_absorbing_slab_dims_by_beer_and_fresnel() {
-    // Seen at right angles: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind is light
-    // of 1.
+    // At normal incidence: T = (1 - F)^2 a / (1 - F^2 a^2) with a = exp(-sigma s); behind it is a
+    // radiance of 1.
     let (f, a) = (0.04_f64, 0.3_f64);
     let glass = "PrincipledMaterial { transmissionWeight 1 specularRoughness 0 transmissionColor 0.3 0.3 0.3 transmissionDepth 2 }";
     let lamp = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 1 }";
@@ -393,7 +392,7 @@ fn under_point_lights_the_first_scattering_of_matte_things_is_whitteds() {
 
 #[test]
 fn many_lights_give_what_their_sum_gives() {
-    // 40 spheres on a spiral, so that none hides another: E = pi L r^2 cos / d^2 for spheres wholly
+    // 40 spheres on a spiral without mutual occlusion: E = pi L r^2 cos / d^2 for spheres entirely
     // above the horizon.
     let mut all = String::new();
     let mut irradiance = 0.0;
@@ -421,7 +420,7 @@ fn half_a_screen_casts_half_a_shadow() {
 fn cameras_and_lights_without_extent_look_through_hidden_backs() {
     let lit = shown(std::f64::consts::PI / 16.0);
     let (up, down) = ("edge0 0 0 1 edge1 1 0 0", "edge0 1 0 0 edge1 0 0 1");
-    // Before the floor as the camera sees it, and before it as the lamp does.
+    // In front of the floor as seen from the camera, and as seen from the light.
     for (corner, sides, expected) in
         [("0.5 1 -0.5", down, lit), ("0.5 1 -0.5", up, 0.0), ("-0.5 3 -0.5", down, lit), ("-0.5 3 -0.5", up, 0.0)]
     {

@@ -13,33 +13,33 @@ use durer_scene::shape::Surface;
 use durer_scene::spectrum::Spectrum;
 use glam::DVec3;
 
-/// Number of directions to the environment that are tried, and one of them taken, where a BSDF is
-/// glossy. (Measured: with two the variance of a rough metal is 0.72, with four 0.59, with eight
-/// 0.54; four take 1.2 of the time for a picture of one.) Elsewhere one is as good.
+/// Number of candidate directions to the environment for a glossy BSDF; one of them is used.
+/// (Measured: the variance of a rough metal is 0.72 with two, 0.59 with four, 0.54 with eight; four
+/// take 1.2 times as long as one for a picture.) For other BSDFs, one is as good.
 pub(super) const TRIES: u32 = 4;
 
-/// Number of directions followed from the first vertex if it is glossy and there is an environment:
-/// most paths end soon there, and the work for the first vertex serves all of them.
+/// Number of directions followed from a glossy first vertex if there is an environment: most of
+/// these paths end soon, and they share the cost of the first vertex.
 ///
 /// Source: Arvo and Kirk, *Particle Transport and Image Synthesis*, SIGGRAPH 1990 (splitting).
 pub(super) const DIRECTIONS: u32 = 2;
 
-/// A vertex, and how it is sampled.
+/// Vertex, and its sampling.
 #[derive(Clone, Copy)]
 pub(super) struct Vertex<'a, 'w> {
     /// Surface or medium.
     pub(super) kind: VertexKind<'a, 'w>,
     /// Random numbers in [0, 1)^2; by [`Dimension`].
     pub(super) random: [Vec2; DIMENSIONS],
-    /// Number of directions to the environment that are tried for one that is taken; at least 1.
+    /// Number of candidate directions to the environment; at least 1.
     pub(super) tries: f32,
-    /// Number of directions that are followed; at least 1.
+    /// Number of directions to follow; at least 1.
     pub(super) directions: u32,
     /// Point and normal that lights are sampled for.
     pub(super) receiver: Receiver,
 }
 
-/// What scatters light at a vertex.
+/// Surface or medium that scatters light at a vertex.
 #[derive(Clone, Copy)]
 pub(super) enum VertexKind<'a, 'w> {
     /// A surface; with a passage, light may go through it into another medium.
@@ -48,7 +48,7 @@ pub(super) enum VertexKind<'a, 'w> {
     Medium(DVec3, Vec3, HenyeyGreenstein),
 }
 
-/// A direction sampled from a BSDF or a phase function.
+/// Direction sampled from a BSDF or a phase function.
 pub(super) struct BsdfSample {
     /// Unit direction of the light, away from the vertex; world space.
     pub(super) wi: Vec3,
@@ -56,9 +56,9 @@ pub(super) struct BsdfSample {
     pub(super) weight: Spectrum,
     /// Density per steradian over all lobes; 0 for a delta lobe.
     pub(super) pdf: f32,
-    /// Whether it leads behind the surface.
+    /// True if the direction leads behind the surface.
     pub(super) transmits: bool,
-    /// Index of the lobe that was sampled.
+    /// Index of the sampled lobe.
     pub(super) lobe: usize,
 }
 
@@ -93,8 +93,8 @@ impl Vertex<'_, '_> {
         self.kind.sample(self.random(Dimension::Choices).x, self.random(Dimension::Direction))
     }
 
-    /// BSDF · cosine for a direction, and the density per steradian with which the directions that
-    /// are followed come upon it.
+    /// BSDF · cosine for a direction, and its density per steradian, summed over the directions to
+    /// follow.
     pub(super) fn eval(&self, wi: Vec3) -> (Spectrum, f32) {
         let (value, pdf) = self.kind.eval(wi);
         (value, self.directions as f32 * pdf)
@@ -109,7 +109,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Normal that lights are sampled for; zero where light arrives from all sides.
+    /// Normal for light sampling; zero if light arrives from all sides.
     fn normal(&self) -> Vec3 {
         match self {
             VertexKind::Surface(_, shading, _) if !shading.bsdf.passes_light() => shading.frame.normal,
@@ -117,7 +117,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Whether some lobe has a density, so that sampling lights makes sense.
+    /// Returns true if a lobe has a density, so that light sampling makes sense.
     pub(super) fn is_broad(&self) -> bool {
         match self {
             VertexKind::Surface(_, shading, _) => shading.bsdf.is_broad(),
@@ -125,7 +125,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Whether half or more of the scattered light goes into a narrow cone.
+    /// Returns true if at least half of the scattered light goes into a narrow cone.
     fn is_glossy(&self) -> bool {
         matches!(self, VertexKind::Surface(_, shading, _) if shading.bsdf.is_glossy())
     }
@@ -141,7 +141,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Samples a direction by a number in [0, 1) for the lobe and a pair for the direction.
+    /// Samples a direction with a number in [0, 1) for the lobe and a pair for the direction.
     pub(super) fn sample(&self, choice: f32, u: Vec2) -> Option<BsdfSample> {
         match self {
             VertexKind::Surface(_, shading, _) => {
@@ -161,7 +161,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Name of a lobe, and the probability with which it is sampled.
+    /// Name of a lobe, and its sampling probability.
     pub(super) fn lobe(&self, number: usize) -> (&'static str, f32) {
         match self {
             VertexKind::Surface(_, shading, _) => {
@@ -172,12 +172,13 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Whether a lobe refracts, so that radiance changes with the index of refraction squared.
+    /// Returns true if a lobe refracts, so that radiance changes with the index of refraction
+    /// squared.
     pub(super) fn refracts(&self, lobe: usize) -> bool {
         self.nth_lobe(lobe).is_some_and(|lobe| lobe.is_delta() && lobe.kind().eta.is_some())
     }
 
-    /// Whether a lobe passes light straight through an open surface, as a pane does.
+    /// Returns true if a lobe passes light straight through an open surface, such as a pane.
     pub(super) fn goes_straight(&self, lobe: usize) -> bool {
         let is_sheet = matches!(self, VertexKind::Surface(_, _, None));
         is_sheet && self.nth_lobe(lobe).is_some_and(|lobe| lobe.kind().is_straight)
@@ -190,7 +191,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Ray from the vertex to whatever is next.
+    /// Ray from the vertex in a direction.
     pub(super) fn spawn(&self, wi: Vec3) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => spawn_ray(surface, wi, f32::INFINITY, None),
@@ -198,8 +199,8 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Ray from the vertex to a sampled point of a light. It ends before the light, so that what
-    /// stands exactly there does not block it.
+    /// Ray from the vertex to a sampled point of a light. It ends before the light, so that
+    /// surfaces at the same place do not block it.
     pub(super) fn shadow_ray(&self, light: &LightSample) -> Ray64 {
         match self {
             VertexKind::Surface(surface, ..) => to_point(surface, light.wi, light.shadow_reach(offset_bound(surface))),
@@ -207,7 +208,7 @@ impl VertexKind<'_, '_> {
         }
     }
 
-    /// Media behind the surface if a direction leads there and they are others than before it.
+    /// Media behind the surface, if a direction leads there and they differ from those in front.
     pub(super) fn media_behind(&self, wi: Vec3) -> Option<&Media> {
         match self {
             VertexKind::Surface(_, shading, Some(passage)) if wi.dot(shading.n_geo) < 0.0 => Some(&passage.behind),

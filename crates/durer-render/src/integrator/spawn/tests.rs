@@ -1,4 +1,4 @@
-//! Rooms without a window stay dark, wherever they are.
+//! Tests that closed rooms stay dark, wherever they are.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -22,7 +22,7 @@ const CORNERS: [[f32; 3]; 8] = [
 ];
 const WALLS: [[usize; 4]; 6] = [[0, 1, 2, 3], [4, 7, 6, 5], [0, 4, 5, 1], [3, 2, 6, 7], [0, 3, 7, 4], [1, 5, 6, 2]];
 
-/// The walls of a room of size 2 in a file, about a place.
+/// Returns the text of a mesh with the walls of a room of size 2 around a point.
 fn room_file(at: Vec3) -> String {
     let mut text = String::new();
     for corner in CORNERS {
@@ -35,7 +35,7 @@ fn room_file(at: Vec3) -> String {
     text
 }
 
-/// A smooth ball of radius 1 about a place in a file.
+/// Returns the text of a smooth sphere of radius 1 around a point.
 fn ball_file(at: Vec3) -> String {
     let ball = include_str!("../../../../../scenes/meshes/ball80-smooth.obj");
     let moved = |line: &str| match line.strip_prefix("v ") {
@@ -60,8 +60,8 @@ fn triangles(at: Vec3) -> String {
     WALLS.iter().flat_map(|&[a, b, c, d]| [triangle([a, b, c]), triangle([a, c, d])]).collect()
 }
 
-/// A room of size 2 about a place, with two lamps outside, of which one has an extent, that only a
-/// hole in the walls would let in.
+/// Builds a room of size 2 around a point, with a point light and an area light outside, whose
+/// light could only enter through a crack.
 fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     let (p, lamp) = (at, at + Vec3::new(3.0, 4.0, 2.5));
     let text = format!(
@@ -85,7 +85,8 @@ fn room(walls: &str, at: Vec3, folder: &Path) -> World {
     world.unwrap_or_else(|| panic!("{found:?}"))
 }
 
-/// Of `count` squared rays all around from within a room, how many see light, at once or by a path.
+/// Counts the rays from inside a room, `count` squared in all directions, that see light directly
+/// or by a path.
 fn leaks(world: &World, at: Vec3, count: usize) -> usize {
     let settings = Settings {
         bounces: 0,
@@ -191,7 +192,7 @@ fn shadow_rays_of_bent_surfaces_end_at_the_light() {
     let ray = to_point(&surface, to.normalize(), to.length());
     let end = ray.origin() + f64::from(ray.rounded.t_max) * ray.dir().as_dvec3();
     assert!((end - surface.point() - to.as_dvec3()).length() < 1e-5, "{end}");
-    // A parallel one ends elsewhere, and one without end stays parallel.
+    // A parallel ray ends elsewhere, and an infinite one stays parallel.
     let parallel = to_light(&surface, to.normalize(), to.length(), None);
     let end = parallel.origin() + f64::from(parallel.rounded.t_max) * parallel.dir().as_dvec3();
     assert!((end - surface.point() - to.as_dvec3()).length() > 0.01);

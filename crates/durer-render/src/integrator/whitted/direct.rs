@@ -1,4 +1,4 @@
-//! Light that comes straight from the scene's lights.
+//! Direct light.
 
 use super::{Lit, Shaded, Whitted};
 use crate::integrator::spawn::{spawn_ray, to_light};
@@ -9,11 +9,11 @@ use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
 
-/// So many transparent surfaces are looked through.
+/// Maximum number of transparent surfaces along a shadow ray.
 const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
-    /// The shadow ray to a light, for listeners.
+    /// Returns the shadow ray to a light, for listeners.
     pub(super) fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
         let ray = self.shadow_ray(surface, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
@@ -23,13 +23,13 @@ impl Whitted<'_> {
     #[inline(always)]
     pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
-        // What stands exactly at the light does not block it.
+        // Objects exactly at the light do not occlude it.
         let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
         to_light(surface, seen.to_light, reach, epsilon)
     }
 
-    /// The shares of lights that arrive along shadow rays: nothing behind a thing, or what
-    /// transparent things let through.
+    /// Computes the visibility of lights along shadow rays: 0 if occluded, or the transmittance of
+    /// transparent objects.
     pub(super) fn visible<T: TraceListener>(&self, shadows: &mut [Ray64], shares: &mut [Color], tally: &mut T) {
         let mut found = [None; TOGETHER];
         if self.world.shading_rules().shadow_fronts {
@@ -53,13 +53,13 @@ impl Whitted<'_> {
         }
     }
 
-    /// What things in the way of a light let through, from the first hit of the ray to it on.
+    /// Returns the transmittance of a shadow ray, given its first hit.
     fn let_through<T: TraceListener>(&self, mut ray: Ray64, mut found: Option<Hit>, tally: &mut T) -> Color {
         let (to_light, mut share) = (ray.dir(), Color::ONE);
-        // A thing with many layers is followed only so far.
+        // Limits the number of layers.
         for layer in 1.. {
             let Some(hit) = found else { return share };
-            // What lets nothing through need not be looked at.
+            // An opaque material ends the search without a closer look.
             match &self.world.materials()[self.world.material_of(&hit) as usize] {
                 Material::Phong(phong) if phong.transparent == Color::ZERO => break,
                 _ => {}
@@ -78,44 +78,44 @@ impl Whitted<'_> {
     }
 }
 
-/// Terms of one light at a point, if nothing is in the way.
+/// Terms of one light at a point, without occlusion.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Direct {
     /// Cosine between the normal and the direction to the light.
     cosine: f32,
-    /// Base of the highlight's power: a cosine, less than 0 where there is none. `None`: no highlight.
+    /// Base of the highlight's power: a cosine, negative without a highlight. `None`: no highlight.
     base: Option<f32>,
-    /// The highlight's power, once [`take_powers`] has taken it.
+    /// The highlight's power, after [`take_powers`].
     strength: f32,
     diffuse: Color,
 }
 
 impl Direct {
-    /// Works out the terms up to the highlight's power.
+    /// Computes the terms except the highlight's power.
     #[inline(always)]
     pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination) -> Self {
         let cosine = n.dot(seen.to_light);
         let shines = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
         let highlight = phong.highlight.filter(|highlight| shines(highlight.2));
         let base = highlight.map(|(_, _, model)| match model {
-            // Cosine of the angle between the normal and the direction halfway between light and eye.
+            // Cosine between the normal and the half vector of light and eye.
             HighlightModel::Blinn => n.dot((seen.to_light - view).normalize_or_zero()),
             HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
         });
         Direct { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
     }
 
-    /// Whether both terms are 0, whatever light arrives.
+    /// Returns true if both terms are 0 for any light.
     #[inline(always)]
     pub(super) fn is_dark(&self, phong: &Phong) -> bool {
         let highlight = |(specular, exponent, _)| {
-            // A power of exponent 0 is 1.
+            // Exponent 0 gives 1.
             specular != Color::ZERO && (self.base.is_some_and(|base| base > 0.0) || exponent <= 0.0)
         };
         self.diffuse == Color::ZERO && !(self.base.is_some() && phong.highlight.is_some_and(highlight))
     }
 
-    /// Light that is scattered against the ray.
+    /// Returns the radiance towards the ray's origin.
     #[inline(always)]
     pub(super) fn color(&self, phong: &Phong, seen: &Illumination) -> Color {
         match (self.base, phong.highlight) {
@@ -137,7 +137,7 @@ impl Direct {
     }
 }
 
-/// Takes the powers of the highlights of some points, several side by side.
+/// Computes the powers of the highlights of several points with SIMD.
 pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Iterator<Item = usize>) {
     let mut powers = Powers { bases: [0.0; TOGETHER], exponents: [1.0; TOGETHER], count: 0 };
     let mut places = [0; TOGETHER];
@@ -160,7 +160,7 @@ pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Itera
     powers.give(&places, parts);
 }
 
-/// Powers that are taken together.
+/// A batch of powers.
 struct Powers {
     bases: [f32; TOGETHER],
     exponents: [f32; TOGETHER],
@@ -168,7 +168,7 @@ struct Powers {
 }
 
 impl Powers {
-    /// Takes the powers, writes them to their places, and begins anew.
+    /// Computes the powers, stores them, and starts a new batch.
     fn give(&mut self, places: &[usize; TOGETHER], parts: &mut [Lit]) {
         let count = std::mem::take(&mut self.count);
         if count == 0 {
@@ -177,7 +177,7 @@ impl Powers {
         let powers = run_plain(PowerKernel(self, count));
         for (i, &place) in places[..count].iter().enumerate() {
             let power = powers[i];
-            // Unusual numbers are left to the function for one.
+            // Leave special values to the scalar function.
             let power = if power.is_nan() { fp::pow(self.bases[i], self.exponents[i]) } else { power };
             parts[place].direct.strength = power;
         }

@@ -1,41 +1,41 @@
-//! Rays that wait to be traced, and the sums that their light becomes.
+//! Queue of rays to trace, and the sums of their light.
 
 use crate::integrator::media::Media;
 use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::TOGETHER;
 use durer_scene::math::{Color, Ray, Ray64, Vec3};
 
-/// Parent of a camera ray.
+/// Parent index of a camera ray.
 const CAMERA: u32 = u32::MAX;
 
-/// A ray, and the light that is known to come along it.
+/// A ray and the radiance found along it so far.
 pub(super) struct Segment {
     pub(super) ray: Ray64,
-    /// Hits count from this `t` on: behind surfaces that are none.
+    /// Minimum `t` of hits: beyond surfaces that were ignored.
     pub(super) t_min: f32,
-    /// Bodies that the ray runs in.
+    /// Objects that contain the ray.
     pub(super) media: Media,
-    /// Levels of secondary rays that may follow it.
+    /// Remaining depth of secondary rays.
     pub(super) bounces: u32,
-    /// Share of the pixel that its light may make up; see [`super::Settings::least_weight`].
+    /// Throughput relative to the pixel; see [`super::Settings::least_weight`].
     pub(super) weight: f32,
-    /// Number of the camera ray that it belongs to.
+    /// Index of its camera ray.
     pub(super) camera: u32,
-    /// The segment that spawned it, or [`CAMERA`].
+    /// Index of the parent segment, or [`CAMERA`].
     pub(super) parent: u32,
-    /// Which of its parent's branches it is: 0 mirrored, 1 transmitted.
+    /// Branch of the parent: 0 reflected, 1 transmitted.
     pub(super) branch: usize,
-    /// Weight of its light in its parent's sum.
+    /// Weight in the parent's sum.
     pub(super) factor: Color,
-    /// Its node in the trace.
+    /// Node in the trace.
     pub(super) node: NodeId,
-    /// Light from its hit itself: ambient light and lights.
+    /// Light at its own hit: ambient light and lights.
     pub(super) local: Color,
-    /// Weighted light of its branches.
+    /// Weighted radiance of its branches.
     pub(super) branches: [Color; 2],
-    /// How many of its branches are still under way.
+    /// Number of unfinished branches.
     pub(super) pending: u32,
-    /// Node of the sum of its branches.
+    /// Trace node of the sum of its branches.
     pub(super) secondary: NodeId,
 }
 
@@ -60,14 +60,14 @@ impl Default for Segment {
     }
 }
 
-/// Segments under way. Those that wait to be traced form a stack, so that at most a batch for each
-/// level of secondary rays is under way, and no call nests.
+/// Segments in progress. Waiting segments form a stack, so that at most one batch for each level of
+/// secondary rays is in progress, and nothing recurses.
 #[derive(Default)]
 pub(super) struct Queue {
-    /// Segments under way are among the first `used`; the others are room that was taken before.
+    /// The first `used` are in use or free; the others are kept for reuse.
     segments: Vec<Segment>,
     used: u32,
-    /// Numbers of segments that are done, to be used again.
+    /// Indices of finished segments, for reuse.
     free: Vec<u32>,
     waiting: Vec<u32>,
 }
@@ -110,12 +110,12 @@ impl Queue {
         segment
     }
 
-    /// Has a segment traced on.
+    /// Queues a segment to be traced further.
     pub(super) fn push_again(&mut self, number: u32) {
         self.waiting.push(number);
     }
 
-    /// Takes up to [`TOGETHER`] of the segments that were added last; returns how many.
+    /// Takes up to [`TOGETHER`] of the segments added last; returns their number.
     pub(super) fn take(&mut self, batch: &mut [u32; TOGETHER]) -> usize {
         let count = self.waiting.len().min(TOGETHER);
         let start = self.waiting.len() - count;
@@ -124,7 +124,7 @@ impl Queue {
         count
     }
 
-    /// Ends a segment along which this light comes, and all those whose sums are complete with it.
+    /// Finishes a segment with its radiance, and all ancestors whose sums are complete with it.
     pub(super) fn finish<T: TraceListener>(
         &mut self,
         mut number: u32,

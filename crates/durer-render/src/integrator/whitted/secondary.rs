@@ -1,4 +1,4 @@
-//! Mirrored and transmitted light.
+//! Reflected and transmitted light.
 
 use super::queue::{Queue, Segment};
 use super::{Lit, Shaded, Whitted};
@@ -9,20 +9,20 @@ use crate::world::{Interaction, Material, WeightedMaterial};
 use durer_scene::math::{Color, Vec3, reflect};
 use durer_scene::shape::Surface;
 
-/// How light is divided at a hit: directions, and the colours that weigh their light.
+/// Split of light at a hit: directions and weights.
 struct Parted {
     mirrored: Vec3,
     reflective: Color,
-    /// `None` where reflection is total, or nothing is transparent.
+    /// `None` for total reflection or opaque materials.
     transmitted: Option<Vec3>,
     transparent: Color,
-    /// The mirrored share, where the two divide the light by Fresnel's law.
+    /// Reflected share, if Fresnel's law splits the light.
     fresnel: Option<f32>,
 }
 
 impl Whitted<'_> {
-    /// Spawns the mirrored and the transmitted ray of a point, or finishes its segment where there
-    /// is none.
+    /// Spawns the reflected and the transmitted ray of a point; finishes its segment if there are
+    /// none.
     pub(super) fn secondary<T: TraceListener>(
         &self,
         point: &mut Shaded,
@@ -68,19 +68,19 @@ impl Whitted<'_> {
         }
     }
 
-    /// How light is divided at a hit.
+    /// Splits the light at a hit.
     #[inline]
     fn parted(&self, at: &Interaction, blend: Blend, &Passage { here, there, .. }: &Passage) -> Parted {
         let Blend { mut reflective, mut transparent, fresnel, .. } = blend;
         let (rules, leaving, dir) = (self.world.shading_rules(), self.sees_back(at), at.ray.dir());
-        // The normal on the ray's side.
+        // Normals on the ray's side.
         let [n, n_geo] = [at.surface.n_shade, at.surface.n_geo].map(|n| if leaving { -n } else { n });
-        // An interpolated normal may point away from the ray; the surface itself does not.
+        // An interpolated normal may point away from the ray; the geometric normal does not.
         let n = if dir.dot(n) < 0.0 { n } else { n_geo };
-        // A mirror without `shade_back` reflects about the normal as it is; the direction is the
+        // Without `shade_back`, a mirror reflects about the unflipped normal; the direction is the
         // same.
         let mirrored = reflect(dir, n);
-        // About a normal that is not of length 1 it is another one.
+        // A normal that is not unit length changes the direction.
         let (mirrored, n) = match rules.raw_normals {
             true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
             false => (mirrored, n),
@@ -89,10 +89,10 @@ impl Whitted<'_> {
             true => None,
             false => refract(dir, n, here / there),
         };
-        // With one of the two left out, the other has all the light.
+        // If one of the two is switched off, the other gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
-            // Total reflection weighs 1.
+            // Total reflection has weight 1.
             let zero = leaving && rules.exit_r0;
             transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), zero))
         });
@@ -103,7 +103,7 @@ impl Whitted<'_> {
         Parted { mirrored, reflective, transmitted, transparent, fresnel: share }
     }
 
-    /// How light that may go through at a hit does; `None` where none may.
+    /// Returns the transmission at a hit; `None` if the surface is opaque.
     #[inline]
     pub fn passage(&self, at: &Interaction, media: &Media) -> Option<Passage> {
         if !self.world.may_enter(at) {
@@ -123,7 +123,8 @@ impl Whitted<'_> {
         })
     }
 
-    /// The course's: one index is carried along, and behind glass there is air.
+    /// Returns the transmission as in the course: one index is carried along, and behind glass
+    /// there is air.
     fn official_passage(&self, object: u32, blend: Blend, leaving: bool, media: &Media) -> Passage {
         let (known, ior) = (media.ior(), blend.ior);
         let (here, there) = match (leaving, blend.fresnel) {
@@ -135,14 +136,14 @@ impl Whitted<'_> {
         Passage { here, there, behind: Media::only(Body { object, ior: there, size: None }), hidden: false }
     }
 
-    /// How much a ray counts for that a colour weighs. The course takes the length of the colour,
-    /// which for grey is more than what is left of the light.
+    /// Returns the throughput of a ray after a weight. The course uses the length of the colour,
+    /// which for grey exceeds the light that is left.
     pub fn weight_after(&self, before: f32, weight: Color) -> f32 {
         let by_length = self.world.shading_rules().weight_by_length;
         before * if by_length { weight.length() } else { weight.max_element() }
     }
 
-    /// Spawns a secondary ray, whose light a colour weighs, unless that counts for too little.
+    /// Spawns a secondary ray, unless its throughput is too small.
     fn spawn<T: TraceListener>(
         &self,
         (parent, from): (u32, RayKind),
@@ -184,12 +185,12 @@ pub struct Blend {
     pub transparent: Color,
     /// Index of refraction.
     pub ior: f32,
-    /// Whether Schlick's Fresnel term splits the light between the two.
+    /// True if Schlick's Fresnel term splits the light between the two.
     pub fresnel: bool,
 }
 
 impl Blend {
-    /// Whether any light is reflected or transmitted.
+    /// Returns true if any light is reflected or transmitted.
     fn is_some(&self) -> bool {
         self.reflective != Color::ZERO || self.transparent != Color::ZERO
     }
@@ -210,7 +211,8 @@ impl Blend {
     }
 }
 
-/// The mirrored share, by Schlick's approximation: R0 + (1 - R0) (1 - c)^5; `zero` takes 0 for R0.
+/// Returns the reflected share by Schlick's approximation: R0 + (1 - R0) (1 - c)^5; `zero` sets R0
+/// to 0.
 ///
 /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
 /// Physically-based Rendering*, Eurographics 1994.
@@ -224,10 +226,10 @@ pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32,
     r0 + (1.0 - r0) * square * square * rest
 }
 
-/// Snell's law: the direction behind a surface whose normal `n` is on the ray's side; `None` for
-/// total reflection.
+/// Refracts a direction by Snell's law at a surface whose normal `n` is on the ray's side; `None`
+/// for total reflection.
 ///
-/// eta is the index before over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
+/// eta is the index in front over the index behind; t = eta (d - n (d·n)) - n sqrt(1 - eta^2 (1 -
 /// (d·n)^2)).
 #[inline(always)]
 pub fn refract(d: Vec3, n: Vec3, eta: f32) -> Option<Vec3> {

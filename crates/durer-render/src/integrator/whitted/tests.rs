@@ -1,4 +1,4 @@
-//! Light in scenes whose answer can be written down.
+//! Tests of scenes with closed-form radiance.
 
 mod nested;
 
@@ -49,7 +49,7 @@ fn refraction_follows_snells_law_and_ends_at_the_critical_angle() {
         }
     }
     assert_eq!(refract(Vec3::NEG_Y, Vec3::Y, 0.7), Some(Vec3::NEG_Y));
-    // No change of index: no change of direction.
+    // Equal indices leave the direction unchanged.
     let d = Vec3::new(0.6, -0.8, 0.0);
     assert!((refract(d, Vec3::Y, 1.0).unwrap() - d).length() < 1e-6);
 }
@@ -76,18 +76,18 @@ fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     close(share(false, 1.0, 1.5, 1.0), 0.04);
     close(share(false, 0.5, 1.0, 1.5), 0.04 + 0.96 / 32.0);
     close(share(false, 0.0, 1.0, 1.5), 1.0);
-    // On the way out the angle outside counts: sin = 1.5 sin 30 degrees.
+    // When leaving, the angle outside counts: sin = 1.5 sin 30 degrees.
     let inside = 0.75f32.sqrt();
     let outside = 1.0 - (1.0f32 - 0.5625).sqrt();
     close(share(false, inside, 1.5, 1.0), 0.04 + 0.96 * outside * outside * outside * outside * outside);
     assert_eq!(share(false, 0.7, 1.5, 1.0), None);
-    // An old program takes 0 instead of R0 on the way out.
+    // An old program uses 0 for R0 when leaving.
     close(share(true, 1.0, 1.5, 1.0), 0.0);
 }
 
 #[test]
 fn two_facing_mirrors_make_a_geometric_series() {
-    // Each wall shines with 1 through ambient light and mirrors one half.
+    // Each wall has radiance 1 from ambient light and reflects one half.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 0.5 0.5 0.5 } }
@@ -102,10 +102,10 @@ fn two_facing_mirrors_make_a_geometric_series() {
     }
     let off = Settings { reflection: false, ..ALL };
     assert!((seen(hall, off, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.0).abs() < 1e-5);
-    // Under our rules a ray counts for 1/2 after a bounce, and 1/4 after two.
+    // In our rules a ray's throughput is 1/2 after a bounce, and 1/4 after two.
     let cut = Settings { least_weight: 0.3, ..ALL };
     assert!((seen(hall, cut, [0.0; 3], [1.0, 0.0, 0.0]).x - 1.5).abs() < 1e-5);
-    // The course takes the length of the colour: sqrt(3) / 2 after one, 3/4 after two.
+    // The course uses the length of the colour: sqrt(3) / 2 after one bounce, 3/4 after two.
     let mut world = testing::read(&format!("{CAMERA}{hall}"));
     let rules = Dialect::Durer.rules();
     world.edit().set_rules(durer_scene::dialect::Rules { epsilon: Some(1e-4), ..rules.clone() });
@@ -116,7 +116,7 @@ fn two_facing_mirrors_make_a_geometric_series() {
 
 #[test]
 fn rays_of_many_levels_need_no_deep_stack() {
-    // A hall of two perfect mirrors, each of which shines with 1.
+    // A hall of two perfect mirrors, each of which has radiance 1.
     let hall = "Background { color 0 0 0 ambientLight 1 1 1 }
         Lights { DirectionalLight { direction 0 -1 0 color 0.001 0.001 0.001 } }
         Materials { Material { diffuseColor 1 1 1 reflectiveColor 1 1 1 } }
@@ -124,7 +124,7 @@ fn rays_of_many_levels_need_no_deep_stack() {
     let settings = Settings { bounces: Settings::MAX_BOUNCES, ..ALL };
     let world = &testing::read(&format!("{CAMERA}{hall}"));
     let light = || Whitted { world, settings, cancel: None }.radiance(&Ray::new(Vec3::ZERO, Vec3::X), &mut ());
-    // A frame of a kilobyte for each level would overflow this.
+    // A kilobyte of stack for each level would overflow this.
     let thread = std::thread::Builder::new().stack_size(192 << 10);
     let light = std::thread::scope(|scope| thread.spawn_scoped(scope, light).unwrap().join().unwrap());
     assert_eq!(light, Vec3::splat(Settings::MAX_BOUNCES as f32 + 1.0));
@@ -140,12 +140,12 @@ fn shadows_end_at_the_light() {
         );
         seen(&text, ALL, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0])
     };
-    // Before the light, exactly at it, just behind it, far behind it.
+    // In front of the light, exactly at it, just behind it, far behind it.
     assert_eq!(lit(1.99), Vec3::ZERO);
     for wall in [2.0, 2.0f32.next_up(), 2.001, 50.0] {
         assert_eq!(lit(wall), Vec3::ONE, "{wall}");
     }
-    // Without a direction to end at: everything above is in the way.
+    // A directional light has no end: everything above occludes it.
     let text =
         "Lights { DirectionalLight { direction 0 -1 0 color 1 1 1 } } Materials { Material { diffuseColor 1 1 1 } }
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } Sphere { center 0 1e6 0 radius 1 } }";
@@ -170,13 +170,14 @@ fn a_ball_of_glass_like_air_is_not_seen() {
             let origin = 3.0 * random.direction();
             let dir = (0.7 * random.point() - origin).to_array();
             let color = seen(&text, ALL, origin.to_array(), dir);
-            // Schlick's share of equal indices is (1 - c)^5, with the same c on the way in and out.
+            // Schlick's share for equal indices is (1 - c)^5, with the same c when entering and
+            // leaving.
             let dir = Vec3::from(dir).normalize();
             let beside = origin - origin.dot(dir) * dir;
             let rest = 1.0 - (1.0 - beside.length_squared()).max(0.0).sqrt();
             let lost = if glass.contains("refractionIndex") { rest * rest * rest * rest * rest } else { 0.0 };
-            // Rays that graze the ball at 1e-3 of it or less may miss it; there a cosine loses half
-            // its digits.
+            // Rays that graze the sphere within 1e-3 may miss it; there a cosine loses half its
+            // digits.
             let slack = if beside.length() > 0.99 { 0.1 } else { 1e-5 };
             let expected =
                 Vec3::new(0.2, 0.4, 0.8) * if beside.length() < 1.0 { (1.0 - lost) * (1.0 - lost) } else { 1.0 };
@@ -200,11 +201,11 @@ fn light_and_highlight_follow_the_cosine_of_their_model() {
     let close = |a: f32, b: f32| assert!((a - b).abs() < 1e-5, "{a} {b}");
     let down = [0.0, -1.0, 0.0];
     close(lit("diffuseColor 1 1 1", down), 0.8);
-    // Seen from behind the light does not reach it.
+    // From behind, no light arrives.
     close(lit("diffuseColor 1 1 1", [0.0, 1.0, 0.0]), 0.0);
-    // Blinn: between (0.6, 0.8) and straight up is the cosine sqrt(0.9).
+    // Blinn: the cosine between the half vector of (0.6, 0.8) and straight up is sqrt(0.9).
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 exponent 4", down), 0.81);
-    // Phong: the view is mirrored to straight up.
+    // Phong: the view direction reflects to straight up.
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 2", down), 0.64);
     close(lit("diffuseColor 0 0 0 specularColor 1 1 1 shininess 7", [0.6, -0.8, 0.0]), 1.0);
 }
@@ -216,7 +217,7 @@ fn coloured_glass_casts_coloured_shadows_if_asked() {
         Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 3 0 radius 1 } }";
     let down = |settings| seen(text, settings, [0.0, 1.0, 0.0], [0.0, -1.0, 0.0]);
     assert_eq!(down(ALL), Vec3::ZERO);
-    // Through two walls of the ball.
+    // Through two walls of the sphere.
     assert_eq!(down(Settings { transparent_shadows: true, ..ALL }), Vec3::new(0.25, 1.0, 0.0));
 }
 
@@ -234,7 +235,7 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
         let rules = durer_scene::dialect::Rules { epsilon: compat.then_some(1e-4), ..rules.clone() };
         testing::try_read(&text("ball80-smooth.obj", wall), &rules, AccelKind::Bvh, &folder).0.unwrap()
     };
-    // How many points whose normals face the light are dark, and how many points there are.
+    // Returns the number of dark points whose normals face the light, and of all such points.
     let dark = |world: &World| {
         let (mut random, mut dark, mut all) = (Random(5), 0, 0);
         let whitted = Whitted { world, settings: ALL, cancel: None };
@@ -244,7 +245,7 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
             let Some(at) = world.intersect(&ray, &mut ()) else { continue };
             let surface = at.surface;
             let seen = world.illuminate(0, surface.point());
-            // The wall, where there is one, is no part of the ball.
+            // Exclude the wall.
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
                 all += 1;
                 let mut share = [Color::ZERO];
@@ -256,11 +257,10 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
     };
     let (lost, all) = dark(&read("", false));
     assert!(lost == 0 && all > 5_000, "{lost} of {all}");
-    // Without the remedy, whole triangles.
+    // Without shadow offsets, whole triangles are dark.
     let (lost, all) = dark(&read("", true));
     assert!(lost > all / 100, "{lost} of {all}");
-    // What stands in the way still does, if it is farther off than the bent surface is from the
-    // flat one.
+    // Occluders still count if they are farther than the offset of the curved surface.
     let (lost, all) = dark(&read("Plane { normal 0 1 0 offset 1.05 }", false));
     assert!(lost == all, "{lost} of {all}");
 }
@@ -284,7 +284,7 @@ fn black_backs_are_black_only_where_that_is_asked_for() {
     assert_eq!(below(Dialect::Durer, true), 1.5);
 }
 
-/// Every node below is the sum of its terms, to the bit.
+/// Asserts that every node below equals the sum of its terms, bit for bit.
 #[track_caller]
 fn adds_up(node: &TraceNode) {
     assert_eq!(node.sum(), node.value, "{node:?}");

@@ -1,4 +1,4 @@
-//! Samples that are divided by noise: how many each pixel gets, and that the picture stays right.
+//! Tests of adaptive allocation: sample counts, and no bias.
 
 use super::*;
 use crate::compile::testing;
@@ -16,7 +16,7 @@ fn all(world: &World, job: &Job) -> PartialRender {
     Way::PLAIN.make(world, job, &AtomicBool::new(false)).unwrap()
 }
 
-/// A ball whose lamp, out of view, is met by chance, before a sky that is the same everywhere.
+/// A sphere lit by an area light out of view, found by BSDF sampling only, before a uniform sky.
 const UNEVEN: &str = "PerspectiveCamera { center 0 0 4 direction 0 0 -1 up 0 1 0 angle 60 }
 Lights { numLights 0 }
 Background { color 0.5 0.6 0.7 }
@@ -26,7 +26,7 @@ Group { numObjects 2
   MaterialIndex 0 Sphere { center -0.8 0 0 radius 0.9 }
   MaterialIndex 1 Sphere { center -2.2 0.5 3 radius 0.4 } }";
 
-/// By directions alone, which meet the lamp seldom.
+/// BSDF sampling alone, which rarely hits the light.
 fn uneven(adaptive: bool, seed: u64) -> Job {
     let Method::Path(paths) = Method::PATH else { unreachable!("it is a path tracer") };
     let method = Method::Path(Transport { direct: Direct::Bsdf, ..paths });
@@ -50,7 +50,7 @@ fn samples_divided_by_noise_are_as_many_and_have_less_error() {
     let counts: Vec<f32> = rendered.layers[1].image.pixels.iter().map(|p| p.x).collect();
     let (least, most) = counts.iter().fold((f32::MAX, 0.0_f32), |(a, b), &n| (a.min(n), b.max(n)));
     assert!(least == 8.0 && most >= 64.0, "{least} {most}");
-    // Of two independent pictures half the squared difference is the square of one's error.
+    // For two independent pictures, half the squared difference estimates one's squared error.
     let colors = |adaptive, seed| made(adaptive, seed).pictures().unwrap().layers[0].image.pixels.clone();
     let error = |adaptive: bool| -> f64 {
         let pair = |seed| {
@@ -63,8 +63,8 @@ fn samples_divided_by_noise_are_as_many_and_have_less_error() {
     assert!(divided < 0.8 * even, "{divided} {even}");
 }
 
-/// The mean of many pictures against that of as many others: samples that decided about their own
-/// pixel would make it darker.
+/// Compares the means of many pictures: samples that influenced their own pixel's count would
+/// darken it.
 #[test]
 fn samples_divided_by_noise_have_no_bias() {
     let world = testing::read(UNEVEN);
@@ -109,7 +109,7 @@ fn divided_samples_go_on_from_anywhere() {
     let alone = [("x".to_string(), PartialRender::read(&part.write()).unwrap())];
     let merged = merge(&alone).unwrap();
     assert_eq!((merged.hash(), merged.statistics(), merged.write()), (plain.hash(), plain.statistics(), part.write()));
-    // With a right checksum, bytes may tell anything.
+    // With a valid checksum, bytes may contain anything.
     let bytes = part.write();
     for at in (0..bytes.len() - 32).step_by(11) {
         let mut changed = bytes[..bytes.len() - 32].to_vec();
@@ -153,10 +153,10 @@ fn what_cannot_be_divided_by_noise_is_refused() {
 
 #[test]
 fn samples_are_divided_by_the_deviation() {
-    // None below the pilot's, the rest by the deviation.
+    // None below the pilot, the rest by the deviation.
     assert_eq!(divided(&[0.0, 1.0, 3.0, 0.0], 64), [16, 56, 168, 16]);
     assert_eq!(divided(&[1.0; 5], 100), [100; 5]);
-    // Nobody needs any, or one takes what it may.
+    // No pixel needs more, or one takes its maximum.
     assert_eq!(divided(&[0.0; 3], 64), [16; 3]);
     let mut one = [0.0; 1000];
     one[7] = 1e30;
@@ -191,7 +191,7 @@ fn pixels_of_the_other_colour_tell_the_variance() {
         assert!((0..found.len()).all(|i| (found[i] > 0.0) == tells(i)), "{at}");
         variances[at] = 0.0;
     }
-    // What is the same everywhere stays so, at borders too.
+    // A uniform variance stays uniform, also at borders.
     assert!(around(&[2.0; 15], 5).iter().all(|value| (value - 2.0).abs() < 1e-5));
     assert_eq!(around(&[2.0], 1), [0.0]);
 }

@@ -1,4 +1,4 @@
-//! Whether explanations sum to the pictures that they explain.
+//! Checks that explanations sum to the pictures that they explain.
 
 use super::{Explanation, explain};
 use crate::film::Filter;
@@ -9,7 +9,7 @@ use crate::world::World;
 use durer_scene::math::Color;
 use durer_scene::sampler::{Sampler, hash};
 
-/// A way of sampling, the noise at which it ends, and whether samples are divided by noise.
+/// A sampling, its noise threshold, and true for adaptive sampling.
 type Way = (Sampling, Option<f32>, bool);
 
 const fn kept(sampler: Sampler, samples: u32, filter: Option<CourseFilter>) -> Way {
@@ -24,7 +24,7 @@ const fn sub_pixels(jitter: bool, blur: bool) -> Way {
     (Sampling::Course2012 { jitter, blur }, None, false)
 }
 
-/// Every way in which samples become a pixel. One filter is so narrow that often no sample counts.
+/// Every way of combining samples. One filter is so narrow that often no sample counts.
 pub const SAMPLINGS: [Way; 12] = [
     (Sampling::Center, None, false),
     filtered(3, None, false),
@@ -40,8 +40,8 @@ pub const SAMPLINGS: [Way; 12] = [
     sub_pixels(false, false),
 ];
 
-/// Explains random pixels of a job's picture, as many in each way of sampling. Gives what differs,
-/// pixel by pixel.
+/// Explains random pixels of a job's picture, equally many for each sampling. Returns the
+/// differences, pixel by pixel.
 ///
 /// # Errors
 /// [`RenderError`].
@@ -64,7 +64,7 @@ pub fn check(world: &World, job: &Job, pixels: u32, seed: u64) -> Result<Vec<Str
     Ok(differences)
 }
 
-/// What differs between an explanation, what its terms sum to, and the pixel of the picture.
+/// Compares an explanation, the sum of its terms, and the pixel of the picture.
 fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     let bits = |color: Color| color.to_array().map(f32::to_bits);
     let (color, coverage) = explanation.sum();
@@ -79,7 +79,7 @@ fn difference(explanation: &Explanation, stored: Color) -> Option<String> {
     Some(format!("the terms below sum to {:?}: {odd:?}", odd.sum()))
 }
 
-/// The first node of a tree whose value is not the sum of its terms.
+/// Returns the first node of a tree whose value differs from the sum of its terms.
 fn uneven(node: &TraceNode) -> Option<&TraceNode> {
     if node.sum() != node.value { Some(node) } else { node.terms.iter().find_map(uneven) }
 }

@@ -1,4 +1,4 @@
-//! Pixels that are made of their neighbours' samples too, as the course's assignments have them.
+//! Pixels that combine neighbours' samples, as in the course's assignments.
 
 use super::{Mean, SampleAccount};
 use crate::film::course::CourseFilter;
@@ -12,7 +12,8 @@ use durer_scene::math::{Color, Vec3};
 use durer_scene::sampler::Sampler;
 use glam::DVec3;
 
-/// The samples of Fall 2004: all within the filter's support, each with its weight in this pixel.
+/// Returns the samples of Fall 2004: all within the filter's support, each with its weight in this
+/// pixel.
 pub(super) fn around(
     source: &Samples,
     job: &Job,
@@ -27,7 +28,7 @@ pub(super) fn around(
         (of, sample, PixelSample { weight: filter.weight_between(of, position, here), ..aim })
     };
     let aims: Vec<_> = all(Crop::pixel(here).grown(filter.support(), job.whole())).map(aim).collect();
-    // Where no sample counts, the pixel is the mean of its own.
+    // If no sample counts, the pixel is the mean of the samples within it.
     if aims.iter().all(|(.., aim)| aim.weight == 0.0) {
         let own = |(of, sample, aim)| account(of, sample, PixelSample { weight: 1.0, ..aim });
         return (Mean::Around, aims.into_iter().filter(|aim| aim.0 == here).map(own).collect());
@@ -35,7 +36,7 @@ pub(super) fn around(
     (Mean::Around, aims.into_iter().map(|(of, sample, aim)| account(of, sample, aim)).collect())
 }
 
-/// The sub-pixels of Fall 2012.
+/// Returns the sub-pixels of Fall 2012.
 pub(super) fn sub_pixels(
     source: &Samples,
     world: &World,
@@ -44,7 +45,7 @@ pub(super) fn sub_pixels(
 ) -> (Mean, Vec<SampleAccount>) {
     let (raster, count) = (grid.raster(world), grid.around.pixels() as usize);
     let one = |(i, place): (usize, (u32, u32))| {
-        // Developing is linear: what comes of a single white one is its weight.
+        // Developing is linear: the response to a single white sub-pixel is its weight.
         let mut white = vec![Color::ZERO; count];
         white[i] = Color::ONE;
         let aim = source.aim.sub_pixel(&grid, &raster, place);
@@ -54,7 +55,7 @@ pub(super) fn sub_pixels(
     (Mean::SubPixels(grid), samples)
 }
 
-/// The finished pixel and its coverage.
+/// Returns the finished pixel and its coverage.
 pub(super) fn finished(
     mean: &Mean,
     samples: &[SampleAccount],

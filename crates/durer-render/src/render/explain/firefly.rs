@@ -1,5 +1,5 @@
-//! Why one sample is far brighter than its pixel's others: the way of its brightest term, and what
-//! was seldom chosen on it.
+//! Explanation of fireflies: the path of a sample's brightest term, and the improbable choice on
+//! it.
 
 use super::Explanation;
 use super::text::number;
@@ -8,8 +8,8 @@ use crate::integrator::trace::TermKind;
 use crate::integrator::{TraceNode, Tree};
 
 impl Explanation {
-    /// The sample that adds most light, and what it adds to the pixel's luminance; `None` where no
-    /// light comes at all.
+    /// Returns the sample that adds most light, and its contribution to the pixel's luminance;
+    /// `None` for a black pixel.
     pub fn brightest(&self) -> Option<(usize, f64)> {
         let all: f64 = self.samples.iter().map(|s| f64::from(s.weight)).sum();
         let adds = |i: usize| {
@@ -21,16 +21,16 @@ impl Explanation {
         (adds(best) > 0.0).then(|| (best, adds(best)))
     }
 
-    /// The sample that stands out from the others, and its share of the pixel's luminance.
+    /// Returns the sample that stands out from the others, and its share of the pixel's luminance.
     pub fn outlier(&self) -> Option<(usize, f64)> {
-        // What adds no more than this, or than four times what is even, is as the others are.
+        // A share below this, or below four times the even share, is normal.
         let usual = (4.0 / self.samples.len() as f64).clamp(0.2, 0.9);
         let (number, adds) = self.brightest()?;
         let share = adds / luminance_of(self.color);
         (self.samples.len() > 1 && share >= usual).then_some((number, share))
     }
 
-    /// What made that sample so bright, in sentences; none where none stands out.
+    /// Explains in sentences why that sample is so bright; empty if none stands out.
     pub fn firefly(&self) -> Vec<String> {
         let Some((number, share)) = self.outlier() else { return Vec::new() };
         let mut said = vec![format!("sample {number} alone is {:.0} % of the pixel", 100.0 * share)];
@@ -43,7 +43,7 @@ impl Explanation {
     }
 }
 
-/// Follows the brightest terms to where the light comes from.
+/// Follows the brightest terms to their source.
 fn cause(light: &Tree) -> Vec<String> {
     let (mut node, mut chosen) = (&light.root, Vec::new());
     let adds = |node: &TraceNode| luminance_of(light.color(node.contribution()));
@@ -58,7 +58,7 @@ fn cause(light: &Tree) -> Vec<String> {
         }
     }
     let way = chosen.iter().map(|bounce| bounce.lobe).collect::<Vec<_>>().join(", then ");
-    // Single directions have no density.
+    // Delta lobes have no density.
     let single = chosen.last().is_some_and(|last| last.pdf == 0.0);
     let seldom = chosen.iter().filter(|bounce| bounce.pdf > 0.0).min_by(|a, b| a.pdf.total_cmp(&b.pdf));
     let told = |what: &str| match chosen.is_empty() {

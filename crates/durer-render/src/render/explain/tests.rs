@@ -1,4 +1,4 @@
-//! Explanations against the pictures that they explain.
+//! Tests of explanations against the pictures that they explain.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -28,7 +28,7 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
             refraction: true,
             least_weight: 0.01,
         };
-        // The scenes that paths were made for, and some others.
+        // Scenes for path tracing, and some others.
         let paths = text.contains("PrincipledMaterial") || i % 5 == 0;
         let color = [ColorMode::Rgb, ColorMode::Spectral][i % 2];
         let method = if paths { Method::Path(Transport { color, ..Transport::default() }) } else { Method::WHITTED };
@@ -40,7 +40,7 @@ fn explanations_sum_to_the_pixels_of_all_our_scenes() {
 
 #[test]
 fn the_brightest_sample_below_glass_is_said_to_be_a_caustic() {
-    // A small lamp over a ball of glass: what paths find below it, they find by chance.
+    // A small light over a sphere of glass: paths find the light below it by chance.
     let world = testing::read(
         "PerspectiveCamera { center 0 3 5 direction 0 -0.6 -1 up 0 1 0 angle 30 } Background { color 0 0 0 }\n\
          Materials { PrincipledMaterial { baseColor 0.8 0.8 0.8 specularWeight 0 }\n\

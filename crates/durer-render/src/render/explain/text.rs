@@ -1,4 +1,4 @@
-//! An explanation in words and numbers, line by line.
+//! An explanation as lines of text.
 
 use super::{ErrorBound, Explanation, Mean, SampleAccount};
 use crate::integrator::trace::{Bounce, HitRecord, RayKind, RayRecord, Shadow, TermKind, TermValue};
@@ -12,68 +12,68 @@ use durer_scene::math::{Color, LUMINANCE, Vec3, reflect};
 use durer_scene::scene::Scene;
 use durer_scene::spectrum::{Lanes, Spectrum};
 
-/// What things are called, and where they are written.
+/// Names of objects, materials and lights, and where they are written.
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
     /// The files that were read.
     pub files: &'a Files,
     /// The scene as written.
     pub scene: &'a Scene,
-    /// The same, compiled.
+    /// The compiled scene.
     pub world: &'a World,
 }
 
 /// A line of an explanation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TextLine {
-    /// How deep it is indented.
+    /// Indentation depth.
     pub depth: usize,
-    /// What the term adds: to the pixel in a path, else to the term above. `None` on lines that only
-    /// say more about the line before.
+    /// Contribution of the term: to the pixel in a path, else to the parent term. `None` for lines
+    /// that add detail to the line before.
     pub adds: Option<TermValue>,
-    /// The colour of what it adds.
+    /// Colour of the contribution.
     pub color: Color,
-    /// The share of the whole that it is, from 0 to 1, by its brightness.
+    /// Share of the total brightness, from 0 to 1.
     pub share: f32,
-    /// The line.
+    /// Text of the line.
     pub text: String,
 }
 
-/// How much is told.
+/// Level of detail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Telling {
-    /// Terms that are a smaller share of the whole are left out.
+    /// Minimum share of the total; terms below are omitted.
     pub least: f32,
-    /// Terms that stand deeper are left out.
+    /// Maximum depth; deeper terms are omitted.
     pub deepest: usize,
-    /// What makes eight bits.
+    /// Transfer curve for eight-bit values.
     pub transfer: Transfer,
 }
 
 impl TextLine {
-    /// One that adds nothing.
+    /// Creates a line without a contribution.
     fn plain(depth: usize, text: String) -> Self {
         TextLine { depth, adds: None, color: Color::ZERO, share: 0.0, text }
     }
 }
 
 impl Default for Telling {
-    /// Everything.
+    /// Full detail.
     fn default() -> Self {
         Telling { least: 0.0, deepest: usize::MAX, transfer: Transfer::default() }
     }
 }
 
-/// What is known where a term stands.
+/// Context of a term.
 #[derive(Clone, Copy)]
 struct Context<'a> {
-    /// All of which it is a part.
+    /// The tree.
     tree: &'a Tree,
-    /// What its contribution is multiplied by in the whole.
+    /// Factor of its contribution in the total.
     gain: TermValue,
-    /// The brightness of the whole.
+    /// Brightness of the total.
     whole: f32,
-    /// The ray, the normal and the way to the light that it belongs to.
+    /// Ray, normal and light direction of the enclosing terms.
     dir: Vec3,
     n: Vec3,
     to_light: Vec3,
@@ -94,7 +94,7 @@ impl Names<'_> {
         }
     }
 
-    /// The line in which something is written: with the file's name, if it is not the scene's.
+    /// Returns the line of a span, with the file's name if it is not the scene's file.
     fn line(&self, span: Span) -> String {
         let scene = self.scene.camera_span.file;
         match self.files.position(span) {
@@ -103,14 +103,14 @@ impl Names<'_> {
         }
     }
 
-    /// What is written at a place.
+    /// Returns the text at a span.
     fn word(&self, span: Span) -> String {
         let bytes = self.files.bytes(span.file).and_then(|b| b.get(span.start as usize..span.end as usize));
         String::from_utf8_lossy(bytes.unwrap_or(b"object")).into_owned()
     }
 
-    /// What an object is called of which no keyword tells, as in JSON: by its kind, and its name if
-    /// it has one.
+    /// Names an object without a keyword in the file, as in JSON: by its kind, and its name if it
+    /// has one.
     pub fn unworded(&self, object: u32) -> Option<String> {
         let object = &self.world.objects()[object as usize];
         let kind = match &object.geometry {
@@ -130,13 +130,13 @@ impl Names<'_> {
         (self.unworded(object).unwrap_or_else(|| self.word(span)), span)
     }
 
-    /// An object's keyword and line.
+    /// Names an object by keyword and line.
     pub fn short_object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.line(span))
     }
 
-    /// A material's number and line.
+    /// Names a material by index and line.
     fn short_material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.line(material.span)),
@@ -144,7 +144,7 @@ impl Names<'_> {
         }
     }
 
-    /// A light's keyword and line.
+    /// Names a light by keyword and line.
     fn short_light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.line(light.span)),
@@ -152,7 +152,7 @@ impl Names<'_> {
         }
     }
 
-    /// What shines, and the line in which it is written.
+    /// Names an emitter, and the line in which it is written.
     fn emitter(&self, light: LightId) -> String {
         match light {
             LightId::Light(number) => self.short_light(number as usize),
@@ -161,13 +161,13 @@ impl Names<'_> {
         }
     }
 
-    /// An object's keyword and place.
+    /// Names an object by keyword and position.
     pub fn object(&self, number: u32) -> String {
         let (keyword, span) = self.keyword(number);
         format!("{keyword} {}", self.place(span))
     }
 
-    /// A material's number and place.
+    /// Names a material by index and position.
     pub fn material(&self, number: u32) -> String {
         match self.scene.materials.get(number as usize) {
             Some(material) => format!("material {number} {}", self.place(material.span)),
@@ -175,7 +175,7 @@ impl Names<'_> {
         }
     }
 
-    /// A light's keyword and place.
+    /// Names a light by keyword and position.
     pub fn light(&self, number: usize) -> String {
         match self.scene.lights.iter().flatten().nth(number) {
             Some(light) => format!("{} {}", light.value.keywords()[0].0, self.place(light.span)),
@@ -185,8 +185,8 @@ impl Names<'_> {
 }
 
 impl Explanation {
-    /// The explanation in lines: the pixel, its samples, and the tree of one of them, by its place
-    /// in the list.
+    /// Returns the explanation as lines: the pixel, its samples, and the tree of the sample at
+    /// index `wanted`.
     pub fn lines(&self, names: &Names, wanted: usize, telling: &Telling) -> Vec<TextLine> {
         let mut lines = Vec::new();
         let mut say = |depth, text: String| lines.push(TextLine::plain(depth, text));
@@ -233,8 +233,7 @@ impl Explanation {
         lines
     }
 
-    /// What a sample is called: its number, and whose it is where several pixels' samples are in
-    /// the list.
+    /// Names a sample: its index, and its pixel if the list has samples of several pixels.
     fn number(&self, index: usize) -> String {
         let SampleAccount { of: (x, y), sample, .. } = self.samples[index];
         match self.mean {
@@ -260,7 +259,7 @@ fn sample_lines(
     }
 }
 
-/// The lines of a tree.
+/// Returns the lines of a tree.
 pub fn ray_text(light: &Tree, names: &Names, telling: &Telling) -> Vec<TextLine> {
     let mut lines = Vec::new();
     tree_lines(light, names, 0, telling, &mut lines);
@@ -418,7 +417,7 @@ fn node_lines(
     }
 }
 
-/// How a direction was chosen.
+/// Describes the choice of a direction.
 fn bounce_line(bounce: &Bounce) -> String {
     let Bounce { lobe, probability, pdf, survival, directions } = bounce;
     let density = if *pdf > 0.0 { format!(", density {} /sr", number(*pdf)) } else { String::new() };
@@ -429,7 +428,7 @@ fn bounce_line(bounce: &Bounce) -> String {
     format!("chosen by {lobe} (probability {}){density}{survived}{shared}", number(*probability))
 }
 
-/// A weight of multiple importance sampling, where it is not 1.
+/// Describes a MIS weight other than 1.
 fn weight_text(mis: f32) -> String {
     if mis == 1.0 { String::new() } else { format!(" (MIS weight {})", number(mis)) }
 }
@@ -438,8 +437,8 @@ fn terms(count: usize) -> String {
     if count == 1 { "1 term".into() } else { format!("{count} terms") }
 }
 
-/// The factor of a secondary ray: where Fresnel's law divides the light, the material's colour and
-/// the share.
+/// Describes the factor of a secondary ray: with Fresnel's law, the material's colour and the
+/// share.
 fn split(node: &TraceNode, from: &str, at: &Context, names: &Names) -> String {
     let phong = at.material.and_then(|i| names.world.materials().get(i as usize));
     match (at.fresnel, phong) {
@@ -510,7 +509,7 @@ fn vector(v: Vec3) -> String {
     format!("({}, {}, {})", number(v.x), number(v.y), number(v.z))
 }
 
-/// A number with four significant digits, and without a sign where it is 0.
+/// Formats a number with four significant digits; 0 without a sign.
 pub fn number(x: f32) -> String {
     if x == 0.0 || !x.is_finite() {
         return if x == 0.0 { "0".into() } else { x.to_string() };

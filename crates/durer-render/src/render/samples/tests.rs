@@ -1,4 +1,5 @@
-//! What the loop over samples must not do: many threads would wait for each other there.
+//! Tests that the loop over samples neither allocates nor locks too often, which would serialise
+//! threads.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -7,7 +8,7 @@ use crate::integrator::Method;
 use crate::render::{Control, PartialRender, Shard};
 use durer_scene::dialect::Dialect;
 
-/// Mirrors, glass and layers under two lamps, of which one is a surface.
+/// Mirrors, glass and layers under a point light and an area light.
 const TEXT: &str = "PerspectiveCamera { center 0 1 8 direction 0 -0.1 -1 up 0 1 0 angle 40 }
 Lights { PointLight { position 3 6 4 color 0.9 0.9 0.8 } }
 Background { color 0.2 0.1 0.5 ambientLight 0.2 0.2 0.2 }
@@ -22,7 +23,7 @@ Group {
   MaterialIndex 2 Transform { YRotate 30 Box { min 0.4 -0.5 -1 max 1.6 0.7 0.2 } }
   MaterialIndex 3 Rectangle { corner -1 4 -1 edge0 2 0 0 edge1 0 0 2 } }";
 
-/// A picture of some columns of so many samples.
+/// Returns a job of `width` columns with `samples` samples.
 fn job(width: u32, samples: u32, method: Method) -> Job {
     let sampling = Sampling::Filtered { samples, filter: Filter::default() };
     Job { width, height: 32, sampling, method, ..Job::default() }
@@ -47,7 +48,7 @@ fn no_sample_allocates() {
         let mut take = |range: std::ops::Range<u32>| {
             samples.add(&mut film, part, |_| range.clone(), &at, &mut RayCount::default()).unwrap()
         };
-        // What a thread makes once; its lists grow to what a block of samples needs.
+        // Warm up thread-local buffers, which grow to the needs of a block.
         take(0..16);
         let made = allocation_counter::measure(|| take(16..32));
         assert_eq!(made.count_total, 0, "{method:?}");
@@ -63,6 +64,6 @@ fn a_tile_is_locked_twice_a_pass() {
         part.render(&world, &control, &mut |_, _| {}).unwrap();
         part.locked.load(Relaxed)
     };
-    // Of one sample there is one pass: four tiles more are eight locks more.
+    // One sample is one pass: four more tiles are eight more locks.
     assert_eq!(locks(96) - locks(64), 8);
 }

@@ -1,4 +1,4 @@
-//! Solids against the Boolean of their parts, closed forms and laws of sets.
+//! Tests of solids against the Boolean of their parts, closed forms and set identities.
 
 use super::*;
 use crate::compile::{AccelKind, testing};
@@ -41,7 +41,7 @@ fn world(object: &scene::Object) -> World {
     testing::object(object.clone(), AccelKind::Bvh, Path::new("."))
 }
 
-/// A closed shape of about size 1, near the origin.
+/// Returns a closed shape of about size 1, near the origin.
 fn closed_shape(random: &mut Random) -> scene::Object {
     let center = random.point();
     let mut length = || random.between(0.3, 1.0);
@@ -61,7 +61,7 @@ fn closed_shape(random: &mut Random) -> scene::Object {
     }
 }
 
-/// A tree of operations over closed shapes, with groups and transforms anywhere.
+/// Returns a random tree of operations over closed shapes, with groups and transforms.
 fn tree(random: &mut Random, depth: usize) -> scene::Object {
     let inner = match random.below(if depth == 0 { 1 } else { 5 }) {
         0 => closed_shape(random),
@@ -79,7 +79,7 @@ fn tree(random: &mut Random, depth: usize) -> scene::Object {
     moved(MatrixOp::Matrix(rows), &inner)
 }
 
-/// Whether a point is in an object, by the operations' own words.
+/// Evaluates containment of a point by the definition of the operations.
 fn member(object: &scene::Object, p: DVec3) -> bool {
     let count = |parts: &[scene::Object]| parts.iter().filter(|part| member(part, p)).count();
     match &object.node {
@@ -99,7 +99,7 @@ fn member(object: &scene::Object, p: DVec3) -> bool {
     }
 }
 
-/// Whether a point is so near to a surface that membership changes within this distance of it.
+/// Returns true if containment changes within this distance of a point.
 fn near_surface(object: &scene::Object, p: DVec3, distance: f64) -> bool {
     let here = member(object, p);
     let around = DVec3::AXES.into_iter().chain(DVec3::AXES.map(|a| -a)).chain([DVec3::ONE, -DVec3::ONE]);
@@ -112,7 +112,7 @@ fn goes_out(world: &World, ray: impl Into<Ray64>, hit: &Hit) -> bool {
 
 #[test]
 fn solids_have_the_points_that_their_words_say() {
-    // How near to a surface a point may be for single precision to tell.
+    // Distance to a surface below which single precision may err.
     const DISTANCE: f64 = 1e-4;
     let wanted = std::env::var("DURER_SOLID_POINTS").ok().and_then(|n| n.parse().ok()).unwrap_or(20_000);
     let folder = tempfile::tempdir().unwrap();
@@ -120,22 +120,21 @@ fn solids_have_the_points_that_their_words_say() {
     let mut random = Random(21);
     let (mut points, mut inside, mut near) = (0, 0, 0);
     while points < wanted {
-        // Parts of a union at the top keep their inner surfaces, so there is another operation
-        // around it.
+        // Parts of a top-level union keep their inner surfaces, so wrap it in another operation.
         let solid = join(Operation::Merge, &[&tree(&mut random, 3)]);
         let world = testing::object(solid.clone(), AccelKind::Bvh, folder.path());
         for _ in 0..40 {
             let ray = Ray::new(3.0 * random.point(), random.between(0.1, 3.0) * random.direction());
             let ray = Ray { t_min: f32::NEG_INFINITY, ..ray };
             let hits: Vec<Hit> = world.all_hits(&ray).collect();
-            // Ways in and out take turns.
+            // Entries and exits alternate.
             for pair in hits.windows(2) {
                 let [a, b] = [&pair[0], &pair[1]].map(|hit| goes_out(&world, &ray, hit));
                 assert!(pair[0].t < pair[1].t);
                 let gap = f64::from(pair[1].t - pair[0].t) * ray.dir.as_dvec3().length();
                 assert!(a != b || gap < DISTANCE, "{solid:?} {ray:?} {hits:?}");
             }
-            // A point is inside if what comes next is a way out, or what was before is a way in.
+            // A point is inside if the next hit is an exit, or the previous one an entry.
             let Some(first) = hits.first() else { continue };
             for _ in 0..8 {
                 let t = random.between(-3.0, 3.0) / ray.dir.length();
@@ -159,7 +158,8 @@ fn solids_have_the_points_that_their_words_say() {
     assert!(inside > points / 10 && near < points / 10, "{points} {inside} {near}");
 }
 
-/// The volume of a solid inside the cube of half size 2, by rays along x, and its standard error.
+/// Returns the volume of a solid inside the cube of half size 2, from rays along x, and its
+/// standard error.
 fn volume(solid: &scene::Object, random: &mut Random, rays: usize) -> (f64, f64) {
     let world = world(solid);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -217,8 +217,7 @@ fn volumes_are_those_of_closed_forms() {
     }
 }
 
-/// Two solids that should be the same: every ray meets both at the same places, with the same
-/// normals. Gives how many.
+/// Asserts that every ray has the same hits and normals on two solids. Returns the number of hits.
 fn assert_same(a: &scene::Object, b: &scene::Object, random: &mut Random) -> usize {
     let (first, second) = (world(a), world(b));
     let mut hits = 0;
@@ -252,7 +251,7 @@ fn laws_of_sets_hold_to_the_bit() {
         let not = |x: &scene::Object| join(Difference, &[&all, x]);
         let both = join(Intersection, &[&a, &b]);
         let mut same = |x: &scene::Object, y: &scene::Object| hits += assert_same(x, y, &mut rays);
-        // A - B is A and not B, is what A xor (A and B) leaves.
+        // A - B is A and not B, and A xor (A and B).
         same(&join(Difference, &[&a, &b]), &join(Intersection, &[&a, &not(&b)]));
         same(&join(Difference, &[&a, &b]), &join(Xor, &[&a, &both]));
         // De Morgan.
@@ -265,10 +264,10 @@ fn laws_of_sets_hold_to_the_bit() {
             &join(Merge, &[&a, &join(Intersection, &[&b, &c])]),
             &join(Intersection, &[&join(Merge, &[&a, &b]), &join(Merge, &[&a, &c])]),
         );
-        // What is cut away one by one, or together.
+        // Subtracting one by one, or together.
         same(&join(Difference, &[&a, &b, &c]), &join(Difference, &[&a, &either]));
         same(&join(Difference, &[&join(Difference, &[&a, &b]), &c]), &join(Difference, &[&a, &either]));
-        // Nothing changes by a second time, or by nothing.
+        // Idempotence, and subtraction of itself.
         same(&join(Merge, &[&a, &a]), &a);
         same(&join(Intersection, &[&a, &a]), &a);
         same(&join(Xor, &[&a, &a, &a]), &a);
@@ -282,7 +281,7 @@ fn faces_that_coincide_leave_no_skin() {
     use Operation::*;
     let mut random = Random(25);
     let long = cuboid([0.0; 3], [0.3, 0.1, 0.1]);
-    // The same place, written with other numbers: 0.1 + 0.2 is not 0.3 in single precision.
+    // The same position from other numbers: 0.1 + 0.2 is not 0.3 in single precision.
     let end = moved(MatrixOp::Translate(Vec3::new(0.1, 0.0, 0.0)), &cuboid([0.0; 3], [0.2, 0.1, 0.1]));
     let other = moved(
         MatrixOp::Translate(Vec3::new(0.1, 0.05, 0.05)),
@@ -298,7 +297,7 @@ fn faces_that_coincide_leave_no_skin() {
         (join(Intersection, &[&long, &start]), start.clone()),
     ];
     for _ in 0..40 {
-        // The whole turned, stretched and moved away.
+        // The whole rotated, stretched and moved away.
         let rows = glam::DMat4::from(random.affine(2.0, 3.0)).transpose().to_cols_array().map(|x| x as f32);
         let placed = MatrixOp::Matrix(rows);
         let map: DAffine3 = placed.matrix();
@@ -307,11 +306,11 @@ fn faces_that_coincide_leave_no_skin() {
             for _ in 0..200 {
                 let inside = DVec3::new(0.31, 0.11, 0.11) * (random.point().as_dvec3() * 0.55 + 0.5);
                 let target = map.transform_point3(inside).as_vec3();
-                // From near by and from far away.
+                // From near and far.
                 let origin = target + [0.5, 5.0, 50.0][random.below(3)] * random.direction();
                 let ray = Ray::new(origin, target - origin);
                 let (a, b): (Vec<Hit>, Vec<Hit>) = (found.all_hits(&ray).collect(), wanted.all_hits(&ray).collect());
-                // Of an edge, single precision does not know on which side a ray passes.
+                // At an edge, single precision cannot resolve on which side a ray passes.
                 let width = b.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 let cuts = a.windows(2).map(|w| (w[1].t - w[0].t) * ray.dir.length()).fold(f32::INFINITY, f32::min);
                 if width < 1e-3 || b.is_empty() && cuts < 1e-3 {
@@ -341,21 +340,21 @@ fn each_surface_has_the_material_of_its_part() {
         let list = |at: Interaction| (at.material, at.hit.t, at.surface.n_geo.to_array());
         world.all_hits(&ray).map(|hit| list(world.interaction(&ray, hit))).collect::<Vec<_>>()
     };
-    // Into the dent, whose surface is turned inside out, and out at the back.
+    // Into the dent, whose surface is inverted, and out at the back.
     let through = seen([0.0, 0.0, 5.0], [0.0, 0.0, -1.0]);
     assert_eq!(through, [(2, 4.5, [0.0, 0.0, 1.0]), (1, 6.0, [0.0, 0.0, -1.0])]);
     // The right wall is the second box's left one.
     let across = seen([5.0, 0.9, 0.0], [-1.0, 0.0, 0.0]);
     assert_eq!((across[0].0, across[0].2, across[1].0, across[1].2), (2, [1.0, 0.0, 0.0], 1, [-1.0, 0.0, 0.0]));
-    // A hollow ball.
+    // A hollow sphere.
     let hollow: Vec<_> = seen([9.0, 0.0, 5.0], [0.0, 0.0, -1.0]).into_iter().map(|(m, t, n)| (m, t, n[2])).collect();
     assert_eq!(hollow, [(0, 4.0, 1.0), (1, 4.5, -1.0), (1, 5.5, 1.0), (0, 6.0, -1.0)]);
 }
 
 #[test]
 fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
-    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), counted from behind the lens by f (1 - (n - 1) d /
-    // (n R)).
+    // 1/f = (n - 1) (2/R - (n - 1) d / (n R^2)), measured from behind the lens by f (1 - (n - 1) d
+    // / (n R)).
     let (n, radius, offset) = (1.5f64, 2.2f64, 1.9f64);
     let thickness = 2.0 * (radius - offset);
     let f = 1.0 / ((n - 1.0) * (2.0 / radius - (n - 1.0) * thickness / (n * radius * radius)));
@@ -364,7 +363,7 @@ fn a_lens_of_two_balls_focuses_where_the_lensmaker_says() {
     let world = world(&lens);
     let mut random = Random(28);
     for _ in 0..1000 {
-        // Near the axis, as the formula wants it: off by the square of the height, from above.
+        // Paraxial rays: the error grows with the square of the height.
         let (y, z) = (random.between(-0.05, 0.05), random.between(-0.05, 0.05));
         let mut ray = Ray64::from(Ray::new(Vec3::new(-5.0, y, z), Vec3::X));
         for (eta, outwards) in [(1.0 / 1.5, false), (1.5, true)] {
@@ -389,7 +388,7 @@ fn a_union_keeps_inner_surfaces_and_a_merge_does_not() {
         (world.objects().len(), world.all_hits(&Ray::new(Vec3::new(-5.0, 0.0, 0.0), Vec3::X)).count())
     };
     assert_eq!(hits(Operation::Union), (2, 4));
-    // Also where a union is a part of another.
+    // Also for nested unions.
     let nested = join(Operation::Union, &[&join(Operation::Union, &[&a, &b]), &ball([9.0, 0.0, 0.0], 1.0)]);
     assert_eq!(world(&nested).objects().len(), 3);
     assert_eq!(hits(Operation::Merge), (1, 2));
@@ -404,13 +403,13 @@ fn parts_apart_from_each_other_are_things_of_their_own() {
     let list: Vec<&scene::Object> = balls.iter().collect();
     let merged = join(Merge, &list);
     assert_eq!(world(&merged).objects().len(), 1000);
-    // A cut through one concerns that one alone.
+    // A cut through one sphere affects only that one.
     let cut = join(Difference, &[&merged, &ball([3.0, 1.0, 0.0], 0.5)]);
     let compiled = world(&cut);
     assert_eq!(compiled.objects().len(), 1000);
     let solids = compiled.objects().iter().filter(|object| matches!(object.geometry, Geometry::Solid(_)));
     assert_eq!(solids.count(), 1);
-    // What is in a box shows only what is there, within tighter bounds.
+    // Intersection with a box keeps only the spheres in it, within tighter bounds.
     let window = join(Intersection, &[&merged, &cuboid([2.5, -0.5, -2.0], [9.5, 0.5, 2.0])]);
     let bounds = world(&window).bounds();
     assert_eq!(world(&window).objects().len(), 3);
@@ -423,7 +422,7 @@ fn parts_apart_from_each_other_are_things_of_their_own() {
 
 #[test]
 fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
-    // One cluster with a tree of its own, from outside and from inside of it.
+    // One cluster with its own tree, from outside and inside.
     let mut random = Random(26);
     let balls: Vec<scene::Object> =
         (0..300).map(|i| ball([0.5 * (i % 20) as f32, 0.5 * (i / 20) as f32, random.unit()], 0.4)).collect();
@@ -439,7 +438,7 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
         inner += usize::from(from_inside);
         let hit = world.closest(&ray, &mut ());
         assert_eq!(world.occluded(&ray, &mut ()), hit.is_some());
-        // The first change along the ray, in steps.
+        // March along the ray to the first change.
         let step = 1e-3;
         let limit = hit.map_or(14.0, |hit| f64::from(hit.t));
         let mut t = step;
@@ -455,7 +454,7 @@ fn a_chain_of_many_parts_is_seen_as_all_of_them_are() {
     assert!(inner > 400, "{inner}");
 }
 
-/// A tree over what is cut away, as far as it reaches into the box of the whole, against all of it.
+/// Compares a tree over subtracted parts, clipped to the bounds of the whole, with all parts.
 #[test]
 fn parts_matter_in_the_box_of_the_whole_alone() {
     let (mut random, mut hits) = (Random(28), 0);
@@ -506,7 +505,7 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
                 }
                 let away = spawn_ray(&surface, dir, f32::INFINITY, None);
                 let Some(next) = world.closest(&away, &mut ()) else { continue };
-                // Whoever goes out comes in next, and the other way round.
+                // An exit is followed by an entry, and the reverse.
                 count += 1;
                 let turns = goes_out(&world, &away, &next) != (dir.dot(surface.n_geo) > 0.0);
                 assert!(turns, "{solid:?} {ray:?} {surface:?} {away:?} {next:?}");
@@ -516,8 +515,8 @@ fn rays_that_leave_a_solid_do_not_meet_it_there() {
     assert!(count > 10_000, "{count}");
 }
 
-/// As many crossings coincide as there are parts: each is looked at a few times, not as often as
-/// there are others.
+/// As many crossings coincide as there are parts: each is visited a few times, not once for each
+/// other.
 #[test]
 fn coincident_parts_do_not_cost_the_square_of_their_number() {
     let count = 30_000;
@@ -527,7 +526,7 @@ fn coincident_parts_do_not_cost_the_square_of_their_number() {
         let ray = Ray::new(Vec3::new(0.1, 0.2, 5.0), Vec3::NEG_Z);
         let hit = world.closest(&ray, &mut ());
         assert_eq!(hit.is_some(), there, "{operation:?}");
-        // The first part written is the one that is seen.
+        // The first part in the file is visible.
         assert!(hit.is_none_or(|hit| hit.part & !(TURNED | ENTERS) == 0), "{operation:?}");
     }
 }

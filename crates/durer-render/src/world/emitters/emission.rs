@@ -1,4 +1,4 @@
-//! Light that leaves lamps towards things that mirror or refract it: where photons begin.
+//! Emission of photons from lights towards reflective or refractive objects.
 
 use super::{Apart, AreaLight, Source, of_light};
 use crate::world::{Geometry, Material, Object, World};
@@ -10,57 +10,57 @@ use durer_scene::texture::Environment;
 use glam::DVec3;
 use std::f32::consts::PI;
 
-/// A ball around something that throws light on other things.
+/// A bounding sphere of an object that casts caustics.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Target {
-    /// Its middle.
+    /// Centre.
     pub center: Vec3,
     /// Its radius.
     pub radius: f32,
-    /// The object that it is around.
+    /// Index of the object.
     pub object: u32,
 }
 
-/// What photons are sent from, and where.
+/// Sources and targets of photons.
 #[derive(Clone, Debug, Default)]
 pub struct Beams {
     targets: Vec<Target>,
     lamps: Vec<Lamp>,
-    /// The sums of the lamps' powers up to each.
+    /// Cumulative power of the sources.
     sums: Vec<f32>,
-    /// A distance from which all of the scene is ahead.
+    /// Distance from which the whole scene is ahead.
     reach: f32,
 }
 
-/// Something that sends light.
+/// A source of photons.
 #[derive(Clone, Copy, Debug)]
 enum Lamp {
-    /// A surface.
+    /// An emissive surface.
     Area(AreaLight),
-    /// A light with a place, by number.
+    /// A light with a position, by index.
     Near(u32),
-    /// A light without one.
+    /// A directional light, by index.
     Far(u32),
-    /// All around.
+    /// The environment.
     Sky,
 }
 
-/// A photon as it leaves: its ray, and its power by colour over the density of its choice.
+/// A photon at emission: ray, and power by colour over the sampling density.
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted {
-    /// Its way.
+    /// The ray.
     pub ray: Ray64,
-    /// Its power; of a light with a place, per square of the distance that it will go.
+    /// Power; for a light with a position, per squared distance.
     pub power: Color,
-    /// The light with a place that it comes from, by number: its strength where the photon arrives
-    /// is not known yet.
+    /// Index of the light with a position that emitted it, whose strength at the hit is applied
+    /// later.
     pub light: Option<u32>,
-    /// The material that it comes from, by number.
+    /// Index of the material that emitted it.
     pub material: Option<u32>,
 }
 
 impl Beams {
-    /// From all that shines to all that mirrors or refracts.
+    /// Prepares emission from every light to every reflective or refractive object.
     pub fn new(world: &World) -> Self {
         let targets = targets(world);
         let all = world.objects().iter().filter_map(Object::bounds).reduce(Aabb::union);
@@ -84,8 +84,8 @@ impl Beams {
             let color = world.lights()[light as usize].color().max_element();
             match way != Vec3::ZERO {
                 true => beams.add(Lamp::Far(light), PI * color * area),
-                // It fades otherwise than with the square: as if it shone over the scene's own
-                // size.
+                // Attenuation may differ from the inverse square: use the strength at the scene's
+                // own size.
                 false => beams.add(Lamp::Near(light), 4.0 * PI * PI * color * reach * reach),
             }
         }
@@ -102,18 +102,18 @@ impl Beams {
         }
     }
 
-    /// Whether photons are sent to an object.
+    /// Returns true if photons are sent to an object.
     pub fn reaches(&self, object: u32) -> bool {
         !self.lamps.is_empty() && self.targets.binary_search_by_key(&object, |target| target.object).is_ok()
     }
 
-    /// The radius of the smallest target.
+    /// Returns the radius of the smallest target.
     pub fn finest(&self) -> f32 {
         self.targets.iter().map(|target| target.radius).fold(f32::INFINITY, f32::min)
     }
 
-    /// A photon by numbers from 0 to 1: for the lamp, the target, the place on the lamp, and the
-    /// direction.
+    /// Emits a photon from numbers in [0, 1) for the source, the target, the point on the source,
+    /// and the direction.
     pub fn emit(&self, world: &World, choices: Vec2, place: Vec2, direction: Vec2) -> Option<Emitted> {
         let all = *self.sums.last()?;
         let wanted = choices.x * all;
@@ -130,7 +130,7 @@ impl Beams {
                     return None;
                 }
                 let power = area.radiance * (cosine.abs() / (density * pdf * choice));
-                // Beside its own surface.
+                // Offset from its own surface.
                 let side = if cosine < 0.0 { -normal } else { normal };
                 let origin = point + f64::from(4.0 * area.error) * side.as_dvec3();
                 Some(Emitted {
@@ -160,18 +160,19 @@ impl Beams {
         }
     }
 
-    /// A direction from a point towards a target, and its density per solid angle over all targets.
+    /// Samples a direction from a point towards a target; also returns its density per solid angle
+    /// over all targets.
     fn towards(&self, point: DVec3, target: usize, u: Vec2) -> Option<(Vec3, f32)> {
         let cone = |target: &Target| {
             let to = (target.center.as_dvec3() - point).as_vec3();
             let (d2, r2) = (to.length_squared(), target.radius * target.radius);
-            // From inside, all directions lead to it.
+            // From inside, every direction hits it.
             let cosine = if d2 > r2 { (1.0 - r2 / d2).sqrt() } else { -1.0 };
             (to.normalize_or(Vec3::Z), cosine)
         };
         let (axis, cosine) = cone(&self.targets[target]);
         let dir = Frame::around(axis).to_world(warp::polar(1.0 - u.x * (1.0 - cosine), u.y)).normalize();
-        // A direction may lead to several.
+        // A direction may hit several targets.
         let density = |target: &Target| {
             let (axis, cosine) = cone(target);
             if axis.dot(dir) >= cosine - 1e-6 { 1.0 / (2.0 * PI * (1.0 - cosine).max(1e-7)) } else { 0.0 }
@@ -180,8 +181,8 @@ impl Beams {
         (sum > 0.0).then(|| (dir, sum / self.targets.len() as f32))
     }
 
-    /// A ray along a direction through a target, from before all of them, and its density per area
-    /// over all targets.
+    /// Samples a ray along a direction through a target, from in front of all targets; also returns
+    /// its density per area over all targets.
     fn across(&self, dir: Vec3, target: usize, u: Vec2) -> (Ray64, f32) {
         let frame = Frame::around(dir);
         let disc = warp::disc(u);
@@ -193,15 +194,16 @@ impl Beams {
             if beside <= square * (1.0 + 1e-5) { 1.0 / (PI * square) } else { 0.0 }
         };
         let sum: f32 = self.targets.iter().map(density).sum();
-        // Things that stand before all targets cast shadows too.
+        // Objects in front of all targets cast shadows too.
         let far = 2.0 * self.reach;
         let origin = through.as_dvec3() - f64::from(far) * dir.as_dvec3();
         (Ray64::new(origin, dir, 0.0, f32::INFINITY), sum / self.targets.len() as f32)
     }
 }
 
-/// A direction of the surroundings, its light, and its density per solid angle. No other way finds
-/// what is about even, as others than photons do: half of all directions are chosen evenly.
+/// Samples a direction of the environment; also returns its radiance and density per solid angle.
+/// Half of the directions are uniform, because only photons carry dim parts of the environment
+/// through mirrors and glass.
 fn from_all_around(sky: &Environment, u: Vec2) -> Option<(Vec3, Color, f32)> {
     let (wi, light, pdf) = match u.x < 0.5 {
         true => sky.sample(Vec2::new(2.0 * u.x, u.y))?,
@@ -218,7 +220,7 @@ fn strength(world: &World, light: u32) -> f32 {
     world.lights()[light as usize].place().map_or(0.0, |(_, intensity)| intensity.max_element()).max(0.0)
 }
 
-/// Balls around all things with an end that mirror or refract as single directions, by number.
+/// Returns bounding spheres of all bounded objects with delta lobes, by index.
 fn targets(world: &World) -> Vec<Target> {
     let mut found = Vec::new();
     for (number, object) in world.objects().iter().enumerate() {
@@ -229,7 +231,7 @@ fn targets(world: &World) -> Vec<Target> {
         let (center, half) = (bounds.center(), 0.5 * bounds.size());
         let radius = match &object.geometry {
             Geometry::Primitive(Primitive::Sphere(_)) => half.max_element(),
-            // The corners of the box are within this, whatever is in it.
+            // The sphere contains the corners of the bounds.
             Geometry::Primitive(_) | Geometry::Mesh(_) | Geometry::Solid(_) => half.length(),
         };
         if radius > 0.0 && radius.is_finite() {
@@ -240,7 +242,7 @@ fn targets(world: &World) -> Vec<Target> {
 }
 
 fn throws_light(world: &World, object: &Object) -> bool {
-    // The parts of a solid have materials of their own.
+    // The parts of a solid have their own materials.
     if matches!(object.geometry, Geometry::Solid(_)) {
         return true;
     }

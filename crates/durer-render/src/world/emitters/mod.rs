@@ -1,5 +1,4 @@
-//! What shines: surfaces with a light of their own, the scene's lights, and the surroundings; and
-//! how one of them is chosen.
+//! Emitters: emissive surfaces, the scene's lights and the environment, and light sampling.
 
 pub mod emission;
 pub mod tree;
@@ -17,60 +16,59 @@ use serde::Serialize;
 use std::f32::consts::PI;
 use tree::{Bounds, LightTree};
 
-/// More objects than that are not asked whether one is inside another.
+/// Number of objects above which containment between objects is not tested.
 const MANY: usize = 10_000;
 
-/// A part of an object that shines and can be chosen points of.
+/// An emissive part of an object that can be sampled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AreaLight {
-    /// Where it is.
+    /// Its shape.
     pub form: EmitterShape,
-    /// Its normal; zero for what has normals to all sides.
+    /// Unit normal; zero for curved shapes.
     pub normal: Vec3,
-    /// Number of the object.
+    /// Index of the object.
     pub object: u32,
-    /// Number of its part.
+    /// Index of its part.
     pub part: u32,
-    /// Whether points are chosen for both sides, and not only for that of its normal.
+    /// True if both sides are sampled, false for the side of the normal only.
     pub two_sided: bool,
-    /// How far what rays meet may be beside it, by rounding of the object's own coordinates.
+    /// Bound of the distance between the sampled and the traced surface, from rounding.
     pub error: f32,
-    /// Its radiance, for the share of it that is there.
+    /// Radiance, multiplied by the opacity.
     pub radiance: Color,
 }
 
-/// One of the things that the tree chooses.
+/// An emitter in the light tree.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Source {
-    /// A surface.
+    /// An emissive surface.
     Area(AreaLight),
-    /// A light of the scene with a place, by number.
+    /// A light of the scene with a position, by index.
     Light(u32),
 }
 
-/// All that shines in a world, and the tree to choose from.
+/// Every emitter of a world, and the tree for light sampling.
 #[derive(Clone, Debug, Default)]
 pub struct Emitters {
     sources: Vec<Source>,
-    /// Where the parts of each object begin in `parts`; `u32::MAX` where it has none.
+    /// Index in `parts` of each object's first part; `u32::MAX` for objects that do not emit.
     first: Vec<u32>,
-    /// The source of each part.
+    /// Source of each part.
     parts: Vec<u32>,
-    /// Lights of the scene without a place in the tree.
+    /// Lights of the scene that are not in the tree.
     apart: Vec<Apart>,
-    /// Those of them that are seen under some angle.
+    /// Lights in `apart` with an angular extent.
     suns: Vec<Sun>,
     tree: LightTree,
 }
 
-/// A light of the scene that is at infinity, or fades otherwise than with the square of the
-/// distance.
+/// A light of the scene at infinity, or with another attenuation than the inverse square.
 #[derive(Clone, Copy, Debug)]
 struct Apart {
     light: u32,
-    /// Where it is; zero for one that is not at infinity.
+    /// Direction to the light; zero if it is not at infinity.
     way: Vec3,
-    /// The irradiance that it makes across its way, or about that.
+    /// Approximate irradiance perpendicular to its direction.
     irradiance: f32,
 }
 
@@ -81,7 +79,7 @@ impl Apart {
         Apart { light, way, irradiance: PI * color.max_element().max(0.0) }
     }
 
-    /// About what it brings to a surface with a normal (zero: any).
+    /// Estimates the irradiance on a surface with a normal (zero: any).
     fn brings(&self, n: Vec3) -> f32 {
         if n == Vec3::ZERO || self.way == Vec3::ZERO {
             self.irradiance
@@ -91,21 +89,21 @@ impl Apart {
     }
 }
 
-/// What chooses among lights apart, the surroundings and the tree for a point: each by about the
-/// irradiance that it brings there.
+/// Estimated irradiances at a point, for choosing among the lights apart, the environment and the
+/// tree.
 struct Chances {
     choices: f32,
-    /// Of all together.
+    /// Sum of all estimates.
     total: f32,
     sky: f32,
     tree: f32,
 }
 
-/// Estimates may be wrong: this share of all choices is even.
+/// Share of uniform choices, because estimates may be wrong.
 const EVENLY: f32 = 0.1;
 
 impl Chances {
-    /// The probability of what brings so much.
+    /// Returns the probability of choosing a light with an estimated irradiance.
     fn of(&self, brings: f32) -> f32 {
         if self.choices == 1.0 {
             return 1.0;
@@ -116,31 +114,30 @@ impl Chances {
     }
 }
 
-/// A light at infinity that is seen as a disc.
+/// A light at infinity with an angular extent.
 #[derive(Clone, Debug)]
 struct Sun {
     light: u32,
     way: Vec3,
-    /// The square of the chord of half the angle in which it is seen: of small angles the cosine
-    /// says too little.
+    /// Squared chord of its half angle: the cosine of a small angle is too imprecise.
     chord2: f32,
     radiance: Color,
 }
 
-/// What shines at a point.
+/// Identity of an emitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LightId {
-    /// A light of the scene, by number.
+    /// A light of the scene, by index.
     Light(u32),
     /// A part of an object.
     Surface(u32, u32),
-    /// The surroundings.
+    /// The environment.
     Environment,
 }
 
 impl LightId {
-    /// Number of the object whose surface shines.
+    /// Returns the index of the emissive object.
     pub fn object(self) -> Option<u32> {
         match self {
             LightId::Surface(object, _) => Some(object),
@@ -149,79 +146,77 @@ impl LightId {
     }
 }
 
-/// A point that light is chosen for.
+/// A point for which lights are sampled.
 #[derive(Clone, Copy, Debug)]
 pub struct Receiver {
-    /// Where it is.
+    /// World-space position.
     pub point: DVec3,
-    /// The normal of a surface on the side that is lit; zero where light comes from all sides.
+    /// Normal on the lit side; zero if light from all sides counts.
     pub n: Vec3,
-    /// A group of lamps whose radius is less than this share of its distance, as it looks from
-    /// where it shines and where it is seen from, is not looked into if all of them are alike: each
-    /// is as likely, and brings about as much.
+    /// Ratio of radius to distance, as seen from the group and from the point, below which a group
+    /// of similar emitters is sampled uniformly: each contributes about the same.
     pub far: f32,
 }
 
 impl Receiver {
-    /// [`Receiver::far`] of a point that is seen.
+    /// Value of [`Receiver::far`] for visible points.
     pub const FAR: f32 = 0.1;
-    /// The same of one that lights others: light of many of those comes together, so that it
-    /// matters less how well each lamp was chosen.
+    /// Value of [`Receiver::far`] for points of later bounces: many of them are averaged, so the
+    /// quality of each choice matters less.
     pub const FAR_BEYOND: f32 = 0.3;
 }
 
-/// A light that was chosen for a point, and the probability of that.
+/// A light chosen for a point, and the probability.
 pub struct Choice {
     of: Of,
     probability: f32,
 }
 
 impl Choice {
-    /// Whether it is the surroundings.
+    /// Returns true for the environment.
     pub fn is_sky(&self) -> bool {
         matches!(self.of, Of::Sky)
     }
 
-    /// The probability with which it was chosen.
+    /// Returns the probability of the choice.
     pub fn probability(&self) -> f32 {
         self.probability
     }
 }
 
-/// What can be chosen.
+/// The chosen light.
 enum Of {
-    /// A light of the scene that is not in the tree, by number.
+    /// A light of the scene outside the tree, by index.
     Apart(u32),
-    /// The surroundings.
+    /// The environment.
     Sky,
-    /// One of the sources.
+    /// An emitter of the tree.
     Source(u32),
 }
 
-/// A light that was chosen, as seen from a point.
+/// A sampled light, seen from a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightSample {
-    /// Which it is.
+    /// The emitter.
     pub light: LightId,
-    /// Unit vector to it.
+    /// Unit direction to the sampled point.
     pub wi: Vec3,
-    /// How far away it is.
+    /// Distance to the sampled point.
     pub reach: f32,
-    /// How far what rays meet of it may be beside it, by rounding.
+    /// Bound of the distance between the sampled and the traced surface, from rounding.
     pub error: f32,
-    /// The cosine of the angle between its normal and the way, or what is counted as that: more
-    /// than zero.
+    /// Cosine between its normal and the direction, or a substitute; more than zero.
     pub cosine: f32,
-    /// Its radiance; of a light without extent the irradiance that it makes across its way.
+    /// Radiance; for a light without extent, the irradiance perpendicular to its direction.
     pub radiance: Color,
-    /// The probability with which it was chosen.
+    /// Probability of choosing this emitter.
     pub choice: f32,
-    /// The density per solid angle of the direction on it; 0 for a light without extent.
+    /// Density per solid angle of the direction; 0 for a light without extent.
     pub pdf: f32,
 }
 
 impl LightSample {
-    /// The surroundings in a direction of some density.
+    /// Creates a sample of the environment in a direction.
     pub fn of_sky(choice: &Choice, wi: Vec3, radiance: Color, pdf: f32) -> Self {
         LightSample {
             light: LightId::Environment,
@@ -235,15 +230,15 @@ impl LightSample {
         }
     }
 
-    /// How far a shadow ray goes from a point that is known to an error: to where neither reaches.
-    /// What passes a surface by some distance meets one that is inclined so much earlier.
+    /// Returns the length of a shadow ray from a point with an error bound: it ends before both
+    /// errors. For an inclined light the margin is larger by the cosine.
     pub fn shadow_reach(&self, error: f32) -> f32 {
         (self.reach - 2.0 * (self.error + error) / self.cosine) * (1.0 - gamma(16))
     }
 }
 
 impl Emitters {
-    /// Of a world's objects and lights.
+    /// Collects the emitters of a world.
     pub(crate) fn new(world: &World) -> Self {
         let mut emitters = Emitters { first: vec![u32::MAX; world.objects().len()], ..Emitters::default() };
         let mut bounds = Vec::new();
@@ -290,8 +285,7 @@ impl Emitters {
         emitters
     }
 
-    /// Puts sources into the order in which the tree counts them, and behind them those that it
-    /// does not hold.
+    /// Sorts sources into the order of the tree, followed by those that are not in it.
     fn arrange(&mut self, order: &[u32]) {
         self.parts = vec![u32::MAX; self.sources.len()];
         let mut sources = room(self.sources.len());
@@ -306,12 +300,12 @@ impl Emitters {
         self.sources = sources;
     }
 
-    /// Its sources in the order of the scene.
+    /// Iterates over the sources in the order of the scene.
     fn as_given(&self) -> impl Iterator<Item = &Source> {
         self.parts.iter().map(|&source| &self.sources[source as usize])
     }
 
-    /// The chances of all that is chosen for a point; `None` where nothing shines.
+    /// Estimates the irradiances at a point; `None` without emitters.
     fn chances(&self, world: &World, to: &Receiver) -> Option<Chances> {
         let (environment, has_tree) = (world.environment(), !self.tree.is_empty());
         let choices = self.apart.len() + usize::from(environment.is_some()) + usize::from(has_tree);
@@ -321,13 +315,13 @@ impl Emitters {
             chances.tree = self.tree.importance(to);
             let apart: f32 = self.apart.iter().map(|apart| apart.brings(to.n)).sum();
             let total = apart + chances.sky + chances.tree;
-            // Where it is not known what they bring, they are chosen evenly.
+            // Without valid estimates, choose uniformly.
             chances.total = if total.is_finite() { total } else { f32::NAN };
         }
         (choices > 0).then_some(chances)
     }
 
-    /// Chooses a light for a point by a number. What is read of it next is on its way then.
+    /// Chooses a light for a point by a random number. Prefetches the data needed next.
     pub fn choose(&self, world: &World, to: &Receiver, u: f32) -> Option<Choice> {
         let chances = self.chances(world, to)?;
         let (has_sky, has_tree) = (world.environment().is_some(), !self.tree.is_empty());
@@ -356,7 +350,7 @@ impl Emitters {
         Some(Choice { of: Of::Source(source), probability: chance * probability })
     }
 
-    /// Chooses a direction to a light that was chosen for a point, by two numbers.
+    /// Samples a direction to a chosen light by two random numbers.
     pub fn sample(&self, world: &World, choice: &Choice, point: DVec3, u: Vec2) -> Option<LightSample> {
         let probability = choice.probability;
         match choice.of {
@@ -372,9 +366,9 @@ impl Emitters {
         }
     }
 
-    /// The numbers with which [`Emitters::sample`] chooses the middle of a surface, as it is seen;
-    /// of a triangle and a cylinder they choose some point, always the same. `None` for what is
-    /// no surface.
+    /// Returns the random numbers with which [`Emitters::sample`] samples the centre of a surface
+    /// as seen from the point; for a triangle or cylinder, some fixed point. `None` if the emitter
+    /// is not a surface.
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
@@ -383,7 +377,7 @@ impl Emitters {
         }
     }
 
-    /// What was hit, if it can be chosen for the side that a ray met.
+    /// Returns the emitter that was hit, if light sampling can choose the hit side.
     fn chosen(&self, hit: &Hit, dir: Vec3) -> Option<(u32, &AreaLight)> {
         let source = *self.parts.get(self.first[hit.object as usize].checked_add(hit.part)? as usize)?;
         match self.sources.get(source as usize)? {
@@ -392,13 +386,13 @@ impl Emitters {
         }
     }
 
-    /// Whether points of what a ray hit can be chosen, if it shines.
+    /// Returns true if light sampling can choose an emissive hit.
     pub fn chooses(&self, hit: &Hit, dir: Vec3) -> bool {
         self.chosen(hit, dir).is_some()
     }
 
-    /// The density per solid angle with which [`Emitters::sample`] comes upon a hit of a surface
-    /// that shines; 0 where it never does.
+    /// Returns the density per solid angle with which [`Emitters::sample`] samples an emissive hit;
+    /// 0 if it never does.
     pub fn pdf_of_hit(&self, world: &World, hit: &Hit, to: &Receiver, wi: Vec3, distance: f32) -> f32 {
         let Some((source, area)) = self.chosen(hit, wi) else { return 0.0 };
         let Some(chances) = self.chances(world, to) else { return 0.0 };
@@ -407,15 +401,15 @@ impl Emitters {
         if pdf.is_finite() { choice * pdf } else { 0.0 }
     }
 
-    /// The lights at infinity that are seen in a direction, and how bright they are.
+    /// Returns the lights at infinity that are visible in a direction, with their radiance.
     pub fn suns(&self, dir: Vec3) -> impl Iterator<Item = (LightId, Color)> {
         let dir = if self.suns.is_empty() { dir } else { dir.normalize_or_zero() };
         let seen = self.suns.iter().filter(move |sun| sun.way.distance_squared(dir) <= sun.chord2);
         seen.map(|sun| (LightId::Light(sun.light), sun.radiance))
     }
 
-    /// The light from a direction in which nothing is hit, and its density among directions of the
-    /// surroundings.
+    /// Returns the radiance from a direction without a hit, and its density in environment
+    /// sampling.
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         match world.environment() {
             Some(environment) => environment.at_with_pdf(wi),
@@ -423,14 +417,14 @@ impl Emitters {
         }
     }
 
-    /// The probability with which the surroundings are chosen for a point.
+    /// Returns the probability of choosing the environment for a point.
     pub fn chance_of_sky(&self, world: &World, to: &Receiver) -> f32 {
         self.chances(world, to).map_or(0.0, |chances| chances.of(chances.sky))
     }
 }
 
-/// Surface of one part of an object to sample as a light, and its unit normal in world space; `None`
-/// where only rays that hit it find its light.
+/// Surface of one part of an object to sample as a light, and its unit normal in world space;
+/// `None` if only rays that hit it find its light.
 pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     let place = Placement(object.to_world.as_ref());
     match &object.geometry {
@@ -440,15 +434,14 @@ pub fn emitter_of(object: &Object, part: u32) -> Option<(EmitterShape, Vec3)> {
     }
 }
 
-/// Whether an object is a closed mesh whose normals point outwards, with no other object in it: to
-/// choose points of it for what is inside would be in vain. Rays that meet its inside find it
-/// shining all the same.
+/// Returns true for a closed mesh with outward normals that contains no other object: sampling its
+/// inside would have no effect. Rays that hit the inside still find its emission.
 fn has_empty_inside(world: &World, number: usize) -> bool {
     let objects = world.objects();
     let object = &objects[number];
     let (Geometry::Mesh(_), Some(bounds)) = (&object.geometry, object.bounds()) else { return false };
     let center = bounds.center().as_dvec3();
-    // Six times the volume of the cone from the middle to a part.
+    // Six times the signed volume of the cone from the centre to a part.
     let cone = |part| match emitter_of(object, part) {
         Some((EmitterShape::Triangle(p, [e, f]), normal)) => {
             e.as_dvec3().cross(f.as_dvec3()).length() * (p - center).dot(normal.as_dvec3())
@@ -464,8 +457,8 @@ fn has_empty_inside(world: &World, number: usize) -> bool {
         && !others().any(within)
 }
 
-/// A light of the scene. Its colour is what a white matte surface shows that faces it: irradiance
-/// over pi.
+/// Samples a light of the scene. Its colour is the radiance of a white matte surface that faces it:
+/// irradiance over pi.
 fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample {
     let seen = world.illuminate(light as usize, point);
     LightSample {
@@ -481,18 +474,18 @@ fn of_light(world: &World, light: u32, point: DVec3, choice: f32) -> LightSample
 }
 
 impl Sun {
-    /// A light, if it is seen under some angle.
+    /// Returns the light at infinity if it has an angular extent.
     fn of(world: &World, light: u32) -> Option<Sun> {
         let degrees = world.lights()[light as usize].spread();
         let seen = of_light(world, light, DVec3::ZERO, 1.0);
         let (half, _) = fp::sin_cos_degrees(0.5 * f64::from(degrees.min(90.0)));
-        // 2 pi (1 - cos) of the angle is pi times that.
+        // The solid angle 2 pi (1 - cos) is pi times this.
         let chord2 = (4.0 * half * half) as f32;
         (degrees > 0.0).then(|| Sun { light, way: seen.wi, chord2, radiance: seen.radiance / (PI * chord2) })
     }
 }
 
-/// A light that is seen under some angle, from one of its directions.
+/// Samples a direction within the angular extent of a light.
 fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSample {
     let degrees = world.lights()[light as usize].spread();
     if degrees == 0.0 {
@@ -506,7 +499,7 @@ fn spread(world: &World, light: u32, sample: LightSample, u: Vec2) -> LightSampl
 impl AreaLight {
     fn bounds(&self) -> Bounds {
         let round = self.form.is_round();
-        // What is seen of what bulges is a quarter of its surface, on the mean.
+        // On average, a quarter of a convex surface's area is visible.
         let area = self.form.area() * if round { 0.25 } else { 1.0 };
         let power = area * self.radiance.max_element();
         let power = if power.is_finite() { power.max(0.0) } else { 0.0 };
@@ -557,7 +550,7 @@ mod tests {
         );
         let (emitters, point) = (world.emitters(), DVec3::new(0.3, 0.1, 0.2));
         let is_apart = |light: LightId| emitters.apart.iter().any(|apart| LightId::Light(apart.light) == light);
-        // A point light that does not fade is no thing of the tree.
+        // A point light without attenuation is not in the tree.
         assert_eq!((emitters.apart.len(), emitters.sources.len()), (2, 1));
         for n in [Vec3::Y, -Vec3::Y, Vec3::ZERO] {
             let to = Receiver { point, n, far: Receiver::FAR };
@@ -571,7 +564,7 @@ mod tests {
             for i in 0..count {
                 let [choice, u] = [0, 2].map(|dimension| sample_2d(1, 0, 0, i, dimension));
                 let chosen = emitters.choose(&world, &to, choice.x);
-                // The tree chooses nothing where it brings nothing.
+                // The tree returns nothing if it contributes nothing.
                 let Some(chosen) = chosen else {
                     found[2] += 1;
                     continue;
@@ -587,7 +580,7 @@ mod tests {
                 assert!(kind != 1 || light.choice == said[1]);
                 found[kind] += 1;
             }
-            // Sobol points are nearly even.
+            // Sobol points are nearly uniform.
             for (found, said) in found.iter().zip(said) {
                 assert!((*found as f32 / count as f32 - said).abs() < 2e-3, "{n}: {found} of {count}, not {said}");
             }

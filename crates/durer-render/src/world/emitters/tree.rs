@@ -1,33 +1,32 @@
-//! A tree over emitters, to choose one of many by what it may bring to a point.
+//! A light tree: chooses one of many emitters by its estimated contribution to a point.
 //!
 //! Source: Conty Estévez and Kulla, *Importance Sampling of Many Lights with Adaptive Tree
 //! Splitting*, HPG 2018, with the bounds of *Physically Based Rendering*, 4th edition, section
-//! 12.6.3. Nodes have eight children, which are weighed together: fewer steps, and each choice is
-//! among smaller groups. What is alike and far away is a group whose members are as likely as each
-//! other: most of many lamps are then chosen in the upper nodes alone, which are near at hand.
+//! 12.6.3. Nodes have eight children, which are weighted together: fewer steps, and each choice is
+//! among smaller groups. In distant groups of similar emitters, the members are chosen uniformly:
+//! with many lights, most choices then only read the upper nodes, which stay in the cache.
 
 use super::Receiver;
 use durer_bvh::internal::{PlainKernel, room, run_plain};
 use durer_scene::math::{Aabb, Vec3, fp};
 use std::f32::consts::PI;
 
-/// Where some emitters are, how strong they are, and where they shine.
+/// Bounds of emitters in position, power and direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
-    /// Where they are.
+    /// Bounding box.
     pub bounds: Aabb,
-    /// Their power together, in any one unit.
+    /// Total power, in any one unit.
     pub power: f32,
-    /// The middle of their normals.
+    /// Axis of the cone of normals.
     pub axis: Vec3,
-    /// Cosine of the greatest angle between that and a normal.
+    /// Cosine of the largest angle between the axis and a normal.
     pub cos_normals: f32,
-    /// Cosine of the greatest angle between a normal and the light.
+    /// Cosine of the largest angle between a normal and emitted light.
     pub cos_emission: f32,
-    /// Whether they shine to both sides.
+    /// True for two-sided emission.
     pub two_sided: bool,
-    /// The power of each, if all shine about as the others do: as strongly, and to all sides or
-    /// one way. Else 0.
+    /// Power of each emitter, if all are similar in power and direction; otherwise 0.
     pub each: f32,
 }
 
@@ -53,7 +52,7 @@ fn angle(cosine: f32) -> f32 {
     fp::atan2(sine(cosine), cosine)
 }
 
-/// The least cone around two cones.
+/// Returns the smallest cone around two cones.
 fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     let (wide_a, wide_b, between) = (angle(cos_a), angle(cos_b), angle(a.dot(b).clamp(-1.0, 1.0)));
     if (between + wide_b).min(PI) <= wide_a {
@@ -69,43 +68,42 @@ fn cone_union((a, cos_a): (Vec3, f32), (b, cos_b): (Vec3, f32)) -> (Vec3, f32) {
     (axis.normalize_or(a), fp::cos(wide))
 }
 
-/// How much the cosines at the middle of a node count for all of it, beside the greatest anywhere
-/// in it: these alone are far too much for wide nodes that are seen from the side.
+/// Weight of the cosines at the centre of a node, against the largest cosines in it, which alone
+/// overestimate wide nodes seen from the side.
 const CENTER: f32 = 0.8;
 
-/// Cosine of the greatest angle to the middle of normals that are about the same.
+/// Cosine of the largest angle to the mean of normals that count as similar.
 const ONE_WAY: f32 = 0.995;
 
-/// The least share of one power that is about the same.
+/// Smallest ratio of powers that count as similar.
 const ALIKE: f32 = 0.8;
 
-/// Children of a node.
+/// Number of children of a node.
 const WIDTH: usize = 8;
 
 /// One number for each child.
 type Eight = [f32; WIDTH];
 
-/// A node: what its children hold, each number for all of them, so that they are weighed in lanes.
-/// It is read from far away, and so is only what cannot be worked out of the rest.
+/// A node: the bounds of its children in structure-of-arrays form, for SIMD. Nodes are read from
+/// main memory, so derived values are not stored.
 #[derive(Clone, Debug)]
 struct Node {
     middle: [Eight; 3],
-    /// The square of the radius around the middle.
+    /// Squared radius around the centre.
     radius2: Eight,
-    /// 0 where there is no child; less than 0 where a child shines to both sides.
+    /// 0 for a missing child; negative for two-sided emission.
     power: Eight,
     axis: [Eight; 3],
     cos_normals: Eight,
     cos_emission: Eight,
     children: [Child; WIDTH],
-    /// Where the emitters of each child begin, in the order of the tree, and after it where they
-    /// end.
+    /// Start of each child's emitters in the tree's order, followed by the end of the last.
     ends: [u32; WIDTH + 1],
-    /// A bit for each child of several emitters that shine alike.
+    /// Bit mask of children with several similar emitters.
     alike: u8,
 }
 
-/// A node's number, or an emitter's and [`Child::EMITTER`].
+/// Index of a node, or of an emitter with [`Child::EMITTER`].
 #[derive(Clone, Copy, Debug)]
 struct Child(u32);
 
@@ -129,10 +127,10 @@ impl Node {
         }
     }
 
-    /// Estimates of what each child brings to a point; more than zero wherever it brings any light.
-    /// And whether it is far from there.
+    /// Estimates the contribution of each child to a point, more than zero wherever it contributes
+    /// any light; also returns true for distant children.
     ///
-    /// Within [`run_plain`], in a loop without branches.
+    /// Within [`run_plain`], a loop without branches.
     #[inline(always)]
     fn importances(&self, to: &Receiver) -> (Eight, [bool; WIDTH]) {
         if to.n == Vec3::ZERO { self.importances_of::<false>(to) } else { self.importances_of::<true>(to) }
@@ -155,12 +153,12 @@ impl Node {
             let cos_bounds = (1.0 - sine2).sqrt();
             let inside = distance2 <= radius2;
             let bounds = (if inside { -1.0 } else { cos_bounds }, if inside { 0.0 } else { sine2.sqrt() });
-            // The least angle to a normal, and from that to the point, over all that the bounds
-            // hold.
+            // Lower bound of the angle between the direction to the point and any normal, over the
+            // whole bounds.
             let least = minus((cosine, sine(cosine)), (self.cos_normals[i], sine(self.cos_normals[i])));
             let (cos_least, _) = minus(least, bounds);
-            // Over the middle of an even disc, its mean of 1 / distance^2 with both cosines is 1 /
-            // (d^2 + r^2). A square whose corners are at the radius has 0.64 of the area of such a
+            // On the axis of a uniform disc, the mean of 1 / distance^2 with both cosines is 1 /
+            // (d^2 + r^2). A square with its corners at the radius has 0.64 of the area of that
             // disc.
             let spread2 = largest(0.64 * radius2, f32::MIN_POSITIVE);
             let mut importance = power.abs() * usual(least.0, cos_least) / (distance2 + spread2);
@@ -183,7 +181,7 @@ fn sum(x: &Eight) -> f32 {
     ((x[0] + x[4]) + (x[1] + x[5])) + ((x[2] + x[6]) + (x[3] + x[7]))
 }
 
-/// What children bring as their probabilities; no numbers where none brings any light.
+/// Normalises contributions to probabilities; NaN if no child contributes.
 #[inline(always)]
 fn shares(mut importances: Eight) -> Eight {
     let sum = sum(&importances);
@@ -194,7 +192,7 @@ fn shares(mut importances: Eight) -> Eight {
     importances
 }
 
-/// Not of numbers that are none, so that it is one instruction.
+/// Not for NaN, so that it is one instruction.
 #[inline(always)]
 fn largest(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
@@ -205,13 +203,13 @@ fn sine(cosine: f32) -> f32 {
     largest(1.0 - cosine * cosine, 0.0).sqrt()
 }
 
-/// What a cosine counts that is so great at the middle of a node, and so great at most in it.
+/// Combines the cosine at the centre of a node with the largest cosine in it.
 #[inline(always)]
 fn usual(center: f32, most: f32) -> f32 {
     CENTER * largest(center, 0.0) + (1.0 - CENTER) * most
 }
 
-/// Cosine and sine of the difference of two angles, not less than 0.
+/// Returns cosine and sine of the difference of two angles, clamped at 0.
 #[inline(always)]
 fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     let (cosine, sine) = (cos_a * cos_b + sin_a * sin_b, sin_a * cos_b - cos_a * sin_b);
@@ -219,14 +217,14 @@ fn minus((cos_a, sin_a): (f32, f32), (cos_b, sin_b): (f32, f32)) -> (f32, f32) {
     (if is_less { 1.0 } else { cosine }, if is_less { 0.0 } else { sine })
 }
 
-/// Estimates what the children of a node bring.
+/// Kernel that estimates the contributions of a node's children.
 struct Estimate<'a> {
     node: &'a Node,
     to: &'a Receiver,
 }
 
 impl PlainKernel for Estimate<'_> {
-    /// [`Node::importances`].
+    /// The result of [`Node::importances`].
     type Output = (Eight, [bool; WIDTH]);
 
     #[inline(always)]
@@ -235,7 +233,7 @@ impl PlainKernel for Estimate<'_> {
     }
 }
 
-/// [`LightTree::sample`].
+/// Kernel of [`LightTree::sample`].
 struct Sample<'a> {
     nodes: &'a [Node],
     to: &'a Receiver,
@@ -253,8 +251,8 @@ impl PlainKernel for Sample<'_> {
             let node = nodes.get(place)?;
             let (importances, far) = node.importances(to);
             let shares = shares(importances);
-            // The first with which the sum is greater than the number; without a branch, which
-            // would not be guessed.
+            // First child whose cumulative probability exceeds the number. Branchless, because the
+            // branch would be unpredictable.
             let (mut slot, mut sum, mut before) = (0, 0.0, 0.0);
             for share in shares {
                 sum += share;
@@ -263,7 +261,7 @@ impl PlainKernel for Sample<'_> {
                 before = if is_passed { sum } else { before };
             }
             if slot == WIDTH {
-                // What rounding leaves is the last one's that has a share.
+                // Rounding remainder: take the last child with a probability.
                 slot = shares.iter().rposition(|&share| share > 0.0)?;
                 before = shares[..slot].iter().sum();
             } else if shares[0].is_nan() {
@@ -285,22 +283,22 @@ impl PlainKernel for Sample<'_> {
     }
 }
 
-/// The tree.
+/// A light tree.
 #[derive(Clone, Debug, Default)]
 pub struct LightTree {
     nodes: Vec<Node>,
-    /// The node above each, and which of its children it is.
+    /// Parent node of each node, and its slot there.
     parents: Vec<(u32, u8)>,
-    /// The node that holds each emitter, and which of its children it is.
+    /// Node of each emitter, and its slot there.
     leaves: Vec<(u32, u8)>,
 }
 
-/// A node of the tree of two children that is built first: they follow each other from `first` on,
-/// or it is one emitter.
+/// A node of the binary tree that is built first: its children are at `first` and `first + 1`, or
+/// it is a single emitter.
 struct Half {
     bounds: Bounds,
     first: usize,
-    /// What it holds, in the order of the tree.
+    /// Range of its emitters in the tree's order.
     range: (u32, u32),
 }
 
@@ -313,15 +311,15 @@ impl Half {
 const BUCKETS: usize = 12;
 
 impl LightTree {
-    /// Over emitters; those without power are never chosen. And the numbers of the others as given,
-    /// in the order of the tree, by which the tree counts them.
+    /// Builds a tree over emitters with power. Also returns the indices of these emitters in the
+    /// tree's order, in which the tree counts them.
     pub fn new(emitters: &[Bounds]) -> (Self, Vec<u32>) {
         let (halves, order) = halved(emitters);
         let mut tree = LightTree { leaves: vec![(0, 0); order.len()], ..LightTree::default() };
         let Some(root) = halves.first() else { return (tree, order) };
         let mut open = vec![(if root.is_leaf() { vec![0] } else { vec![root.first, root.first + 1] }, (0, 0))];
         while let Some((mut held, parent)) = open.pop() {
-            // The largest are opened until there is no more room.
+            // Open the most expensive nodes until all slots are used.
             while held.len() < WIDTH {
                 let inner = (0..held.len()).filter(|&i| !halves[held[i]].is_leaf());
                 let largest = inner.max_by(|&a, &b| {
@@ -352,35 +350,35 @@ impl LightTree {
             tree.nodes.push(node);
             tree.parents.push(parent);
         }
-        // They are read faster there.
+        // Move to aligned memory for faster reads.
         let mut placed = room(tree.nodes.len());
         placed.append(&mut tree.nodes);
         tree.nodes = placed;
         (tree, order)
     }
 
-    /// Whether there is nothing to choose.
+    /// Returns true if the tree is empty.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// About what irradiance all of it brings to a point.
+    /// Estimates the irradiance of all emitters at a point.
     pub fn importance(&self, to: &Receiver) -> f32 {
         self.nodes.first().map_or(0.0, |node| sum(&run_plain(Estimate { node, to }).0))
     }
 
-    /// Chooses an emitter for a point by a number from 0 to 1; with its probability.
+    /// Chooses an emitter for a point by a number in [0, 1); also returns its probability.
     pub fn sample(&self, to: &Receiver, u: f32) -> Option<(u32, f32)> {
         run_plain(Sample { nodes: &self.nodes, to, u })
     }
 
-    /// The probability with which [`LightTree::sample`] chooses an emitter.
+    /// Returns the probability with which [`LightTree::sample`] chooses an emitter.
     pub fn probability(&self, to: &Receiver, emitter: u32) -> f32 {
         self.leaves.get(emitter as usize).map_or(0.0, |&(place, slot)| self.reached(place, slot, to).0)
     }
 
-    /// The probability with which a child of a node is chosen, and whether it is all that is chosen
-    /// before an emitter is: each of a child further up is as likely.
+    /// Returns the probability of reaching a child of a node, and true if the choice was uniform
+    /// within a group further up.
     fn reached(&self, place: u32, slot: u8, to: &Receiver) -> (f32, bool) {
         let mut before = 1.0;
         if place > 0 {
@@ -407,7 +405,7 @@ impl LightTree {
     }
 }
 
-/// A tree of two children a node, and the emitters in its order.
+/// Builds a binary tree; also returns the emitters in its order.
 fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
     let mut order: Vec<u32> = (0..emitters.len() as u32).filter(|&i| emitters[i as usize].power > 0.0).collect();
     if order.is_empty() {
@@ -433,8 +431,8 @@ fn halved(emitters: &[Bounds]) -> (Vec<Half>, Vec<u32>) {
     (halves, order)
 }
 
-/// Divides emitters so that both sides are small, weak and point one way; returns how many come
-/// first.
+/// Splits emitters so that both sides are compact, weak and similar in direction; returns the
+/// number in the first side.
 fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
     let middle = |i: u32| emitters[i as usize].bounds.center();
     let middles = Aabb::around(range.iter().map(|&i| middle(i)));
@@ -462,7 +460,7 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
         for i in 0..BUCKETS - 1 {
             below = join(below, buckets[i]);
             let (Some(low), Some(high)) = (below, above[i]) else { continue };
-            // Long boxes are better divided across.
+            // Long boxes are better split across their length.
             let stretch = whole.bounds.size().max_element() / whole.bounds.size()[axis];
             let cost = stretch * (cost(&low) + cost(&high));
             if best.is_none_or(|(least, ..)| cost < least) {
@@ -472,14 +470,14 @@ fn split(emitters: &[Bounds], range: &mut [u32], whole: &Bounds) -> usize {
     }
     let half = range.len() / 2;
     let Some((_, axis, last)) = best else { return half };
-    // The order within each side stays, so that trees are the same everywhere.
+    // Stable partition, so that trees are reproducible.
     let (low, high): (Vec<u32>, Vec<u32>) = range.iter().partition(|&&i| bucket(axis, i) <= last);
     range[..low.len()].copy_from_slice(&low);
     range[low.len()..].copy_from_slice(&high);
     low.len()
 }
 
-/// Power times the solid angle in which it goes times the area that it comes from.
+/// Returns power times solid angle of emission times area.
 fn cost(b: &Bounds) -> f32 {
     let (normals, emission) = (angle(b.cos_normals), angle(b.cos_emission));
     let wide = (normals + emission).min(PI);

@@ -1,5 +1,4 @@
-//! Pictures on surfaces: each changes its parameter, and heights and normals bend as closed forms
-//! say.
+//! Tests of textures: each changes its parameter, and bump and normal maps match closed forms.
 
 use crate::compile::{AccelKind, testing};
 use crate::world::{Interaction, Material, Principled, World};
@@ -12,10 +11,10 @@ use std::path::Path;
 
 const FOLDER: &str = "maps";
 
-/// A picture's name, its side, and its texels by column and row.
+/// Name, side and texels (by column and row) of a picture.
 type Drawn<'a> = (&'a str, u32, &'a dyn Fn(u32, u32) -> [u8; 3]);
 
-/// A folder with pictures in the PPM format: each texel of one of them is `texel(x, y)`.
+/// Writes pictures in the PPM format into a folder.
 fn folder(name: &str, pictures: &[Drawn]) -> tempfile::TempDir {
     let folder = tempfile::Builder::new().prefix(&format!("{FOLDER}-{name}")).tempdir().unwrap();
     for (name, side, texel) in pictures {
@@ -27,7 +26,7 @@ fn folder(name: &str, pictures: &[Drawn]) -> tempfile::TempDir {
     folder
 }
 
-/// A scene of one object with a material.
+/// Compiles a scene of one object with a material.
 fn world(material: &str, object: &str, folder: &Path) -> World {
     compiled(&[material.to_string()], object, folder)
 }
@@ -52,7 +51,7 @@ fn hit(world: &World, origin: Vec3, dir: Vec3) -> Interaction {
     world.intersect(Ray::new(origin, dir), &mut ()).expect("a hit")
 }
 
-/// The parameters where a ray down the z axis meets a scene.
+/// Returns the parameters where a ray down the z axis hits a scene.
 fn parameters(world: &World) -> Parameters {
     *world.parameters_at(material(world, 0), &hit(world, Vec3::new(0.2, 0.1, 5.0), Vec3::NEG_Z))
 }
@@ -63,7 +62,7 @@ const BALL: &str = "Sphere { center 0 0 0 radius 1 }";
 fn every_picture_changes_its_parameter() {
     let grey = |_, _| [100, 150, 200];
     let folder = folder("grey", &[("grey.ppm", 2, &grey)]);
-    // One ball for each, so that tables are worked out once.
+    // One sphere for each, so that tables are built once.
     let (mut seen, mut materials, mut expectations) = (0, Vec::new(), Vec::new());
     for (number, field) in PrincipledMaterial::FIELDS.iter().enumerate() {
         let Some(stem) = field.name.strip_suffix("_texture") else { continue };
@@ -71,7 +70,7 @@ fn every_picture_changes_its_parameter() {
             continue;
         }
         seen += 1;
-        // Everything is there, so that a change is seen.
+        // Enable every layer, so that each change is visible.
         let mut written =
             PrincipledMaterial { walls: durer_scene::material::principled::Walls::Thin, ..Default::default() };
         for (i, other) in PrincipledMaterial::FIELDS.iter().enumerate() {
@@ -130,7 +129,7 @@ fn every_picture_changes_its_parameter() {
     for (i, (word, expected)) in expectations.iter().enumerate() {
         let at = hit(&world, Vec3::new(3.0 * i as f32 + 0.2, 0.1, 5.0), Vec3::NEG_Z);
         let found = world.parameters_at(material(&world, i), &at);
-        // A product's order may change its last bit.
+        // The order of factors may change the last bit.
         assert_eq!(format!("{found:.5?}"), format!("{expected:.5?}"), "{word}");
     }
 }
@@ -159,7 +158,7 @@ fn opacity_comes_from_a_picture() {
     }
 }
 
-/// The normal for shading where a ray meets a scene.
+/// Returns the bumped and the plain shading normal where a ray hits a scene.
 fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
     let at = hit(world, origin, dir);
     [world.mapped_normal(&material(world, 0).maps, &at).expect("a bent normal"), at.surface.n_shade]
@@ -167,10 +166,11 @@ fn normal(world: &World, origin: Vec3, dir: Vec3) -> [Vec3; 2] {
 
 #[test]
 fn a_ramp_of_heights_tilts_a_wall() {
-    // From black on the left to white on the right, and from black below to white on top.
+    // From black on the left to white on the right, and from black at the bottom to white at the
+    // top.
     let (right, up) = (|x, _| [x as u8; 3], |_, y| [255 - y as u8; 3]);
     let folder = folder("ramp", &[("right.ppm", 256, &right), ("up.ppm", 256, &up)]);
-    // The picture once over 2 x 4, turned and moved.
+    // The picture once over 2 x 4, rotated and moved.
     let mesh = "v 0 0 0\nv 2 0 0\nv 2 4 0\nv 0 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n";
     std::fs::write(folder.path().join("wall.obj"), mesh).unwrap();
     let object = "Transform { Translate 1 0 0 UniformScale 2 TriangleMesh { obj_file wall.obj } }";
@@ -186,8 +186,8 @@ fn a_ramp_of_heights_tilts_a_wall() {
 
 #[test]
 fn a_ramp_of_heights_around_a_ball() {
-    // Brighter eastwards: by 1 around the whole ball, so by h / (2 pi r cos latitude) for a way
-    // along a circle.
+    // Brighter eastwards: by 1 around the whole sphere, so the slope along a circle of latitude is
+    // h / (2 pi r cos latitude).
     let folder = folder("ball", &[("east.ppm", 256, &|x, _| [x as u8; 3])]);
     let world = world(
         "bumpTexture east.ppm bumpHeight 0.5",

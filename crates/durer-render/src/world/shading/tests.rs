@@ -11,7 +11,7 @@ fn bent_normals_let_mirrors_show_what_is_outside_and_change_steadily() {
         let [n, n_geo, wo] = [unit(), unit(), unit()];
         let n_geo = if n_geo.dot(wo) < 0.0 { -n_geo } else { n_geo };
         let z = n_geo.dot(wo);
-        // Where it is seen along the surface, or the normal is the opposite, all is lost.
+        // At grazing view, or with an opposite normal, precision is lost.
         if z < 1e-3 || n.dot(n_geo) < -0.99 {
             continue;
         }
@@ -19,18 +19,18 @@ fn bent_normals_let_mirrors_show_what_is_outside_and_change_steadily() {
         let shown = |n: Vec3| (2.0 * n.dot(wo) * n - wo).dot(n_geo);
         let least = (0.9 * z).min(0.01);
         assert!((made.length() - 1.0).abs() < 1e-5 && made.dot(wo) > 0.0, "{n} {n_geo} {wo}: {made}");
-        // In single precision, near the horizon too.
+        // In single precision, also near the horizon.
         assert!(shown(made) > least - 5e-4, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
-        // It lies in the plane of both, between them.
+        // In the plane of both, between them.
         assert!(made.dot(n.cross(n_geo)).abs() < 1e-5 && made.dot(n_geo) > n.dot(n_geo) - 1e-5);
         if made == n {
             kept += 1;
         } else {
             bent_ones += 1;
-            // No further than has to be.
+            // As little as necessary.
             assert!(shown(made) < least + 1e-3, "{n} {n_geo} {wo}: {made} shows {}", shown(made));
         }
-        // Normals beside each other stay so.
+        // Neighbouring normals stay close.
         let beside = (n + 1e-4 * Vec3::new(1.0, -1.0, 0.5)).normalize();
         assert!((bent(beside, n_geo, wo) - made).length() < 0.05, "{n} {n_geo} {wo}");
     }

@@ -1,4 +1,4 @@
-//! The mesh files of a scene, and the objects that show them.
+//! The mesh files of a scene and the objects that show them.
 
 pub(super) mod normals;
 pub(super) mod topology;
@@ -16,25 +16,25 @@ use durer_scene::shape::MeshData;
 use normals::Given;
 use topology::Topology;
 
-/// Files of more bytes are not looked into: the check is to take no longer than the eye.
+/// Size in bytes above which a file is skipped, to keep the check interactive.
 const MAX_BYTES: usize = 64 << 20;
-/// A share of turned or odd triangles that modellers leave behind, and nobody sees.
+/// Share of reversed or odd triangles that modelling programs leave behind and that are invisible.
 const NEGLIGIBLE: f32 = 0.002;
 
-/// A mesh file, and the objects that show it.
+/// A mesh file and the objects that show it.
 #[derive(Debug)]
 pub(in crate::check) struct MeshFile<'s> {
     pub(super) name: &'s FileName,
-    /// Its number among the files that were read.
+    /// Index among the files that were read.
     pub(super) file: u32,
     pub(super) objects: Vec<&'s Object>,
     pub(super) data: MeshData,
     pub(super) topology: Topology,
-    /// The normals that the file brings, where they count.
+    /// Normals from the file, if the dialect uses them.
     pub(super) given: Option<Given>,
 }
 
-/// All mesh files of a scene.
+/// Returns all mesh files of a scene.
 pub(in crate::check) fn files<'s>(grid: &ProbeGrid<'s>) -> Vec<MeshFile<'s>> {
     let mut uses = Uses::new();
     if let Some(root) = &grid.subject.scene.root {
@@ -66,7 +66,7 @@ fn read<'s>(grid: &ProbeGrid<'s>, name: &'s FileName, objects: Vec<&'s Object>) 
     let files = grid.subject.files;
     let file = (0..).take_while(|&i| files.name(i).is_some()).find(|&i| files.name(i) == Some(&name.path))?;
     let bytes = files.whole(file).filter(|bytes| bytes.len() <= MAX_BYTES)?;
-    // It was read before, and what is wrong with it was said.
+    // The loader already reported the file's errors.
     let data = read_mesh(bytes, file, &name.path, &mut Diagnostics::default())?;
     let topology = Topology::of(&data.positions, &data.triangles);
     let given = Given::of(&data).filter(|_| grid.world().rules().file_normals);
@@ -78,7 +78,8 @@ impl MeshFile<'_> {
         count == 0 || (count as f32) <= NEGLIGIBLE * self.data.triangles.len() as f32
     }
 
-    /// The line of a triangle's face in a Wavefront file: a face of n corners is n - 2 triangles.
+    /// Returns the line of a triangle's face in an OBJ file: a face of n corners has n - 2
+    /// triangles.
     pub(super) fn face(&self, grid: &ProbeGrid, triangle: u32) -> Option<Span> {
         let bytes = grid.subject.files.bytes(self.file)?;
         let (mut start, mut before, mut found) = (0, 0, None);
@@ -97,7 +98,7 @@ impl MeshFile<'_> {
         found.filter(|_| before == self.data.triangles.len())
     }
 
-    /// A warning about some of its triangles: at the first of them, or where the scene names the
+    /// Places a warning about some triangles at the first of them, or where the scene names the
     /// file.
     pub(super) fn at_triangle(&self, grid: &ProbeGrid, diagnostic: Diagnostic, triangle: u32) -> Diagnostic {
         let corners = self.data.triangles[triangle as usize].map(|i| self.data.positions[i as usize]);
@@ -112,7 +113,7 @@ impl MeshFile<'_> {
         }
     }
 
-    /// The first of its objects that is of glass.
+    /// Returns the first object of glass that shows the mesh.
     pub(super) fn glass(&self, grid: &ProbeGrid) -> Option<&Object> {
         let materials = grid.world().materials();
         let refracts = |material: u32| match materials.get(material as usize) {
@@ -122,23 +123,23 @@ impl MeshFile<'_> {
         self.objects.iter().find(|object| object.material.is_some_and(refracts)).copied()
     }
 
-    /// Its objects as they are placed in the world.
+    /// Iterates over the compiled objects that show the mesh.
     pub(super) fn placed<'w>(&self, grid: &ProbeGrid<'w>) -> impl Iterator<Item = &'w Placed> {
         grid.world().objects().iter().filter(|object| self.is_shown_at(object.span))
     }
 
-    /// Whether what is written at a place shows it.
+    /// Returns true if the object written at `place` shows the mesh.
     pub(super) fn is_shown_at(&self, place: Span) -> bool {
         self.objects.iter().any(|object| object.span.start == place.start)
     }
 
-    /// Whether the camera is in it, as in a room: its walls face inwards by right.
+    /// Returns true if the camera is inside the mesh, as in a room, whose walls face inwards.
     pub(super) fn is_room(&self, grid: &ProbeGrid) -> bool {
         let eye = grid.world().camera().pose().center;
         self.placed(grid).filter_map(Placed::bounds).any(|bounds| bounds.holds(eye))
     }
 
-    /// Whether it is the inner wall of hollow glass: that faces inwards by right.
+    /// Returns true if the mesh is the inner wall of hollow glass, which faces inwards.
     pub(super) fn is_hollow(&self, grid: &ProbeGrid) -> bool {
         let objects = grid.world().objects();
         let holds = |outer: &Aabb, inner: &Aabb| outer.holds(inner.min) && outer.holds(inner.max);
@@ -150,7 +151,7 @@ impl MeshFile<'_> {
         })
     }
 
-    /// Whether it is closed and its normals, made or given, point inwards.
+    /// Returns true if the mesh is closed and its normals point inwards.
     pub(super) fn is_inside_out(&self) -> bool {
         let Topology { turned, volume, .. } = &self.topology;
         let against = self.given.as_ref().is_some_and(Given::is_against_all);

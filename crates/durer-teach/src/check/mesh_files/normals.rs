@@ -1,23 +1,23 @@
-//! The normals that a mesh file brings.
+//! The normals of a mesh file.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 
-/// Triangles whose normals are odd, by number.
+/// Triangles with odd normals, by index.
 #[derive(Debug, Default)]
 pub(in crate::check) struct Given {
-    /// Whose normals point to the other side than the way round of their corners says.
+    /// Triangles whose normals oppose their winding.
     pub against: Vec<u32>,
-    /// Without normals, where others have some.
+    /// Triangles without normals in a file where others have some.
     pub missing: Vec<u32>,
-    /// With a normal of no length.
+    /// Triangles with a normal of length zero.
     pub zero: Vec<u32>,
-    /// How many have normals.
+    /// Number of triangles with normals.
     pub count: usize,
 }
 
 impl Given {
-    /// Looks at a mesh as it stands in its file; `None` where it has no normals.
+    /// Examines a mesh as stored in its file; `None` if it has no normals.
     pub fn of(data: &MeshData) -> Option<Given> {
         let mut given = Given::default();
         for (i, triangle) in data.triangles.iter().enumerate() {
@@ -32,7 +32,7 @@ impl Given {
                 given.zero.push(i as u32);
             }
             let face = (b - a).cross(c - a);
-            // A smooth normal may lean over an edge; all three do not.
+            // A single smooth normal may lean over an edge; all three never do.
             if normals.iter().all(|normal| normal.dot(face) < 0.0) {
                 given.against.push(i as u32);
             }
@@ -40,7 +40,7 @@ impl Given {
         (given.count > 0).then_some(given)
     }
 
-    /// Whether nearly all are against the corners.
+    /// Returns true if nearly all normals oppose their winding.
     pub fn is_against_all(&self) -> bool {
         self.against.len() * 10 > self.count * 9
     }

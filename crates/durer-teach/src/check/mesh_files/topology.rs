@@ -1,38 +1,38 @@
-//! How triangles hang together: edges, sides, volume.
+//! Connectivity of triangles: edges, orientation, volume.
 
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::mesh::place_key;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// What is found out about some triangles. Corners at the same place are one.
+/// Topology of a triangle mesh. Corners at the same position count as one.
 #[derive(Debug, Default)]
 pub(in crate::check) struct Topology {
     /// Triangles without area.
     pub degenerate: Vec<u32>,
-    /// Edges of one triangle only, and of more than two.
+    /// Number of edges with one triangle, and with more than two.
     pub open: usize,
     pub crowded: usize,
-    /// One of those edges.
+    /// One of these edges.
     pub some_edge: Option<[Vec3; 2]>,
-    /// Triangles that go round the other way than most of those that they hang together with.
+    /// Triangles that wind the other way than most of their connected piece.
     pub turned: Vec<u32>,
-    /// How many edges there are, and the volume of the box around them.
+    /// Number of edges, and volume of the bounding box.
     pub edges: usize,
     pub box_volume: f64,
-    /// The length of the sum of all directed areas, as a share of the sum of their lengths.
+    /// Length of the sum of all area vectors, as a share of the sum of their lengths.
     pub opening: f64,
-    /// Six times the volume that is enclosed, seen from its middle where it is not closed; negative
-    /// where triangles go round clockwise, seen from outside.
+    /// Six times the enclosed signed volume, measured from the centre of the bounds if the mesh is
+    /// open; negative if triangles wind clockwise seen from outside.
     pub volume: f64,
 }
 
-/// An edge of a triangle: its two corners, the lesser first; whether the triangle runs along it so;
-/// the triangle.
+/// An edge of a triangle: its two corners, the lesser first; true if the triangle runs along it in
+/// that order; the triangle.
 type Edge = (u64, bool, u32);
 
 impl Topology {
-    /// Looks at triangles.
+    /// Computes the topology of triangles.
     pub fn of(positions: &[Vec3], triangles: &[[u32; 3]]) -> Self {
         let mut topology = Topology::default();
         let place = same_places(positions);
@@ -46,7 +46,7 @@ impl Topology {
             let [a, b, c] = triangle.map(|corner| positions[corner as usize].as_dvec3() - anchor);
             topology.volume += a.dot(b.cross(c));
             let longest = (b - a).length_squared().max((c - a).length_squared()).max((c - b).length_squared());
-            // Corners on one line, but for rounding.
+            // Collinear corners, up to rounding.
             let normal = (b - a).cross(c - a);
             (sum, area) = (sum + normal, area + normal.length());
             if normal.length() <= 1e-9 * longest {
@@ -73,27 +73,28 @@ impl Topology {
         topology
     }
 
-    /// Whether it is closed but for a hole, as at the top of a vase: the directed areas of a closed
-    /// surface sum to 0, its rims are short, and the volume in it is no accident.
+    /// Returns true if the surface is closed except for a hole, as at the top of a vase: the area
+    /// vectors of a closed surface sum to 0, its rims are short, and its volume is a fair share of
+    /// the bounds'.
     pub fn is_nearly_closed(&self) -> bool {
         let short = self.crowded == 0 && self.open * 10 < self.edges;
         self.is_closed() || short && self.opening < 0.25 && self.volume.abs() > 0.1 * self.box_volume
     }
 
-    /// Whether every edge has two triangles.
+    /// Returns true if every edge has exactly two triangles.
     pub fn is_closed(&self) -> bool {
         self.open == 0 && self.crowded == 0
     }
 }
 
-/// For each corner, the first one at the same place.
+/// Returns for each corner the first one at the same position.
 fn same_places(positions: &[Vec3]) -> Vec<u32> {
     let mut first: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     positions.iter().enumerate().map(|(i, p)| *first.entry(place_key(*p)).or_insert(i as u32)).collect()
 }
 
-/// Goes from triangle to triangle across edges of two: neighbours that run along their edge alike
-/// go round differently. Of each piece that hangs together, the fewer are turned.
+/// Flood-fills across edges with two triangles: neighbours that run along their edge in the same
+/// direction wind differently. In each connected piece the minority is reversed.
 fn turned(edges: &[Edge], count: usize) -> Vec<u32> {
     let pairs = || edges.chunk_by(|a, b| a.0 == b.0).filter(|same| same.len() == 2);
     if pairs().all(|same| same[0].1 != same[1].1) {

@@ -1,4 +1,4 @@
-//! Mistakes of the camera and of places in pixels.
+//! Mistakes of the camera and of sample positions.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Aspect, Rays};

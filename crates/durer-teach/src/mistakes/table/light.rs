@@ -1,4 +1,4 @@
-//! Mistakes of local light: ambient, diffuse, lamps, sums.
+//! Mistakes of local light: ambient, diffuse, lights, sums.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Ambient, Cosine, Fading, PointLamp, Sum};
@@ -132,7 +132,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
         "for (i = 0; i < numLights; i++)",
         "only light {}",
         |v, light| {
-            // Where there is one light only, it is alone anyway.
+            // A single light is alone anyway.
             v.world.edit().lights = v.world.lights().get(light as usize).cloned().into_iter().collect();
         },
     )
@@ -289,7 +289,7 @@ pub(super) const MISTAKES: &[Mistake] = &[
                 4 => |a| Vec3::new(a.x, a.y, 0.0),
                 _ => |a| Vec3::new(0.0, a.y, 0.0),
             };
-            // A single factor has rows of its own.
+            // A single factor has its own rows.
             if v.has_three_factors() {
                 points(v.world.edit().lights.iter_mut(), |a| a.map(change));
             }
@@ -432,7 +432,7 @@ fn recolor<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Colo
     lights.for_each(|light| light.recolor(&change));
 }
 
-/// Changes the three factors of the point lights' attenuation.
+/// Changes the attenuation factors of the point lights.
 fn points<'l>(lights: impl Iterator<Item = &'l mut Light>, change: impl Fn(Option<Vec3>) -> Option<Vec3>) {
     lights.for_each(|light| {
         if let Light::Point(light) = light {

@@ -1,5 +1,5 @@
-//! The table of usual mistakes. One file a family; the order within it is the order in which equals
-//! are named.
+//! The table of common mistakes, one file a family. Among equal mistakes the first in the table is
+//! named.
 
 mod bounces;
 mod camera;
@@ -14,52 +14,52 @@ use super::variant::three_factors;
 use durer_scene::dialect::{Falloff, Highlight, Rules};
 use durer_scene::scene::Scene;
 
-/// A usual mistake.
+/// A common mistake.
 #[derive(Clone, Copy, Debug)]
 pub struct Mistake {
-    /// Its keyword.
+    /// Keyword.
     pub name: &'static str,
-    /// What the program does, without a full stop; `{}` stands for the value, and `{a|b|c}` for
-    /// what that chooses, from 0.
+    /// Description of the error, without a full stop; `{}` stands for the value, and `{a|b|c}`
+    /// selects by the value, from 0.
     pub words: &'static str,
-    /// How the code should be.
+    /// The correct code.
     pub right: &'static str,
-    /// How it probably is.
+    /// The probable wrong code.
     pub wrong: &'static str,
-    /// The name of the lesson's step about it.
+    /// Name of the lesson's step about it.
     pub step: &'static str,
-    /// With which values it is tried.
+    /// Values to try.
     pub values: Values,
-    /// Makes it.
+    /// Applies the mistake to a variant.
     pub make: fn(&mut Variant, f32),
 }
 
-/// With which values a mistake is tried.
+/// Values with which a mistake is tried.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Values {
-    /// It has none.
+    /// No value.
     One,
-    /// With each of these; the true value may lie between them.
+    /// These values; the true one may lie between them.
     Numbers(&'static [f32]),
-    /// With each of these, and no others.
+    /// Exactly these values.
     Only(&'static [f32]),
-    /// With the number of each light, counted from 0.
+    /// The index of each light, from 0.
     Lights,
 }
 
 impl Values {
-    /// The numbers for a scene of some lights.
+    /// Returns the values for a scene with `lights` lights.
     pub fn numbers(self, lights: usize) -> Vec<f32> {
         match self {
             Values::One => vec![0.0],
             Values::Numbers(numbers) | Values::Only(numbers) => numbers.to_vec(),
-            // Of very many lights one alone is not seen.
+            // Among very many lights a single one is invisible.
             Values::Lights => (0..lights.min(32)).map(|light| light as f32).collect(),
         }
     }
 }
 
-/// All families.
+/// Every family.
 pub const MISTAKES: [&[Mistake]; 7] = [
     light::MISTAKES,
     highlights::MISTAKES,
@@ -70,12 +70,12 @@ pub const MISTAKES: [&[Mistake]; 7] = [
     output::MISTAKES,
 ];
 
-/// The mistake of a name.
+/// Finds a mistake by name.
 pub fn of_name(name: &str) -> Option<&'static Mistake> {
     MISTAKES.iter().copied().flatten().find(|mistake| mistake.name == name)
 }
 
-/// A row without values.
+/// Builds a row without values.
 const fn row(
     name: &'static str,
     step: &'static str,
@@ -88,32 +88,32 @@ const fn row(
 }
 
 impl Mistake {
-    /// The same, tried with values.
+    /// Sets the values to try.
     const fn with(self, values: Values) -> Mistake {
         Mistake { values, ..self }
     }
 
-    /// Whether a value lies between those with which it is tried.
+    /// Returns true if a value lies between the listed ones.
     pub fn is_fitted(&self, value: f32) -> bool {
         matches!(self.values, Values::Numbers(numbers) if !numbers.contains(&value))
     }
 
-    /// Its words for a value.
+    /// Returns the description with a value filled in.
     pub fn told(&self, value: f32) -> String {
         filled(self.words, value)
     }
 
-    /// How the code should be, and how it probably is, in a scene's formulas.
+    /// Returns the correct and the probable wrong code in the formulas of a scene.
     pub fn forms(&self, value: f32, formulas: &Formulas) -> [String; 2] {
         let said = |form| filled(form, value).replace(ATTENUATION, formulas.fading).replace("N.H", formulas.highlight);
         [self.right, self.wrong].map(said)
     }
 }
 
-/// What a light is divided by, with all that it can be.
+/// Attenuation polynomial in the table's code.
 const ATTENUATION: &str = "a0 + a1 d + a2 d^2";
 
-/// The formulas of a scene and its year, in whose words mistakes are told.
+/// Formulas of a scene and its dialect, used to describe mistakes.
 #[derive(Clone, Copy, Debug)]
 pub struct Formulas {
     fading: &'static str,
@@ -127,7 +127,7 @@ impl Default for Formulas {
 }
 
 impl Formulas {
-    /// Of a scene by its rules.
+    /// Returns the formulas of a scene.
     pub fn of(scene: &Scene, rules: &Rules) -> Self {
         let fading = match rules.falloff {
             _ if three_factors(scene) => ATTENUATION,
@@ -139,7 +139,7 @@ impl Formulas {
     }
 }
 
-/// Words with a value in them, and of each `{a|b|c}` what that chooses.
+/// Fills a value into a text, and resolves each `{a|b|c}`.
 fn filled(words: &str, value: f32) -> String {
     let mut text = String::new();
     let mut rest = words;

@@ -1,10 +1,10 @@
-//! Mistakes in how light becomes a file. Turned and exchanged pixels are told from the pictures
+//! Mistakes in writing light to a file. Flipped and exchanged pixels are found from the pictures
 //! alone.
 
 use super::{Mistake, Values, row};
 use crate::mistakes::habits::{Output, Turn};
 
-/// Usual exponents; 0 is the curve of sRGB itself.
+/// Usual exponents; 0 is the sRGB curve itself.
 const POWERS: Values = Values::Only(&[0.0, 2.2, 2.0, 1.8, 2.4]);
 
 pub(super) const MISTAKES: &[Mistake] = &[

@@ -400,13 +400,13 @@ pub(super) const MISTAKES: &[Mistake] = &[
     .with(Values::Only(&[0.0, 1.0])),
 ];
 
-/// The product without some of its matrices.
+/// Returns the product without some of its matrices.
 fn without(ops: &[MatrixOp], rules: MatrixRules, left_out: fn(&MatrixOp) -> bool) -> DAffine3 {
     let kept: Vec<MatrixOp> = ops.iter().filter(|op| !left_out(op)).copied().collect();
     MatrixOp::product(&kept, rules)
 }
 
-/// The product with other angles of rotation.
+/// Returns the product with changed rotation angles.
 fn turned(ops: &[MatrixOp], rules: MatrixRules, change: fn(f32) -> f32) -> DAffine3 {
     let change = |op: &MatrixOp| match *op {
         MatrixOp::XRotate(angle) => MatrixOp::XRotate(change(angle)),

@@ -1,4 +1,4 @@
-//! Photon map of one sample: photons sorted into cells, and density estimates from those nearby.
+//! Photon map of one sample: photons sorted into cells, and density estimates from nearby photons.
 
 use crate::world::Shading;
 use durer_scene::math::Vec3;
@@ -8,12 +8,12 @@ use durer_scene::spectrum::{Lanes, Spectrum};
 use glam::DVec3;
 use std::f32::consts::PI;
 
-/// A photon where it was absorbed.
+/// An absorbed photon.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Photon {
     /// World space.
     position: Vec3,
-    /// Unit direction to where it came from.
+    /// Unit direction towards the previous vertex.
     wi: Vec3,
     /// Power by lane; in a medium, divided by the scattering coefficient.
     power: Spectrum,
@@ -22,11 +22,11 @@ pub(super) struct Photon {
     pub(super) rest: Rest,
 }
 
-/// What absorbed a photon.
+/// Absorber of a photon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Rest {
     Surface,
-    /// Medium of an object, by number; `None`: of the air.
+    /// Medium of an object, by number; `None` for air.
     Medium(Option<u32>),
 }
 
@@ -41,9 +41,9 @@ pub struct PhotonMap {
 /// Density estimate at a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Gathered {
-    /// Radiance that is scattered towards the path.
+    /// Radiance scattered towards the path.
     pub light: Spectrum,
-    /// Number of photons within the radius that count.
+    /// Number of photons within the radius that contribute.
     pub photons: usize,
     /// Radius of the estimate in units of the world.
     pub radius: f32,
@@ -55,7 +55,7 @@ pub(super) struct Cells {
     /// Radius of estimates in units of the world; cells are two radii wide.
     radius: f32,
     corrected: bool,
-    /// Number of each photon's cell, ascending.
+    /// Cell number of each photon, ascending.
     cells: Vec<u64>,
     photons: Vec<Photon>,
 }
@@ -75,7 +75,7 @@ impl Photon {
 
 impl Cells {
     pub(super) fn new(photons: &[Photon], radius: f32, corrected: bool) -> Self {
-        // Photons of a cell stay in the order in which they were sent: sums are reproducible.
+        // Photons of a cell stay in the order in which they were sent, so sums are reproducible.
         let cell = |photon: &Photon| cell_of(place(photon.position, radius, 0.0));
         let mut order: Vec<(u64, u32)> = (0..).zip(photons).map(|(i, photon)| (cell(photon), i)).collect();
         order.sort_unstable();
@@ -83,11 +83,11 @@ impl Cells {
         Cells { radius, corrected, cells: order.into_iter().map(|(cell, _)| cell).collect(), photons }
     }
 
-    /// Sums `value` over the photons within the radius of a point that had at most `max_bounces`;
-    /// it gets the vector to the photon and its squared length.
+    /// Sums `value` over the photons within the radius of a point with at most `max_bounces`
+    /// bounces. `value` gets the vector to the photon and its squared length.
     fn gather(&self, point: Vec3, max_bounces: u32, value: impl Fn(&Photon, Vec3, f32) -> Spectrum) -> Gathered {
         let mut gathered = Gathered { light: Spectrum::ZERO, photons: 0, radius: self.radius };
-        // Cells are two radii wide: those half a cell around the point hold all that is within a
+        // Cells are two radii wide, so the nearest 2 x 2 x 2 cells contain all photons within a
         // radius.
         let low = place(point, self.radius, -0.5);
         for corner in 0..8 {
@@ -110,11 +110,11 @@ impl Cells {
         gathered
     }
 
-    /// Weight of a photon by its squared distance and its squared height over the surface; 0 if it
+    /// Weight of a photon by its squared distance and its squared height above the surface; 0 if it
     /// lies on another surface.
     ///
-    /// A kernel of radius r has a bias of c r^2 to second order, and c r^2 / 2 with half the square.
-    /// Twice the latter less the former removes it (Richardson's extrapolation).
+    /// A kernel of radius r has a bias of c r^2 to second order; with half the square, c r^2 / 2.
+    /// Twice the latter minus the former cancels it (Richardson extrapolation).
     fn kernel(&self, distance: f32, beside: f32, kernel: fn(f32, f32) -> f32) -> f32 {
         let square = self.radius * self.radius;
         if beside > FLATNESS * square {
@@ -130,13 +130,13 @@ impl Cells {
 }
 
 impl PhotonMap {
-    /// What the lanes of its photons are.
+    /// Meaning of the lanes of the photons' power.
     pub fn lanes(&self) -> &Lanes {
         &self.lanes
     }
 
-    /// Light of photons near a surface point that the surface scatters. Photons with more than
-    /// `max_bounces` do not count.
+    /// Radiance scattered at a surface point from nearby photons. Ignores photons with more than
+    /// `max_bounces` bounces.
     pub fn on_surface(&self, surface: &Surface, shading: &Shading, max_bounces: u32) -> Gathered {
         let cells = &self.on_surfaces;
         cells.gather(surface.position, max_bounces, |photon, way, distance| {
@@ -151,8 +151,8 @@ impl PhotonMap {
         })
     }
 
-    /// Light of photons near a point in the medium of an object (`None`: of the air) that the medium
-    /// scatters along a unit direction. See [`PhotonMap::on_surface`].
+    /// Radiance scattered along a unit direction at a point in the medium of an object (`None`:
+    /// air) from nearby photons. See [`PhotonMap::on_surface`].
     pub fn in_medium(
         &self,
         (point, dir): (Vec3, Vec3),
@@ -168,7 +168,7 @@ impl PhotonMap {
     }
 }
 
-/// Largest squared height of a photon over a surface, as a fraction of the squared radius; higher
+/// Maximum squared height of a photon above a surface, as a fraction of the squared radius; higher
 /// photons lie on another surface.
 const FLATNESS: f32 = 0.1;
 

@@ -1,10 +1,10 @@
-//! Caustics: light that delta lobes throw on other things, by photons.
+//! Caustics by photons: light that delta lobes focus on other objects.
 //!
 //! Paths from the camera find such light by chance or never. So photons are sent from the lights to
 //! all objects that mirror or refract, followed over delta lobes, and stored on the first surface
 //! with another lobe, or where a medium scatters them. The light there is a density estimate. Each
-//! sample of a pixel has photons of its own and a smaller radius than the sample before, so that
-//! the mean over samples converges to the truth.
+//! sample of a pixel traces new photons and uses a smaller radius than the sample before, so the
+//! mean over samples converges to the true value.
 //!
 //! Sources: Hachisuka and Jensen, *Stochastic Progressive Photon Mapping*, 2009; the radius without
 //! statistics of pixels: Knaus and Zwicker, *Progressive Photon Mapping: A Probabilistic Approach*,
@@ -33,10 +33,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 /// *Adaptive Progressive Photon Mapping*, 2013: the error falls fastest at 2/3.
 const ALPHA: f64 = 2.0 / 3.0;
 
-/// Most maps that are kept for use again.
+/// Maximum number of cached maps.
 const MAX_KEPT: usize = 32;
 
-/// Photons of a picture: a map for each sample of its pixels, made on demand.
+/// Photons of a picture: a map for each sample of its pixels, built on demand.
 #[derive(Debug)]
 pub struct Photons {
     beams: Beams,
@@ -44,23 +44,23 @@ pub struct Photons {
     count: u32,
     /// Radius of the first sample in units of the world.
     radius: f32,
-    /// Whether the bias of the estimate is removed to second order.
+    /// True if the bias of the estimate is removed to second order.
     corrected: bool,
     kept: Mutex<Kept>,
 }
 
-/// Maps with their samples, the oldest first.
+/// Cached maps with their samples, the oldest first.
 type Kept = VecDeque<(u32, Arc<PhotonMap>)>;
 
-/// Pairs of random numbers that emission takes.
+/// Pairs of random numbers per emission.
 const FIRST_DIMENSION: u32 = 3;
 
-/// Radius in media, where photons are sparser, over that on surfaces.
+/// Ratio of the radius in media, where photons are sparser, to the radius on surfaces.
 const MEDIUM_RADIUS: f32 = 3.0;
 
 impl Photons {
-    /// Sends `count` photons for each sample. `radius` of the first sample is in units of the world;
-    /// without one, it follows from the smallest object that photons are sent to.
+    /// Sends `count` photons for each sample. `radius` of the first sample is in units of the
+    /// world; by default it follows from the smallest object that photons are sent to.
     pub fn new(world: &World, seed: u64, count: u32, radius: Option<f32>) -> Self {
         let beams = Beams::new(world);
         let usual = 0.05 * beams.finest();
@@ -74,7 +74,7 @@ impl Photons {
         Photons { corrected: true, ..self }
     }
 
-    /// Whether photons are sent to an object.
+    /// Returns true if photons are sent to an object.
     pub(super) fn reaches(&self, object: u32) -> bool {
         self.beams.reaches(object)
     }
@@ -88,11 +88,11 @@ impl Photons {
     /// Photon map of a sample.
     pub(super) fn map(&self, path: &Path, sample: u32) -> Arc<PhotonMap> {
         let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        // Made by one thread: a parallel job might steal work that waits for the lock.
+        // Built by one thread: a parallel job might steal work that waits for the lock.
         Self::found(&kept, sample).unwrap_or_else(|| Self::keep(&mut kept, sample, self.make(path, sample, false)))
     }
 
-    /// Makes the map of a sample in advance, on all threads.
+    /// Builds the map of a sample in advance, on all threads.
     pub fn prepare(&self, path: &Path, sample: u32) {
         let lock = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
         if Self::found(&lock(), sample).is_none() {
@@ -131,7 +131,7 @@ impl Photons {
         }
     }
 
-    /// Sends one photon and returns where it was absorbed.
+    /// Traces one photon and returns its point of absorption.
     fn trace(&self, path: &Path, pass: u32, number: u32, lanes: Lanes) -> Option<Photon> {
         // The photons of a pass are stratified over lights and directions.
         let id = SampleId::new(self.seed ^ OTHER_SEED, (pass, 0), number);
@@ -145,7 +145,7 @@ impl Photons {
         loop {
             let hit = path.world.closest_along(&mut state.ray, &mut ());
             let event = path.propagate(hit, &mut at, &mut state, &context, &mut ());
-            // Light that a medium scatters before any delta lobe is left to paths.
+            // Paths account for light that a medium scatters before any delta lobe.
             if let Event::Medium(point, dir, _) = event
                 && !is_first
             {
@@ -157,11 +157,11 @@ impl Photons {
             }
             let Event::Surface(passage) = event else { return None };
             if is_first {
-                // Other objects on the way are lit by light sampling.
+                // Light sampling accounts for the light on other objects.
                 if !self.beams.reaches(at.hit.object) {
                     return None;
                 }
-                // A light with a position is as strong as it is where the photon arrives.
+                // The intensity of a light with a position is known only at the hit point.
                 let color = match emitted.light {
                     Some(light) => {
                         let seen = path.world.illuminate(light as usize, at.surface.point());
@@ -176,7 +176,7 @@ impl Photons {
             let eta = passage.as_ref().map_or(1.0, Passage::eta);
             let shading = path.world.shading(&at, eta, &lanes);
             path.select_hero(&at, &mut state, &context, &mut ());
-            // Black surfaces are not seen, but their irradiance may be measured.
+            // Black surfaces reflect nothing, but their irradiance may be measured.
             if !is_first && (shading.bsdf.is_broad() || shading.bsdf.is_black()) {
                 let wi = -state.ray.dir().normalize();
                 return Photon::new(at.surface.position, wi, state.throughput, state.depth, Rest::Surface);
@@ -187,7 +187,7 @@ impl Photons {
             if sample.pdf != 0.0 || state.depth > path.max_depth() {
                 return None;
             }
-            // Radiance is denser where the index of refraction is higher, power is not.
+            // Radiance scales with the index of refraction squared; power does not.
             let weight = sample.weight * if vertex.refracts(sample.lobe) { eta * eta } else { 1.0 };
             let survival = (state.throughput * weight).max_element() / state.throughput.max_element();
             let survival = survival.clamp(0.0, 1.0);

@@ -1,16 +1,17 @@
-//! Light of lamps and of the surroundings through sheets.
+//! Tests of light through thin sheets.
 
 use super::caustics::by_photons;
 use super::*;
 
 const LAMPS: [(&str, f64); 3] = [
-    // A light of colour c makes an irradiance of pi c at distance 1; of a far one as it is.
+    // A light of colour c gives an irradiance of pi c at distance 1; a directional light at any
+    // distance.
     ("PointLight { position 0 2 0 color 1 1 1 attenuation 0 0 1 }", 0.25),
     ("DirectionalLight { direction 0 -1 0 color 1 1 1 }", 1.0),
     ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 }", 0.25),
 ];
 
-/// A pane of a material over a floor.
+/// Builds a pane of a material over a floor.
 fn under(pane: &str, lamp: &str) -> World {
     scene(
         &format!("{MATTE} PrincipledMaterial {{ {pane} }}"),
@@ -19,27 +20,27 @@ fn under(pane: &str, lamp: &str) -> World {
     )
 }
 
-/// A ray that meets the floor at the origin, from below the pane.
+/// Returns a ray that hits the floor at the origin, from below the pane.
 fn below() -> Ray {
     Ray::new(Vec3::new(2.0, 0.9, 0.0), Vec3::new(-2.0, -0.9, 0.0).normalize())
 }
 
 #[test]
 fn a_pane_lets_light_through_by_fresnel_and_its_colour() {
-    // All reflections inside counted, T = (1 - F) / (1 + F) with F = 0.04.
+    // With all inter-reflections, T = (1 - F) / (1 + F) with F = 0.04.
     let clear = 0.96 / 1.04;
     for (lamp, distance) in LAMPS {
         for (pane, share) in [
             ("transmissionWeight 1 specularRoughness 0 walls thin", clear),
             ("transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 walls thin", 0.5 * clear),
-            // Of what is reflected inside, half is lost on each way: T = (1 - F)² / 2 / (1 - F² / 4).
+            // Half of the light is absorbed on each pass: T = (1 - F)² / 2 / (1 - F² / 4).
             (
                 "transmissionWeight 1 specularRoughness 0 transmissionColor 0.5 0.5 0.5 transmissionDepth 1 walls thin",
                 0.96 * 0.96 * 0.5 / (1.0 - 0.0016 * 0.25),
             ),
             ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * clear),
             ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * clear),
-            // What is scattered, or bent, comes by other ways.
+            // Scattered or refracted light arrives by other paths.
             ("transmissionWeight 1 specularRoughness 0.5 walls thin", 0.0),
             ("transmissionWeight 1 specularRoughness 0", 0.0),
         ] {
@@ -69,7 +70,7 @@ fn photons_bring_no_light_through_a_pane_twice() {
     assert!((a - b).abs() < 3.5 * error + 0.005 * a, "{a}, {b} ± {error}");
 }
 
-/// A floor below a pane as wide as the sky, below a disc of radiance 3.
+/// Builds a floor below a pane as wide as the sky, below a disc of radiance 3.
 fn below_disc(pane: &str) -> World {
     let shining = "PrincipledMaterial { baseColor 0 0 0 specularWeight 0 emissionLuminance 3 }";
     scene(
@@ -82,20 +83,20 @@ fn below_disc(pane: &str) -> World {
 
 #[test]
 fn a_pane_lets_the_light_of_a_small_disc_through() {
-    // A disc seen over an angle t around the normal makes an irradiance of pi L sin(t)^2; what the
-    // pane lets through is the same over so small an angle to 1e-6.
+    // A disc seen under an angle t around the normal gives an irradiance of pi L sin(t)^2. Over
+    // such a small angle the pane's transmittance is constant to 1e-6.
     let irradiance = 3.0 * std::f64::consts::PI * 0.04 / 4.04;
     for (pane, share) in [
         ("transmissionWeight 1 specularRoughness 0 walls thin", 0.96 / 1.04),
         ("transmissionWeight 1 specularRoughness 0 opacity 0.25 walls thin", 0.75 + 0.25 * 0.96 / 1.04),
         ("baseColor 0 0 0 transmissionWeight 0.5 specularRoughness 0 walls thin", 0.5 * 0.96 / 1.04),
     ] {
-        // Paths without bounces end at the pane; with one they are weighed beside points of the lamp.
+        // Paths without bounces end at the pane; with one, MIS combines them with light samples.
         for bounces in [0, 1] {
             let (world, expected) = (below_disc(pane), shown(share * irradiance));
             let (mean, error) = light(&world, below(), bounces, 1 << 13);
             assert!((mean - expected).abs() <= 3.0 * error + 1e-3 * expected, "{pane}: {mean}, not {expected}");
-            // By chance a direction finds the lamp once in a hundred times: an error of 0.11.
+            // A BSDF sample finds the light once in a hundred times: an error of 0.11.
             assert!(error < 0.02 * expected, "{pane}, {bounces} bounces: {mean} ± {error}");
         }
     }

@@ -1,5 +1,5 @@
-//! Meshes that shine to both sides: whether points are chosen for their insides or not, the light
-//! is the same.
+//! Tests of two-sided emissive meshes: the light is the same with and without light sampling of
+//! their insides.
 
 use super::*;
 use crate::compile::AccelKind;
@@ -8,7 +8,8 @@ use durer_scene::dialect::Dialect;
 use std::path::Path as FilePath;
 use tempfile::TempDir;
 
-/// A cube of half a side, its triangles counter-clockwise from outside; `turned`: from inside.
+/// Returns a cube of half-width `half`, with triangles counter-clockwise from outside, or from
+/// inside if `turned`.
 fn cube(half: f32, turned: bool) -> String {
     let corner = |i: usize| [1, 2, 4].map(|bit| if i & bit > 0 { half } else { -half });
     let vertices: String = (0..8).map(corner).map(|[x, y, z]| format!("v {x} {y} {z}\n")).collect();
@@ -18,7 +19,7 @@ fn cube(half: f32, turned: bool) -> String {
     vertices + &faces.into_iter().map(face).collect::<String>()
 }
 
-/// A folder with such cubes, turned one way and the other.
+/// Writes cubes in both orientations into a folder.
 fn cubes(half: f32) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, turned) in [("out.obj", false), ("in.obj", true)] {
@@ -27,7 +28,7 @@ fn cubes(half: f32) -> TempDir {
     folder
 }
 
-/// A world of a matte material, one that shines to both sides, and one to one side.
+/// Builds a world with a matte material, a two-sided emitter and a one-sided emitter.
 fn world(folder: &FilePath, group: &str) -> World {
     let text = format!(
         "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} Background {{ color 0 0 0 }}
@@ -49,10 +50,10 @@ fn what_is_inside_a_shining_body_is_lit_by_it() {
                  MaterialIndex 0 Rectangle {{ corner -1 0 1 edge0 2 0 0 edge1 0 0 -2 }}"
             ),
         );
-        // All that a floor sees is of radiance 3.
+        // The floor sees radiance 3 in all directions.
         let (mean, error) = light(&world, to_origin(), 0, 1 << 12);
         assert!((mean - 1.5).abs() < 3.0 * error + 0.0015, "{name}: {mean} ± {error}");
-        // Points are chosen too: by directions alone there would be no noise.
+        // Light sampling happens too: BSDF sampling alone would have no noise.
         assert!(error > 1e-3, "{name}: {error}");
     }
 }

@@ -1,10 +1,10 @@
-//! Traces of paths: what they sum to, and what clamping does to each term.
+//! Tests of path traces: their sums, and the clamping of each term.
 
 use super::*;
 use crate::integrator::{TraceRecorder, Tree};
 
-/// Trace of a sample. Its sum has the bits of the picture, and the factors along each way multiply
-/// up to the throughput with which the path added its light.
+/// Returns the trace of a sample. Checks that its sum equals the picture bit for bit, and that the
+/// factors along each path multiply to the throughput with which the light was added.
 pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     fn check(node: &TraceNode) {
         assert_eq!(node.sum(), node.value, "{:?}", node.what);
@@ -27,8 +27,8 @@ pub(super) fn tree(path: &Path, ray: &Ray, sample: u32) -> Tree {
     tree
 }
 
-/// Sources of light below a node in order, each with the number of scatterings between it and the
-/// camera, and what it adds to the pixel.
+/// Collects the sources of light below a node in order, each with the number of scatterings to the
+/// camera and its contribution to the pixel.
 fn sources(node: &TraceNode, rays: u32, found: &mut Vec<(u32, Spectrum)>) {
     for term in &node.terms {
         let adds = || term.added().unwrap().spectrum();

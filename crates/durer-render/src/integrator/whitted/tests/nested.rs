@@ -1,4 +1,4 @@
-//! Glass in glass: indices along a ray, against Snell's law written down.
+//! Tests of nested glass: indices along a ray, from Snell's law.
 
 use super::*;
 use crate::compile::testing;
@@ -12,8 +12,8 @@ const CAMERA: &str = "PerspectiveCamera { center 0 9 0 direction 0 -1 0 up 0 0 1
       Material { transparentColor 1 1 1 indexOfRefraction 1 }
       Material { diffuseColor 1 1 1 } }\n";
 
-/// Indices of what a ray runs in from surface to surface, by the sines of its angles to y: flat
-/// layers keep index times sine.
+/// Returns the indices of the media along a ray, from the sines of its angles to y: in flat layers,
+/// index times sine is constant.
 fn indices(objects: &str, origin: [f32; 3], sine: f32) -> Vec<f32> {
     along(&testing::read(&format!("{CAMERA}Group {{ {objects} }}")), origin, sine)
 }
@@ -56,7 +56,7 @@ fn layers_inside_each_other_bend_by_their_own_indices_in_any_order() {
         for sine in [0.1, 0.5, 0.9] {
             assert_eq!(indices(&objects, [0.0, 6.0, 0.0], sine), [1.5, 1.33, 1.31, 1.33, 1.5, 1.0]);
         }
-        // From inside the ice, the water and the glass; the sines are those of a ray in there.
+        // From inside the ice, the water and the glass; sines refer to a ray in that medium.
         assert_eq!(
             indices(&objects, [0.0, 0.0, 0.0], 0.5).iter().map(|n| n * 1.31).map(short).collect::<Vec<_>>(),
             [1.33, 1.5, 1.0]
@@ -76,12 +76,12 @@ fn short(index: f32) -> f32 {
 fn ice_that_stands_out_of_water_displaces_it() {
     let (water, ice) = (slab(1, -2.0, 0.0, 20.0), slab(2, -1.0, 1.0, 10.0));
     for objects in [format!("{water}{ice}"), format!("{ice}{water}")] {
-        // The water's surface inside the ice is no surface.
+        // The water's surface inside the ice is ignored.
         assert_eq!(indices(&objects, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33, 1.0]);
-        // Beside the ice there is water alone.
+        // Beside the ice there is only water.
         assert_eq!(indices(&objects, [12.0, 6.0, 0.0], 0.5), [1.33, 1.0]);
     }
-    // A sea has no end, and ice is in it all the same. Nothing is below it: the ray stays inside.
+    // An infinite sea contains the ice too. There is nothing below it: the ray stays inside.
     let sea = format!("{ice}MaterialIndex 1 Plane {{ normal 0 1 0 offset 0 }}");
     assert_eq!(indices(&sea, [0.0, 6.0, 0.0], 0.5), [1.31, 1.33]);
 }
@@ -90,10 +90,10 @@ fn ice_that_stands_out_of_water_displaces_it() {
 fn a_bubble_is_air_and_a_pane_hides_nothing() {
     let bubble = format!("{}{}", slab(0, -2.0, 2.0, 20.0), slab(3, -1.0, 1.0, 10.0));
     assert_eq!(indices(&bubble, [0.0, 6.0, 0.0], 0.5), [1.5, 1.0, 1.5, 1.0]);
-    // What is opaque inside glass is seen in it, whole.
+    // Opaque objects inside glass are fully visible.
     let stone = format!("{}MaterialIndex 4 Sphere {{ center 0 0 0 radius 1 }}", slab(0, -2.0, 2.0, 20.0));
     assert_eq!(indices(&stone, [-4.2, 8.0, 0.0], 0.5), [1.5]);
-    // A pane without thickness has no inside; behind it other glass is met as ever.
+    // A pane without thickness has no inside; other glass behind it works as usual.
     let pane = "MaterialIndex 2 Rectangle { corner -30 3 -30 edge0 0 0 60 edge1 60 0 0 } ";
     let behind = indices(&format!("{pane}{}", slab(0, -1.0, 1.0, 20.0)), [0.0, 6.0, 0.0], 0.5);
     assert_eq!(behind[..2], [1.31, 1.5]);
@@ -102,7 +102,7 @@ fn a_bubble_is_air_and_a_pane_hides_nothing() {
 #[test]
 fn a_wall_turned_inside_out_is_that_of_a_cavity() {
     let folder = tempfile::tempdir().unwrap();
-    // A box of twelve triangles whose front is inside.
+    // A box of twelve triangles with inverted orientation.
     let corners: String = (0..8)
         .map(|i| format!("v {} {} {}\n", 10 * (2 * (i & 1) - 1), 2 * (i >> 1 & 1) - 1, 10 * (2 * (i >> 2) - 1)))
         .collect();
