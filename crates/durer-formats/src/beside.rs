@@ -1,5 +1,5 @@
-//! What a scene has in memory, as files beside its text: meshes as PLY, measured lamps as IES files,
-//! densities as Mitsuba's volumes, pictures as they are.
+//! Export of a scene's in-memory assets as files beside its text: meshes as PLY, light profiles as
+//! IES, densities as Mitsuba's volumes, pictures unchanged.
 
 use super::ply::write_whole;
 use super::{extension, photometry, vol};
@@ -10,16 +10,16 @@ use durer_scene::source::AssetSource;
 use durer_scene::texture::Mapping;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A file's name, seen from the scene, and what it holds.
+/// Path of a file relative to the scene, and its bytes.
 pub type Beside = (String, Vec<u8>);
 
-/// A name that a scene's text can have for a file: letters, digits and `-_.`.
+/// Makes a name valid in a scene file: letters, digits and `-_.` stay, others become `_`.
 pub fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect()
 }
 
-/// The same scene with all its meshes and pictures in files of a folder beside it, and these files.
-/// Files that it names are copied there; those that cannot be read are named as before.
+/// Returns the scene with all its meshes and pictures in files of a folder beside it, together with
+/// these files. Files that the scene names are copied there; unreadable ones keep their names.
 pub fn put_beside(scene: &Scene, folder: &str, source: &dyn AssetSource) -> (Scene, Vec<Beside>) {
     let (files, taken, known, textures) = Default::default();
     let mut put = Put { scene, folder, source, files, taken, known, textures };
@@ -50,17 +50,16 @@ struct Put<'a> {
     folder: &'a str,
     source: &'a dyn AssetSource,
     files: Vec<Beside>,
-    /// Names of files and textures that are given, in lower case: some systems tell no others
-    /// apart.
+    /// Names of files and textures in use, in lower case, since some file systems ignore case.
     taken: BTreeSet<String>,
-    /// The new names of meshes and of pictures' files, by the old.
+    /// New names by kind and old name.
     known: BTreeMap<(&'static str, String), String>,
-    /// Named textures by the names that they had.
+    /// Named textures by their old names.
     textures: BTreeMap<String, (String, Picture)>,
 }
 
 impl Put<'_> {
-    /// A name that is not yet taken, like one that may be anything.
+    /// Returns an unused, valid name similar to `of`.
     fn name(&mut self, of: &str, extension: &str) -> String {
         let ending = if extension.is_empty() { String::new() } else { format!(".{extension}") };
         let last = of.rsplit(['/', '\\']).next().unwrap_or_default();
@@ -73,7 +72,7 @@ impl Put<'_> {
         name
     }
 
-    /// Adds a file, and gives its name as the scene has it.
+    /// Adds a file; returns its path relative to the scene.
     fn file(&mut self, of: &str, extension: &str, bytes: Vec<u8>) -> String {
         let (folder, name) = (self.folder, self.name(of, extension));
         let path = format!("{folder}/{name}");
@@ -103,7 +102,7 @@ impl Put<'_> {
         })
     }
 
-    /// The new name of a thing, which is put beside the scene when it is first named.
+    /// Returns the new name of an asset; calls `put` on the first use.
     fn once(&mut self, kind: &'static str, name: &str, put: impl FnOnce(&mut Self) -> String) -> String {
         let key = (kind, name.to_string());
         if let Some(known) = self.known.get(&key) {
@@ -114,7 +113,7 @@ impl Put<'_> {
         made
     }
 
-    /// A file that the scene names, beside it too.
+    /// Copies a file that the scene names.
     fn copied(&mut self, name: &str) -> String {
         match self.source.read(name) {
             Ok(bytes) => self.file(name, &extension(name), bytes.to_vec()),
@@ -122,7 +121,7 @@ impl Put<'_> {
         }
     }
 
-    /// What the fields of a thing name.
+    /// Exports the files that a statement's fields name.
     fn fields<T: DescribedList>(&mut self, thing: &mut T) {
         for i in 0..thing.fields().len() {
             let Some(Value::Path(file)) = DescribedList::get(thing, i) else { continue };
@@ -131,8 +130,8 @@ impl Put<'_> {
         }
     }
 
-    /// The new name of a measured lamp, of densities, or of a picture: that of its file, or of a
-    /// texture that says how it lies.
+    /// New name of a light profile, of densities, or of a picture: the name of its file, or of a
+    /// texture if it has a mapping.
     fn named(&mut self, name: &str) -> String {
         if let Some((known, _)) = self.textures.get(name) {
             return known.clone();

@@ -1,8 +1,8 @@
-//! Bodies of glass whose skin is written as several meshes.
+//! Joins the meshes of glass bodies whose surface is split into several meshes.
 //!
-//! pbrt and Mitsuba tell by the side of a surface alone whether a ray goes in or out. Here a ray
-//! knows the objects that it is in, so what bounds one body must be one object: open meshes of the
-//! same glass are joined.
+//! pbrt and Mitsuba decide only by the side of a surface whether a ray enters or leaves. Dürer
+//! tracks the objects that a ray is inside, so the surface of a body must be one object. Therefore
+//! open meshes of the same glass are joined.
 
 use durer_scene::dialect::MeshNormals;
 use durer_scene::material::principled::Walls;
@@ -13,7 +13,7 @@ use glam::{DAffine3, DVec3};
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-/// The name of an object's mesh, and how it is moved.
+/// Name of an object's mesh, and its transform.
 fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     match &object.node {
         Node::Mesh(mesh) => Some((&mesh.obj_file.path, DAffine3::IDENTITY)),
@@ -24,7 +24,7 @@ fn mesh_of(object: &Object) -> Option<(&str, DAffine3)> {
     }
 }
 
-/// The names of all meshes that objects show.
+/// Collects the names of all meshes in a group.
 fn used(group: &Group, names: &mut BTreeSet<String>) {
     for object in &group.objects {
         match &object.node {
@@ -40,7 +40,7 @@ fn used(group: &Group, names: &mut BTreeSet<String>) {
     }
 }
 
-/// Adds a mesh as it is in the world.
+/// Appends a mesh, transformed to world space.
 fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     let mirrored = map.matrix3.determinant() < 0.0;
     let normals = map.matrix3.inverse().transpose();
@@ -63,7 +63,7 @@ fn append(body: &mut MeshData, data: &MeshData, map: DAffine3) {
     body.flat = true;
 }
 
-/// Joins the open meshes of each glass of a scene whose file has a name.
+/// Joins the open meshes of each glass material. `name` is the name of the scene's file.
 pub(super) fn join_bodies(scene: &mut Scene, name: &str) {
     let Some(root) = &mut scene.root else { return };
     let materials = &scene.materials;

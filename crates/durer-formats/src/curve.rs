@@ -1,15 +1,15 @@
-//! Spectra as text: rows of a wavelength in nanometres and values, with commas, semicolons or
-//! blanks between them.
+//! Reader of spectra as text: rows of a wavelength in nanometres and values, separated by commas,
+//! semicolons or blanks.
 //!
-//! `#` begins a comment. A row of words before the numbers names the columns.
+//! `#` starts a comment. A row of words before the numbers names the columns.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::ops::Range;
 
-/// Rows at most.
+/// Maximum number of rows.
 const MAX_ROWS: usize = 100_000;
 
-/// Reads wavelengths, ascending, and the values of a column: the first, or that of a name.
+/// Reads ascending wavelengths and the values of one column: the named one, or the first.
 pub fn read(bytes: &[u8], column: Option<&str>, file: u32, diagnostics: &mut Diagnostics) -> Option<Vec<[f32; 2]>> {
     std::str::from_utf8(bytes)
         .map_err(|error| (error.valid_up_to()..error.valid_up_to() + 1, "a spectrum is text".to_string()))

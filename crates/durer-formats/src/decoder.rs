@@ -1,4 +1,4 @@
-//! The decoder of asset files that the renderer is given.
+//! Decoder of asset files, for the renderer.
 
 use crate::{curve, photometry, read_mesh_as, vol};
 use durer_diag::Diagnostics;
@@ -9,7 +9,7 @@ use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
 use durer_scene::shape::MeshData;
 
-/// Decodes asset files of every format in this crate.
+/// Decodes asset files of all formats in this crate.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Decoder;
 

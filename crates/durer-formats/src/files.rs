@@ -1,4 +1,4 @@
-//! Files that a scene names: one place through which all scene formats read them.
+//! Reading of the files that a scene names, for all scene formats.
 
 use super::model::Input;
 use super::read_mesh;
@@ -7,8 +7,8 @@ use durer_diag::{Diagnostic, Diagnostics, Span};
 use durer_scene::shape::MeshData;
 use std::sync::Arc;
 
-/// Reads the bytes of a named file and registers it, for its number. Reports an error about `what`
-/// where that fails.
+/// Reads the bytes of a named file and registers it, for spans. `what` names the file's purpose in
+/// the error if that fails.
 pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
     match input.source.read_unpacked(name) {
         Ok(bytes) => {
@@ -24,7 +24,7 @@ pub(super) fn named_bytes(input: &Input, said: &Said, what: &str, name: &str, at
     }
 }
 
-/// Reads a mesh file of any format, packed or not, as it is.
+/// Reads a mesh file of any format, compressed or not, without changes.
 pub(super) fn mesh_file(input: &Input, said: &Said, name: &str, at: Span) -> Option<MeshData> {
     let (bytes, file) = named_bytes(input, said, "the mesh", name, at)?;
     let plain = name.strip_suffix(".gz").unwrap_or(name);

@@ -1,6 +1,6 @@
-//! Bytes from folders: the only place that opens a scene's files for reading.
+//! Asset source that reads folders. Only this module opens a scene's files for reading.
 //!
-//! Files are read from a few allowed folders, never beyond them, and within a budget of bytes.
+//! It reads files below a few allowed folders only, and within a budget of bytes.
 
 use durer_diag::did_you_mean;
 use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp, is_packed, unpacked_file};
@@ -11,27 +11,28 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::UNIX_EPOCH;
 
-/// Files of folders, of which a scene may read so many bytes. Files lie in and below allowed folders.
+/// Asset source over folders. Files must lie below the allowed folders, and their total size is
+/// limited.
 #[derive(Debug)]
 pub struct FolderSource {
-    /// Folders in which a relative name is looked for, in this order.
+    /// Folders in which relative names are looked up, in this order.
     search: Vec<PathBuf>,
-    /// Folders below which a file must lie; empty: anywhere.
+    /// Folders that files must lie below; empty if any place is allowed.
     allowed: Vec<PathBuf>,
-    /// Folders in which a file is also looked for by its last name alone.
+    /// Folders that are also searched for the bare file name.
     assets: Vec<PathBuf>,
-    /// Files that are in no folder, by name: these are looked at first.
+    /// Files in memory, by name; they take precedence over folders.
     given: BTreeMap<String, Arc<[u8]>>,
     record: ReadRecord,
     progress: Mutex<Progress>,
 }
 
-/// How much was read.
+/// Remaining budget, and the paths that were read.
 #[derive(Clone, Debug)]
 struct Progress {
-    /// Bytes that may still be read.
+    /// Remaining budget in bytes.
     left: u64,
-    /// Where the files are that were read.
+    /// Paths of all files that were read or tried.
     paths: Vec<PathBuf>,
 }
 
@@ -49,10 +50,10 @@ impl Clone for FolderSource {
 }
 
 impl FolderSource {
-    /// The most that is read for one scene, unless [`FolderSource::budget`] says otherwise: 4 GiB.
+    /// Default budget of one scene: 4 GiB. See [`FolderSource::budget`].
     pub const DEFAULT_BUDGET: u64 = 4 << 30;
 
-    /// Files in and below one folder.
+    /// Source of files in and below one folder.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         FolderSource {
@@ -65,7 +66,8 @@ impl FolderSource {
         }
     }
 
-    /// Looks in another folder too: before the others if `first`. That allows nothing.
+    /// Adds a folder to the search path, at its front if `first`. This does not allow reading
+    /// there.
     pub fn look_in(mut self, folder: impl Into<PathBuf>, first: bool) -> Self {
         let at = if first { 0 } else { self.search.len() };
         self.search.insert(at, folder.into());
@@ -74,21 +76,21 @@ impl FolderSource {
 
     /// Allows files in and below another folder.
     pub fn allow(mut self, folder: impl Into<PathBuf>) -> Self {
-        // Where everything is allowed, so is this.
+        // An empty list already allows everything.
         if !self.allowed.is_empty() {
             self.allowed.push(folder.into());
         }
         self
     }
 
-    /// Looks in a folder by path and, failing that, by bare file name.
+    /// Adds a folder that is searched by path and then by bare file name, and allows reading there.
     pub fn assets(mut self, folder: impl Into<PathBuf>) -> Self {
         let folder = folder.into();
         self.assets.push(folder.clone());
         self.look_in(folder.clone(), false).allow(folder)
     }
 
-    /// Has a file by some name that is in no folder, or instead of the one there.
+    /// Adds a file in memory; it replaces a file of this name on disk.
     pub fn give(mut self, name: impl Into<String>, bytes: Arc<[u8]>) -> Self {
         self.given.insert(name.into(), bytes);
         self
@@ -100,7 +102,7 @@ impl FolderSource {
         self
     }
 
-    /// Sets how many bytes may be read.
+    /// Sets the number of bytes that may be read.
     pub fn budget(self, bytes: u64) -> Self {
         self.progress().left = bytes;
         self
@@ -110,19 +112,19 @@ impl FolderSource {
         self.progress.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Where the files are that were read, or tried to be.
+    /// Paths of all files that were read or tried.
     pub fn paths(&self) -> Vec<PathBuf> {
         self.progress().paths.clone()
     }
 
-    /// Where the file of that name is, if there is one that may be read.
+    /// Path of a file by its name, if it exists and may be read.
     pub fn place(&self, name: &str) -> Option<PathBuf> {
         self.find(name).ok().filter(|path| path.is_file())
     }
 
-    /// The first place where a file of that name is, and may be read.
+    /// First path of the name in the search order that exists and is allowed.
     fn find(&self, name: &str) -> Result<PathBuf, SourceError> {
-        // Scenes from Windows may write backslashes.
+        // Scenes from Windows may contain backslashes.
         let portable = name.replace('\\', "/");
         let path = Path::new(&portable);
         let bare = path.file_name().map(Path::new);
@@ -142,8 +144,8 @@ impl FolderSource {
         })
     }
 
-    /// A file beside the candidates that has nearly the name of one. What may not be read is not
-    /// listed either.
+    /// A file name close to one of the candidates, in the same folder. Folders outside the allowed
+    /// ones are not listed.
     fn near(&self, candidates: &[PathBuf]) -> Option<String> {
         candidates.iter().find_map(|path| {
             let folder = path.parent()?.canonicalize().ok().filter(|folder| self.allows(folder))?;
@@ -161,7 +163,7 @@ impl FolderSource {
         self.allowed.is_empty() || self.allowed.iter().any(below)
     }
 
-    /// Reads a file wherever it is, and adds nothing to the record. `name` is for messages.
+    /// Reads a file at a path without an entry in the record. `name` is for messages.
     ///
     /// # Errors
     ///
@@ -178,7 +180,7 @@ impl FolderSource {
         if metadata.len() > left {
             return Err(too_large(metadata.len()));
         }
-        // A file that grows while it is read is still bounded.
+        // The limit also holds for a file that grows while it is read.
         let bytes = all_of(fs::File::open(path).map_err(io)?, metadata.len() as usize, left).map_err(io)?;
         if bytes.len() as u64 > left {
             return Err(too_large(bytes.len() as u64));
@@ -240,7 +242,7 @@ impl AssetSource for FolderSource {
     }
 }
 
-/// Version of the file at a path; `None` if there is nothing.
+/// Returns the version of the file at a path; `None` if it does not exist.
 pub fn stamp_of(path: &Path) -> Option<Stamp> {
     let metadata = fs::metadata(path).ok()?;
     #[cfg(unix)]
@@ -254,8 +256,8 @@ pub fn stamp_of(path: &Path) -> Option<Stamp> {
     Some(Stamp { path: path.into(), modified, size: metadata.len(), number })
 }
 
-/// All bytes of a file of about some size, and of one that has grown at most one more than is
-/// allowed. Those of a file of that size are written once, where they stay.
+/// Reads a file of about `size` bytes, but at most `most + 1` bytes of one that has grown. If the
+/// size is exact, the bytes are written once, into their final place.
 fn all_of(mut file: fs::File, size: usize, most: u64) -> std::io::Result<Arc<[u8]>> {
     let mut bytes: Arc<[u8]> = std::iter::repeat_n(0, size).collect();
     let mut room = Arc::get_mut(&mut bytes).unwrap_or_default();

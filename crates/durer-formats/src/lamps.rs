@@ -1,5 +1,5 @@
-//! Lights at points that shine otherwise in each direction: as measured lamps, one for each of red,
-//! green and blue.
+//! Point lights with a directional distribution, stored as measured light profiles: one for each of
+//! red, green and blue, or one if they are equal.
 
 use durer_diag::Span;
 use durer_scene::describe::FileName;
@@ -10,8 +10,8 @@ use durer_scene::scene::{Scene, Spanned};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// How a profile lies in the light's own space: the axis from which its vertical angles are told, the
-/// one where its horizontal angles begin, and the one where they are 90 degrees.
+/// Axes of a profile in the light's own space: the axis of vertical angle 0, the direction of
+/// horizontal angle 0, and the direction of horizontal angle 90 degrees.
 #[derive(Clone, Copy)]
 pub(super) struct Axes {
     pub down: Vec3,
@@ -20,20 +20,20 @@ pub(super) struct Axes {
 }
 
 impl Axes {
-    /// About z, from x towards -y: as angles of profiles grow from the front towards front x down,
-    /// which a light that is mirrored has elsewhere.
+    /// Axes about z, from x towards -y: horizontal angles of profiles grow from front towards front
+    /// × down. A mirroring transform reverses that, and the side flips.
     pub fn about_z(map: &DAffine3) -> Axes {
         let side = if map.matrix3.determinant() < 0.0 { Vec3::Y } else { Vec3::NEG_Y };
         Axes { down: Vec3::Z, front: Vec3::X, side }
     }
 
-    /// About y, from x towards z.
+    /// Axes about y, from x towards z.
     pub fn about_y(map: &DAffine3) -> Axes {
         let side = if map.matrix3.determinant() < 0.0 { Vec3::NEG_Z } else { Vec3::Z };
         Axes { down: Vec3::Y, front: Vec3::X, side }
     }
 
-    /// The direction of two angles in degrees.
+    /// Unit direction of a vertical and a horizontal angle in degrees.
     fn direction(&self, vertical: f32, horizontal: f32) -> Vec3 {
         let turn = |degrees: f32| fp::sin_cos_degrees(f64::from(degrees));
         let ((sin, cos), (s, c)) = (turn(vertical), turn(horizontal));
@@ -42,16 +42,17 @@ impl Axes {
     }
 }
 
-/// So many equal steps from 0 to the last of some angles, with both.
+/// `count` equal steps from 0 to `last`, both included.
 pub(super) fn steps(last: f32, count: u32) -> Vec<f32> {
     (0..=count).map(|i| last * i as f32 / count as f32).collect()
 }
 
-/// Lamps at one place, each with its colour.
+/// Light profiles at one position, each with its colour.
 pub(super) struct Lamps(Vec<(Vec3, Profile)>);
 
 impl Lamps {
-    /// What shines in the light's own directions, looked up at vertical and horizontal angles.
+    /// Samples `light`, a function of the direction in the light's own space, at vertical and
+    /// horizontal angles in degrees.
     pub fn new([vertical, horizontal]: [Vec<f32>; 2], axes: &Axes, light: impl Fn(Vec3) -> Color) -> Lamps {
         let mut values = Vec::with_capacity(vertical.len() * horizontal.len());
         for &across in &horizontal {
@@ -74,13 +75,13 @@ impl Lamps {
         })
     }
 
-    /// All light of all of them.
+    /// Luminous flux of all profiles together.
     pub fn flux(&self) -> f32 {
         let flux: f64 = self.0.iter().map(|(hue, lamp)| f64::from(hue.dot(LUMINANCE)) * lamp.flux()).sum();
         flux as f32
     }
 
-    /// Adds them to a scene of some file; `color` is the intensity where a profile is 1.
+    /// Adds the lights to the scene of a file; `color` is the intensity where a profile is 1.
     pub fn add(self, scene: &mut Scene, file: &str, (map, axes): (DAffine3, Axes), color: Color, at: Span) {
         let axis = |local: Vec3| map.transform_vector3(local.as_dvec3()).normalize_or(DVec3::Y).as_vec3();
         for (hue, profile) in self.0 {

@@ -1,8 +1,9 @@
-//! Readers: one file a format, one row of [`MESH_FORMATS`] or [`SCENE_FORMATS`] each.
+//! Readers and writers of file formats. Each format has one file or folder, and one row of
+//! [`MESH_FORMATS`] or [`SCENE_FORMATS`].
 //!
-//! The files come from anywhere. Readers allocate in proportion to the bytes that are there, never
-//! to what a file promises, refuse numbers that are not finite and indices that lead nowhere, and
-//! collect errors with their places.
+//! Files may be hostile. Readers allocate in proportion to the actual number of bytes, never to a
+//! count that a file promises. They reject non-finite numbers and indices out of range, and collect
+//! errors with spans.
 
 pub mod beside;
 mod bodies;
@@ -50,55 +51,56 @@ pub use scene::{SCENE_FORMATS, scene_format_for};
 use signature::mistaken;
 use std::borrow::Cow;
 
-/// A format of mesh files.
+/// A mesh file format.
 pub struct MeshFormat {
-    /// Its name for people.
+    /// Display name.
     pub name: &'static str,
-    /// Endings of its files' names, in lower case, without the dot.
+    /// File name extensions in lower case, without the dot.
     pub extensions: &'static [&'static str],
-    /// Whether a file that begins with these bytes seems to be of this format.
+    /// Returns true if a file with these first bytes seems to be of this format.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file; the number goes into the spans. Errors go into the collection, and then there
-    /// is no mesh.
+    /// Reads a file; the number is its index, for spans. Returns `None` after pushing errors to the
+    /// diagnostics.
     pub read: fn(&[u8], u32, &mut Diagnostics) -> Option<MeshData>,
-    /// The same file as programs with some quirks know it.
+    /// Returns the part of a file that programs with these quirks read, with all bytes in place.
     pub known: fn(&[u8], CompatSet) -> Cow<'_, [u8]>,
     /// Writes a mesh.
     pub write: fn(&MeshData) -> Vec<u8>,
-    /// What is up in most models of this format.
+    /// Up axis of most models of this format.
     pub up: Axis,
 }
 
-/// The formats of mesh files, in the order in which they are tried on a file of unknown ending.
+/// The mesh formats, in the order in which they are tried on a file of unknown extension.
 pub const MESH_FORMATS: &[MeshFormat] = &[ply::FORMAT, obj::FORMAT, stl::FORMAT];
 
-/// No old program read the format.
+/// Returns the bytes unchanged: no legacy program reads the format.
 fn as_it_is(bytes: &[u8], _: CompatSet) -> Cow<'_, [u8]> {
     Cow::Borrowed(bytes)
 }
 
-/// The format of mesh files that the ending of a name says.
+/// Mesh format for the extension of a file name.
 pub fn mesh_format_for(name: &str) -> Option<&'static MeshFormat> {
     let extension = extension(name);
     MESH_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// Reads a mesh file in the format that its name's ending says or, where that is unknown, its
-/// content.
+/// Reads a mesh file. The format follows from the extension of its name or, if that is unknown,
+/// from its content.
 ///
-/// `file` is the number of the file in [`Files`](durer_diag::Files), for spans; `name` its name
-/// with ending.
+/// `file` is the index of the file in [`Files`](durer_diag::Files), for spans; `name` is its name
+/// with the extension.
 ///
 /// # Errors
 ///
-/// All errors are added to `diagnostics`, with the place of the offending bytes, and then the
-/// result is `None`. It is `None` too where `diagnostics` was full already. Warnings and notes are
+/// Adds all errors to `diagnostics`, with the spans of the offending bytes, and returns `None`. It
+/// also returns `None` if `diagnostics` was already full. Warnings and notes are added too, and
+/// leave the mesh usable.
 /// added likewise and leave the mesh usable.
 pub fn read_mesh(bytes: &[u8], file: u32, name: &str, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     read_mesh_as(bytes, file, name, 0, diagnostics)
 }
 
-/// The same, with some quirks of old programs.
+/// Reads a mesh file as [`read_mesh`] does, with quirks of legacy programs.
 pub fn read_mesh_as(
     bytes: &[u8],
     file: u32,
@@ -124,14 +126,14 @@ pub fn read_mesh_as(
     }
 }
 
-/// Spans count bytes in 32 bits: the error about a file of this size, if it is one.
+/// Returns an error if a file of this size is too large: spans are 32-bit.
 fn too_large(size: u64, name: &str) -> Option<Diagnostic> {
     const MOST: u64 = u32::MAX as u64 - 1;
     let message = || format!("`{name}` is too large for a mesh file: {size} bytes, at most {MOST}");
     (size > MOST).then(|| Diagnostic::error(message()).help("cut the mesh into several files"))
 }
 
-/// The ending of a file's name, in lower case, without the dot; empty where there is none.
+/// Extension of a file name in lower case, without the dot; empty if there is none.
 fn extension(name: &str) -> String {
     let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
     base.rsplit_once('.').map_or(String::new(), |(_, extension)| extension.to_lowercase())

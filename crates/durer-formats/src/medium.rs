@@ -1,4 +1,4 @@
-//! Media as pbrt and Mitsuba describe them, by absorption and scattering.
+//! Participating media of pbrt and Mitsuba, given by absorption and scattering coefficients.
 
 use super::said::Said;
 use durer_diag::Span;
@@ -9,25 +9,25 @@ use durer_scene::medium::Fog;
 use durer_scene::scene::Spanned;
 use glam::DAffine3;
 
-/// A medium that absorbs and scatters light; coefficients are per unit of length.
+/// A homogeneous or grid medium. Coefficients are per unit of length.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Medium {
-    /// The absorption coefficient.
+    /// Absorption coefficient.
     pub absorption: Color,
-    /// The scattering coefficient.
+    /// Scattering coefficient.
     pub scattering: Color,
-    /// The mean cosine of scattering.
+    /// Mean cosine of the phase function.
     pub anisotropy: f32,
-    /// Densities that multiply the coefficients; `None`: 1 everywhere.
+    /// Grid of factors of the coefficients; `None` if the medium is homogeneous.
     pub density: Option<Density>,
 }
 
-/// A grid of densities in the world.
+/// A density grid with its placement.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Density {
-    /// The name of an asset or file.
+    /// Name of an asset or a file.
     pub name: FileName,
-    /// From the unit cube to the world; none: the file's own box.
+    /// Transform from the unit cube to world space; `None`: the file's own bounds.
     pub placed: Option<DAffine3>,
 }
 
@@ -36,7 +36,7 @@ impl Medium {
         self.absorption + self.scattering
     }
 
-    /// Sets the interior of a material.
+    /// Sets the medium as the interior of a material.
     pub(super) fn fill(&self, m: &mut PrincipledMaterial) {
         let most = self.extinction().max_element();
         if most <= 0.0 {
@@ -55,7 +55,7 @@ impl Medium {
         }
     }
 
-    /// The fog of a medium around the camera; `None` where it is clear.
+    /// Fog for a medium around the camera; `None` if it is clear or cannot be represented.
     pub(super) fn fog(&self, at: Span, said: &Said) -> Option<Spanned<Fog>> {
         let extinction = self.extinction();
         let most = extinction.max_element();

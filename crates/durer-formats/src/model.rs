@@ -1,4 +1,4 @@
-//! What a format of scenes is: how its files are known, read and written.
+//! Description of a scene format: how to recognise, read and write its files.
 
 use durer_diag::{Diagnostics, Files};
 use durer_scene::dialect::MeshNormals;
@@ -7,55 +7,57 @@ use durer_scene::source::AssetSource;
 use std::cell::RefCell;
 use std::sync::Arc;
 
-/// A format of files that hold scenes, or models that become scenes.
+/// A file format of scenes, or of models that become scenes.
 pub struct SceneFormat {
-    /// Its name for people.
+    /// Display name.
     pub name: &'static str,
-    /// Endings of its files' names, in lower case, without the dot.
+    /// File name extensions in lower case, without the dot.
     pub extensions: &'static [&'static str],
-    /// Whether a file that begins with these bytes is of this format, whatever its name.
+    /// Returns true if a file with these first bytes is of this format, whatever its name.
     pub recognise: fn(&[u8]) -> bool,
-    /// Reads a file. Errors go into the collection, and then there is no scene.
+    /// Reads a file. Returns `None` after pushing errors to the diagnostics.
     pub read: fn(&Input, &mut Diagnostics) -> Option<Scene>,
-    /// Writes a scene; what the format has no words for is warned of. `None`: it is read only.
+    /// Writes a scene; warns about what the format cannot represent. `None`: the format is
+    /// read-only.
     pub write: Option<WriteScene>,
-    /// What is up in most models of this format.
+    /// Up axis of most models of this format.
     pub up: Axis,
-    /// Whether what has a camera is a whole scene, to which no light is added.
+    /// True if a file with a camera is a complete scene, to which no light is added.
     pub whole: bool,
-    /// What would shine in a scene that is dark, in words of the format; `None`: of ours.
+    /// The format's words for what could light a dark scene, for messages; `None`: the scene
+    /// language's words.
     pub shines: Option<&'static str>,
 }
 
-/// Writes a scene.
+/// Function that writes a scene.
 pub type WriteScene = fn(&Scene, &Output, &mut Diagnostics) -> Vec<u8>;
 
-/// What a writer needs beside the scene.
+/// Context of a writer, beside the scene.
 pub struct Output<'a> {
-    /// The name of the file, with ending.
+    /// Name of the file with its extension.
     pub name: &'a str,
-    /// Reads the files that the scene names.
+    /// Source of the files that the scene names.
     pub source: &'a dyn AssetSource,
-    /// How triangles without normals are meant.
+    /// Shading of triangles without normals.
     pub normals: MeshNormals,
-    /// Bytes that one of its pictures may take while it is decoded.
+    /// Memory limit in bytes for decoding one picture.
     pub memory: u64,
 }
 
-/// A file that is to become a scene.
+/// A file to read as a scene.
 pub struct Input<'a> {
-    /// Its bytes.
+    /// Bytes of the file.
     pub bytes: &'a Arc<[u8]>,
-    /// Its number in `files`, for spans.
+    /// Index of the file in `files`, for spans.
     pub file: u32,
-    /// The texts that were read, to which a reader adds those of further files.
+    /// Registered texts; a reader adds the further files that it reads.
     pub files: &'a RefCell<Files>,
-    /// Its last name, with ending.
+    /// File name with its extension, without its folder.
     pub name: &'a str,
-    /// Reads the files that it names.
+    /// Source of the files that the scene names.
     pub source: &'a dyn AssetSource,
-    /// How it is to be shown.
+    /// Defaults for what the scene lacks.
     pub staging: &'a Staging,
-    /// Bytes that one of its pictures may take while it is decoded.
+    /// Memory limit in bytes for decoding one picture.
     pub memory: u64,
 }

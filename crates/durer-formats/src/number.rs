@@ -1,20 +1,20 @@
-//! Numbers as they stand in text files.
+//! Parsing of numbers in text files.
 
 use super::report::{Report, shown};
 use std::ops::Range;
 
-/// Why a word is not a usable number.
+/// Reason why a word is not a usable number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum NumberError {
-    /// It is no number.
+    /// The word cannot be parsed as a number.
     Malformed,
-    /// It is no whole number where one is meant.
+    /// The word is not an integer where one is required.
     NotWhole,
-    /// It is infinite, not a number, or beyond the range of 32-bit floating point.
+    /// The word is infinite, NaN, or beyond the range of 32-bit floating point.
     NotFinite,
 }
 
-/// Reads a word as a number, correctly rounded.
+/// Parses a finite `f32`, correctly rounded.
 pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     if let Some(value) = quickly(word) {
         return Ok(value);
@@ -28,18 +28,18 @@ pub(super) fn parse_f32(word: &[u8]) -> Result<f32, NumberError> {
     }
 }
 
-/// Powers of ten that double precision holds exactly.
+/// Powers of ten that `f64` represents exactly.
 const TENS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
     1e21, 1e22,
 ];
 
-/// The number of a word of few digits; `None` for others, and where it could be rounded in another
-/// way than the best.
+/// Fast path for words of at most 15 digits; `None` for other words, and if the result might not be
+/// correctly rounded.
 ///
-/// Source: Clinger, *How to read floating point numbers accurately*, 1990: digits below 2^53 times
-/// or over an exact power of ten are rounded once. Rounding that to single precision errs only
-/// where it lies halfway between two such numbers.
+/// Source: Clinger, *How to read floating point numbers accurately*, 1990: multiplying or dividing
+/// an integer below 2^53 by an exact power of ten rounds once. Rounding that result to single
+/// precision errs only if it lies halfway between two `f32` values.
 fn quickly(word: &[u8]) -> Option<f32> {
     let (negative, mut rest) = match word {
         [b'-', rest @ ..] => (true, rest),
@@ -83,7 +83,7 @@ fn quickly(word: &[u8]) -> Option<f32> {
     (is_usual && !is_halfway).then_some(if negative { -value } else { value })
 }
 
-/// Whether a word is a not-finite number as C libraries print it: `-nan(ind)`, `1.#QNAN`,
+/// Returns true for non-finite numbers as C libraries print them: `-nan(ind)`, `1.#QNAN`,
 /// `-1.#IND00`.
 fn is_c_not_finite(word: &[u8]) -> bool {
     let unsigned = word.strip_prefix(b"-").or(word.strip_prefix(b"+")).unwrap_or(word);
@@ -91,13 +91,13 @@ fn is_c_not_finite(word: &[u8]) -> bool {
     is_nan || unsigned.strip_prefix(b"1.").is_some_and(is_not_finite_tail)
 }
 
-/// Whether bytes begin as Microsoft's C library continues a not-finite number after `1.`.
+/// Returns true if bytes begin with what Microsoft's C library prints after `1.` for non-finite
+/// numbers.
 pub(super) fn is_not_finite_tail(bytes: &[u8]) -> bool {
     [&b"#INF"[..], b"#IND", b"#QNAN", b"#SNAN"].iter().any(|tail| bytes.starts_with(tail))
 }
 
-/// Reads a word as a whole number; one beyond the range of `i64` becomes the nearest end of that
-/// range.
+/// Parses an integer. Values beyond the range of `i64` are clamped.
 pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     let (negative, digits) = match word {
         [b'-', digits @ ..] => (true, digits),
@@ -117,7 +117,7 @@ pub(super) fn parse_integer(word: &[u8]) -> Option<i64> {
     Some(if negative { -value } else { value })
 }
 
-/// Reports a word that should have been a number.
+/// Reports a word that is not the expected number.
 pub(super) fn report_number(report: &mut Report, error: NumberError, at: Range<usize>, word: &[u8]) {
     match error {
         NumberError::NotFinite => {
@@ -178,8 +178,7 @@ mod tests {
             }
         }
         assert!(quick > 120_000, "{quick}");
-        // Halfway between two numbers of single precision, and a little above: only the first is
-        // not settled at once.
+        // Halfway between two `f32` values, and slightly above: only the first needs the slow path.
         assert_eq!(quickly(b"16777217"), None);
         assert_eq!(quickly(b"16777217.5"), Some(16777218.0));
         assert_eq!(quickly(b"-0.0").map(f32::to_bits), Some((-0.0f32).to_bits()));

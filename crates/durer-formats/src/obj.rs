@@ -1,9 +1,9 @@
-//! Wavefront `.obj`: the polygons of it, without curves and surfaces; `scene.rs` adds the materials
-//! of `.mtl` files.
+//! Reader of Wavefront `.obj` files: polygons, lines and points, without curves and surfaces.
+//! `scene.rs` adds the materials of `.mtl` files.
 //!
-//! The file is read twice: positions, texture coordinates and normals first, then the faces, which
-//! may refer to vertices further down. So nothing but the mesh itself is kept. Both times its parts
-//! are read side by side.
+//! The file is read in two passes: positions, texture coordinates and normals first, then the
+//! faces, which may refer to vertices further down. So only the mesh itself is kept in memory. Both
+//! passes read parts of the file in parallel.
 
 mod faces;
 mod materials;
@@ -26,33 +26,33 @@ use std::ops::Range;
 use words::Words;
 use write::write;
 
-/// What a statement is to us, by its first word.
+/// Kind of a statement, by its first word.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Statement {
     Position,
     Uv,
     Normal,
     Face,
-    /// What has no surface: a mesh has none of it, a scene shows it.
+    /// Lines have no surface: mesh readers ignore them, scene readers show them. So with points.
     Line,
     Point,
-    /// Names the material of what follows.
+    /// Sets the material of the following statements.
     Material,
-    /// Names files of materials.
+    /// Names material files.
     Library,
-    /// Says with which others the following faces are smooth, where they have no normals.
+    /// Sets the smoothing group of the following faces, which smooths those without normals.
     Smoothing,
-    /// Known, and without effect on the mesh.
+    /// Known, but without effect on the mesh.
     Ignored,
 }
 
-/// The statements that are understood, by their first word.
+/// The supported statements by their first word.
 const STATEMENTS: &[(&str, Statement)] = &[
     ("v", Statement::Position),
     ("vt", Statement::Uv),
     ("vn", Statement::Normal),
     ("f", Statement::Face),
-    // The name of `f` before version 2.11.
+    // Name of `f` before version 2.11.
     ("fo", Statement::Face),
     ("o", Statement::Ignored),
     ("g", Statement::Ignored),
@@ -74,7 +74,7 @@ const STATEMENTS: &[(&str, Statement)] = &[
 ];
 
 fn statement(word: &[u8]) -> Option<Statement> {
-    // The two that make up nearly all of a file need no search.
+    // Fast path: these two make up nearly all of a file.
     match word {
         b"v" => Some(Statement::Position),
         b"f" => Some(Statement::Face),
@@ -82,7 +82,7 @@ fn statement(word: &[u8]) -> Option<Statement> {
     }
 }
 
-/// The format of meshes.
+/// The Wavefront mesh format.
 pub(super) const FORMAT: MeshFormat = MeshFormat {
     name: "Wavefront OBJ",
     extensions: &["obj"],
@@ -93,7 +93,7 @@ pub(super) const FORMAT: MeshFormat = MeshFormat {
     up: Axis::Y,
 };
 
-/// Whether the first statement is one of this format, and not merely a word that could be anything.
+/// Returns true if the first word is a keyword of this format.
 fn recognise(bytes: &[u8]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 16)];
     Words::new(head).next_statement().is_some_and(|word| statement(&head[word]).is_some())
@@ -104,19 +104,19 @@ fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<MeshDa
     read_with(bytes, file, &mut Switches::default(), diagnostics)
 }
 
-/// From which triangle on something is current, and what.
+/// A state change: index of the first triangle that it applies to, and the new state.
 type Switch<T> = (usize, T);
 
-/// What changes from face to face.
+/// State changes between the faces of a file.
 #[derive(Default)]
 struct Switches {
-    /// Where the material is named.
+    /// Range of the material's name.
     materials: Vec<Switch<Range<usize>>>,
-    /// The number of the smoothing group; 0 for none.
+    /// Number of the smoothing group; 0 for none.
     groups: Vec<Switch<u32>>,
 }
 
-/// The same, with what changes from face to face.
+/// Reads a mesh and the state changes between its faces.
 fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut Diagnostics) -> Option<MeshData> {
     let mut report = Report::new(file, diagnostics);
     let mut mesh = MeshData::default();
@@ -135,23 +135,23 @@ fn read_with(bytes: &[u8], file: u32, switches: &mut Switches, diagnostics: &mut
     report.finish(diagnostics, mesh)
 }
 
-/// What a part of a file has of vertices.
+/// Vertices of one part of a file.
 struct Vertices {
     mesh: MeshData,
-    /// The first statement that is not understood, and how many are.
+    /// Range of the first unsupported statement, and the number of such statements.
     unknown: Option<(Range<usize>, usize)>,
     report: Report,
 }
 
-/// How many positions, texture coordinates and normals there are.
+/// Number of positions, texture coordinates and normals.
 type Counts = [usize; 3];
 
 fn counts(mesh: &MeshData) -> Counts {
     [mesh.positions.len(), mesh.uvs.len(), mesh.normals.len()]
 }
 
-/// Reads positions, texture coordinates and normals, and looks at the first word of everything
-/// else. Gives how many there are before each part.
+/// Reads positions, texture coordinates and normals, and checks the keywords of all other
+/// statements. Returns the counts before each part.
 fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, report: &mut Report) -> Vec<Counts> {
     let read = |part: &Range<usize>| vertices(bytes, part.clone(), report.part());
     let read: Vec<Vertices> = parts.par_iter().map(read).collect();
@@ -191,7 +191,7 @@ fn read_vertices(bytes: &[u8], parts: &[Range<usize>], mesh: &mut MeshData, repo
     before
 }
 
-/// The same of one part.
+/// Reads the vertices of one part.
 fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     let (mut mesh, mut unknown) = (MeshData::default(), None::<(Range<usize>, usize)>);
     let mut words = Words::within(bytes, part);
@@ -200,7 +200,7 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
             Some(Statement::Position) => {
                 let ([x, y, z, r, g, b], count) = numbers(bytes, keyword, 3, 3, &mut words, &mut report);
                 mesh.positions.push(Vec3::new(x, y, z));
-                // After the place a vertex may have a weight, or a colour.
+                // The position may be followed by a weight or a colour.
                 if count == 6 {
                     mesh.colors.resize(mesh.positions.len() - 1, [1.0; 4]);
                     let [r, g, b] = [r, g, b].map(decode);
@@ -231,17 +231,16 @@ fn vertices(bytes: &[u8], part: Range<usize>, mut report: Report) -> Vertices {
     Vertices { mesh, unknown, report }
 }
 
-/// A colour's value as programs write it: by sRGB's curve, from 0 to 1. What is no such number is
-/// white.
+/// Decodes an sRGB value in [0, 1]. Any other value, or NaN, becomes 1.
 fn decode(value: f32) -> f32 {
     if (0.0..=1.0).contains(&value) { durer_image::decode_srgb((value * 255.0 + 0.5) as u8) } else { 1.0 }
 }
 
-/// Reads the numbers of a statement and their count. The first `needed` must be there, the first
-/// `sound` finite; what is not there or wrong is 0.
+/// Reads the numbers of a statement; returns them and their count. The first `needed` are required,
+/// and the first `sound` must be finite; missing or invalid ones are 0.
 ///
-/// More numbers may follow, such as weights and colours. They must be numbers, or two lines have
-/// run together.
+/// More numbers may follow, such as weights and colours. Other words there are errors, since they
+/// indicate that two lines were joined.
 fn numbers<const N: usize>(
     bytes: &[u8],
     keyword: Range<usize>,
@@ -258,7 +257,7 @@ fn numbers<const N: usize>(
         match parse_f32(&bytes[word.clone()]) {
             Ok(value) if count < N => values[count] = value,
             Ok(_) => {}
-            // The rest may be infinite: it is looked at by nobody, or is a colour that is none.
+            // The others may be infinite: they are unused, or a colour that `decode` handles.
             Err(NumberError::NotFinite) if count >= sound => _ = values.get_mut(count).map(|value| *value = f32::NAN),
             Err(error) => report_number(report, error, word.clone(), &bytes[word]),
         }

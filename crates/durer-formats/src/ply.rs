@@ -1,4 +1,5 @@
-//! Stanford `.ply`: text and binary, in either byte order, with whatever elements and properties.
+//! Reader and writer of Stanford `.ply` meshes: text and binary in both byte orders, with any
+//! elements and properties.
 
 mod body;
 mod fixed;
@@ -18,11 +19,11 @@ use values::{AsciiValues, BinaryValues};
 use write::write;
 pub(super) use write::write_whole;
 
-/// The format of meshes.
+/// The PLY mesh format.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "PLY", extensions: &["ply"], recognise, read, known: as_it_is, write, up: Axis::Y };
 
-/// Whether a file begins as files of this format do.
+/// Returns true if a file begins as a PLY file does.
 fn recognise(bytes: &[u8]) -> bool {
     matches!(bytes, [b'p', b'l', b'y', b'\n' | b'\r', ..])
 }

@@ -1,27 +1,27 @@
-//! Cutting polygons into triangles.
+//! Triangulation of polygons.
 //!
-//! A polygon of n corners becomes n - 2 triangles that wind as it does and use no other points.
-//! Strictly convex ones become fans; others lose their ears one by one in the plane that shows most
-//! of them. Source: Meisters, *Polygons have ears*, 1975; O'Rourke, *Computational Geometry in C*,
-//! chapter 1.
+//! A polygon of n corners becomes n - 2 triangles with its winding and without further vertices.
+//! Strictly convex polygons become fans; others are projected onto the coordinate plane of their
+//! largest projected area and cut by ear clipping. Source: Meisters, *Polygons have ears*, 1975;
+//! O'Rourke, *Computational Geometry in C*, chapter 1.
 
 use durer_scene::math::Vec3;
 use std::collections::VecDeque;
 
-/// The polygons of a file are too large and too crooked to be cut in reasonable time.
+/// Error: the polygons of a file are too large and too irregular to be cut in reasonable time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TooComplex;
 
-/// Cuts the polygons of one file, with bounded work and memory that is used again.
+/// Triangulates the polygons of one file with bounded work. Reuses its buffers.
 #[derive(Default)]
 pub(super) struct Cutter {
-    /// How many more tests of a point against a triangle may be made.
+    /// Remaining point-in-triangle tests.
     budget: u64,
-    /// The corners in their plane, counter-clockwise.
+    /// Projected corners, counter-clockwise.
     points: Vec<[f64; 2]>,
     previous: Vec<u32>,
     next: Vec<u32>,
-    /// Whether a corner is left and not strictly convex: only those can lie in an ear.
+    /// True for remaining corners that are not strictly convex: only those can lie in an ear.
     blocks: Vec<bool>,
     blockers: Vec<u32>,
     /// Corners that may be ears.
@@ -30,14 +30,14 @@ pub(super) struct Cutter {
 }
 
 impl Cutter {
-    /// For a file of this many bytes: the work stays proportional to its size, and never takes
-    /// hours.
+    /// Creates a cutter for a file of this many bytes. The limit on work grows with the size of the
+    /// file, and is low enough to end within reasonable time.
     pub fn new(file_bytes: usize) -> Self {
         Cutter { budget: (1 << 28) + 256 * file_bytes as u64, ..Cutter::default() }
     }
 
-    /// Calls `emit` with the three corners of each triangle, counted from 0, of the polygon with
-    /// `count` corners.
+    /// Calls `emit` with the three corner indices of each triangle of a polygon with `count`
+    /// corners.
     pub fn cut(
         &mut self,
         count: usize,
@@ -64,10 +64,10 @@ impl Cutter {
         Ok(())
     }
 
-    /// Drops the axis along which the polygon's normal is longest, such that the rest winds
-    /// counter-clockwise.
+    /// Drops the axis with the largest component of the polygon's normal, such that the projection
+    /// winds counter-clockwise.
     fn project(&mut self, count: usize, corner: impl Fn(usize) -> Vec3) {
-        // Newell's normal: the sum of the areas over the edges, seen from the first corner.
+        // Newell's normal: sum of the signed areas over the edges, relative to the first corner.
         let origin = corner(0).as_dvec3();
         let from_origin = |i: usize| corner(i).as_dvec3() - origin;
         let normal = (1..count - 1).fold(glam::DVec3::ZERO, |n, i| n + from_origin(i).cross(from_origin(i + 1)));
@@ -82,13 +82,13 @@ impl Cutter {
         self.points.extend((0..count).map(|i| [from_origin(i)[u], from_origin(i)[v]]));
     }
 
-    /// Whether all corners turn left and the outline goes round once.
+    /// Returns true if all corners turn left and the outline winds once.
     fn is_strictly_convex(&self) -> bool {
         let points = &self.points;
         let count = points.len();
         let at = |i: usize| points[i % count];
-        // A pentagram turns left everywhere too, but its edges change their horizontal sense four
-        // times.
+        // A pentagram turns left everywhere too, but its edges change their horizontal direction
+        // four times.
         let rightward = |i: usize| at(i + 1)[0] > at(i)[0] || at(i + 1)[0] == at(i)[0] && at(i + 1)[1] > at(i)[1];
         let turns = (0..count).filter(|&i| rightward(i) != rightward(i + 1)).count();
         turns <= 2 && (0..count).all(|i| area(at(i), at(i + 1), at(i + 2)) > 0.0)
@@ -102,7 +102,7 @@ impl Cutter {
             let Some(tip) = self.next_ear(left)? else { continue };
             let (before, after) = (self.previous[tip as usize], self.next[tip as usize]);
             emit([before, tip, after].map(|i| i as usize));
-            // The tip leaves the ring; only its neighbours' corners change.
+            // Remove the tip from the ring; only its neighbours' corners change.
             self.next[before as usize] = after;
             self.previous[after as usize] = before;
             self.next[tip as usize] = u32::MAX;
@@ -137,17 +137,17 @@ impl Cutter {
         }
         self.blockers.clear();
         self.blockers.extend((0..count).filter(|&i| self.blocks[i as usize]));
-        // Every other corner first: neighbouring ears would make slivers.
+        // Every other corner first: cutting neighbouring ears would make slivers.
         self.candidates.clear();
         self.candidates.extend((0..count).step_by(2).chain((1..count).step_by(2)));
         self.waiting.clear();
         self.waiting.resize(count as usize, true);
     }
 
-    /// The next corner to cut off, or `None` where the next candidate is no ear.
+    /// Next corner to cut off; `None` if the next candidate is not an ear.
     fn next_ear(&mut self, left: u32) -> Result<Option<u32>, TooComplex> {
         let Some(tip) = self.candidates.pop_front() else {
-            // Outlines that cross themselves can run out of ears: cut off what harms least.
+            // Self-intersecting outlines can run out of ears: cut off the least harmful corner.
             self.spend(self.points.len() as u64)?;
             return Ok(Some(self.least_harm(left)));
         };
@@ -156,7 +156,7 @@ impl Cutter {
         Ok((!gone && self.is_ear(tip)?).then_some(tip))
     }
 
-    /// Whether a corner is strictly convex and no other corner lies in its triangle.
+    /// Returns true if a corner is strictly convex and no other corner lies in its triangle.
     fn is_ear(&mut self, tip: u32) -> Result<bool, TooComplex> {
         let [a, b, c] = self.triangle(tip);
         if area(a, b, c) <= 0.0 {
@@ -171,8 +171,8 @@ impl Cutter {
                 continue;
             }
             let p = self.points[blocker];
-            // Outlines with holes pass some points twice: one at a corner of the triangle does not
-            // lie in it.
+            // Outlines with holes pass some points twice, so a point equal to a corner of the
+            // triangle does not count as inside.
             let inside = area(a, b, p) >= 0.0 && area(b, c, p) >= 0.0 && area(c, a, p) >= 0.0;
             if inside && p != a && p != b && p != c {
                 return Ok(false);
@@ -182,7 +182,7 @@ impl Cutter {
         Ok(true)
     }
 
-    /// A corner of no area, else a convex one, else any.
+    /// Returns a corner of zero area, else a convex one, else any.
     fn least_harm(&self, left: u32) -> u32 {
         let first = self.any_left();
         let ring = || std::iter::successors(Some(first), |&i| Some(self.next[i as usize])).take(left as usize);
@@ -213,8 +213,8 @@ impl Cutter {
     }
 }
 
-/// Whether a quadrilateral is cut from its first to its third corner: unless only the other cut
-/// stays inside.
+/// Returns true if a quadrilateral is split along the diagonal from its first corner: always,
+/// unless only the other diagonal lies inside.
 fn splits_at_first(corners: [Vec3; 4]) -> bool {
     let [a, b, c, d] = corners.map(|p| p.as_dvec3());
     let normal = (c - a).cross(d - b);
@@ -224,7 +224,7 @@ fn splits_at_first(corners: [Vec3; 4]) -> bool {
     first || !second
 }
 
-/// Twice the area of a triangle, positive where it is counter-clockwise.
+/// Twice the signed area of a triangle, positive if it is counter-clockwise.
 fn area(a: [f64; 2], b: [f64; 2], c: [f64; 2]) -> f64 {
     (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 }

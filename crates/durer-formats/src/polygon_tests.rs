@@ -1,11 +1,11 @@
 use super::*;
 
-/// The triangles of a polygon in a tilted plane, and twice the sum of their areas against the
-/// polygon's normal.
+/// Triangulates a polygon in a tilted plane; returns the triangles and twice their areas, signed
+/// relative to the polygon's normal.
 fn cut(outline: &[[f32; 2]]) -> (Vec<[usize; 3]>, Vec<f64>) {
     let corner = |i: usize| {
         let [x, y] = outline[i];
-        // An affine map of determinant 1 in the xy-plane, so areas seen along z stay.
+        // An affine map of determinant 1 in the xy plane: areas projected along z are unchanged.
         Vec3::new(x, y, 0.25 * x + 0.5 * y)
     };
     let mut triangles = Vec::new();
@@ -40,7 +40,7 @@ fn concave_outlines_keep_their_area_and_sense() {
             [x as f32, y as f32]
         })
         .collect();
-    // A square with a square hole, joined by a bridge that is passed twice.
+    // A square with a square hole, joined by a bridge that is traversed twice.
     let ring =
         [[0, 0], [4, 0], [4, 4], [0, 4], [0, 0], [1, 1], [1, 3], [3, 3], [3, 1], [1, 1]].map(|p| p.map(|c| c as f32));
     let comb: Vec<[f32; 2]> = (0..200)
@@ -49,7 +49,7 @@ fn concave_outlines_keep_their_area_and_sense() {
         .collect();
     for outline in [&dart[..], &l, &star, &ring, &comb] {
         let outline = outline.to_vec();
-        // Every corner first, both senses.
+        // Every corner first, both windings.
         for start in 0..outline.len() {
             let mut turned = outline.clone();
             turned.rotate_left(start);

@@ -1,33 +1,32 @@
-//! What a reader of one file has to say about it.
+//! Collector of the diagnostics of one file.
 
 use durer_diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Severity, Span};
 use std::ops::Range;
 
-/// Collects the findings of one file and hands them on in the order of their places.
+/// Collects the diagnostics of one file and forwards them in the order of their spans.
 ///
-/// Readers may go over a file more than once; whoever reads the findings should not notice.
+/// Readers may process a file in several passes; sorting hides this from the user.
 pub(super) struct Report {
     file: u32,
     found: Vec<Diagnostic>,
     errors: usize,
-    /// How many errors may still be collected.
+    /// Maximum number of errors.
     room: usize,
 }
 
 impl Report {
-    /// An empty report on a file, with the room for errors that `diagnostics` has left.
+    /// Creates an empty report for a file, limited to the errors that `diagnostics` can still take.
     pub fn new(file: u32, diagnostics: &Diagnostics) -> Self {
         let room = ERROR_LIMIT.saturating_sub(diagnostics.error_count());
         Report { file, found: Vec::new(), errors: 0, room }
     }
 
-    /// An empty report on a part of the same file, to be joined to this one.
+    /// Creates an empty report for a part of the file, to be joined to this one.
     pub fn part(&self) -> Report {
         Report { file: self.file, found: Vec::new(), errors: 0, room: self.room.saturating_sub(self.errors) }
     }
 
-    /// Adds what was found in the next part, as far as there is room for errors: as if the parts
-    /// were one.
+    /// Appends the report of the next part, up to the limit of errors, as if both were one part.
     pub fn join(&mut self, part: Report) {
         for diagnostic in part.found {
             if self.is_full() {
@@ -38,22 +37,20 @@ impl Report {
         }
     }
 
-    /// Adds an error at a range of bytes; what it returns takes a label or help.
+    /// Adds an error at a byte range; labels and help can be set on the returned diagnostic.
     pub fn error(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::error(message))
     }
 
-    /// Adds a warning.
     pub fn warning(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::warning(message))
     }
 
-    /// Adds a note.
     pub fn note(&mut self, at: Range<usize>, message: impl Into<String>) -> &mut Diagnostic {
         self.add(at, Diagnostic::note(message))
     }
 
-    /// Adds a finding at a range of bytes.
+    /// Adds a diagnostic at a byte range.
     pub fn add(&mut self, at: Range<usize>, diagnostic: Diagnostic) -> &mut Diagnostic {
         if diagnostic.severity == Severity::Error {
             self.errors += 1;
@@ -63,38 +60,39 @@ impl Report {
         &mut self.found[index]
     }
 
-    /// A range of bytes as a span. `read_mesh` has made sure that the file is small enough.
+    /// Span of a byte range. [`read_mesh`](crate::read_mesh) has checked that the file is small
+    /// enough.
     pub fn span(&self, at: Range<usize>) -> Span {
         Span { file: self.file, start: at.start as u32, end: at.end as u32 }
     }
 
-    /// Whether there is an error.
+    /// Returns true if there is an error.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
-    /// Whether reading on is of no use: no more errors are collected.
+    /// Returns true if no more errors are collected, so that reading on is useless.
     pub fn is_full(&self) -> bool {
         self.errors >= self.room
     }
 
-    /// How many findings of all kinds there are.
+    /// Number of diagnostics of all severities.
     pub fn count(&self) -> usize {
         self.found.len()
     }
 
-    /// Hands everything on, sorted by place; `result` only where there was no error.
+    /// Forwards all diagnostics, sorted by position; returns `result` if there was no error.
     pub fn finish<T>(mut self, diagnostics: &mut Diagnostics, result: T) -> Option<T> {
         self.found.sort_by_key(|diagnostic| diagnostic.span.map_or(u32::MAX, |span| span.start));
         let failed = self.found.iter().any(|diagnostic| diagnostic.severity == Severity::Error);
-        // A report without room never read anything to the end.
+        // A full report means that reading stopped early.
         let complete = !failed && self.room > 0;
         self.found.into_iter().for_each(|diagnostic| diagnostics.push(diagnostic));
         complete.then_some(result)
     }
 }
 
-/// A piece of a file as it is shown in a message: in backquotes, printable, not too long.
+/// Quotes a piece of a file for a message: in backquotes, escaped, at most 40 characters.
 pub(super) fn shown(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * LONGEST)]);

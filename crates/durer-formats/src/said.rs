@@ -1,51 +1,52 @@
-//! What there is to say of a file, collected from everywhere.
+//! Collector of the diagnostics of a file, shared by the parts of a reader.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-/// Findings, and what was said already.
+/// Diagnostics, and the messages that are reported once only.
 #[derive(Default)]
 pub(crate) struct Said {
     found: RefCell<Diagnostics>,
     once: RefCell<BTreeSet<String>>,
 }
 
-/// The code of what is not rendered as its format has it.
+/// Code of warnings about content that cannot be rendered as its format specifies.
 pub(crate) const NO_COUNTERPART: &str = "NO_COUNTERPART";
 
 impl Said {
-    /// Adds a finding.
+    /// Adds a diagnostic.
     pub fn push(&self, diagnostic: Diagnostic) {
         self.found.borrow_mut().push(diagnostic);
     }
 
-    /// Adds all findings of a reader of another file.
+    /// Adds the diagnostics of another file's reader.
     pub fn extend(&self, others: Diagnostics) {
         self.found.borrow_mut().extend(others);
     }
 
-    /// A wrong value.
+    /// Reports an invalid value.
     pub fn bad(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::error(message).code("bad-value").at(at));
     }
 
-    /// A wrong value, and what would be right.
+    /// Reports an invalid value with a suggestion.
     pub fn bad_with(&self, at: Span, message: impl Into<String>, help: Option<String>) {
         self.push(Diagnostic { help, ..Diagnostic::error(message).code("bad-value").at(at) });
     }
 
-    /// What is not rendered as the format has it, and what is taken instead.
+    /// Warns that something cannot be rendered as the format specifies; the message names the
+    /// substitute.
     pub fn other(&self, at: Span, message: impl Into<String>) {
         self.push(Diagnostic::warning(message).code(NO_COUNTERPART).at(at));
     }
 
-    /// The same, once for all that is told by the same words.
+    /// Warns as [`Said::other`] does, but once per message.
     pub fn once(&self, at: Span, message: impl Into<String>) {
         self.warn_once(NO_COUNTERPART, at, message);
     }
 
-    /// A warning of a code, once for all that is told by the same words.
+    /// Warns with a code, once per message.
     pub fn warn_once(&self, code: &'static str, at: Span, message: impl Into<String>) {
         let message = message.into();
         if self.once.borrow_mut().insert(message.clone()) {
@@ -53,23 +54,23 @@ impl Said {
         }
     }
 
-    /// Whether no more errors are collected.
+    /// Returns true if no more errors are collected.
     pub fn is_full(&self) -> bool {
         self.found.borrow().is_full()
     }
 
-    /// Whether there is an error.
+    /// Returns true if there is an error.
     pub fn has_errors(&self) -> bool {
         self.found.borrow().has_errors()
     }
 
-    /// Everything.
+    /// Returns all diagnostics.
     pub fn finish(self) -> Diagnostics {
         self.found.into_inner()
     }
 }
 
-/// Help that names a word like the one that is written.
+/// Help text that suggests a similar word, if there is one.
 pub(crate) fn meant<'a>(word: &str, known: impl IntoIterator<Item = &'a str>) -> Option<String> {
     durer_diag::did_you_mean(word, known).map(|meant| format!("did you mean `{meant}`?"))
 }

@@ -1,4 +1,4 @@
-//! Readers of whole scenes: one row of [`SCENE_FORMATS`] each. What is a mesh alone is a scene of
+//! Readers of whole scenes, one row of [`SCENE_FORMATS`] each. A mesh file is read as a scene of
 //! one mesh.
 
 use super::model::SceneFormat;
@@ -21,8 +21,8 @@ use glam::DVec3;
 use std::path::Path;
 use std::sync::Arc;
 
-/// The formats of models, in the order in which content is tried. What is none of them is in the
-/// course's language.
+/// The scene formats, in the order in which content is tried. Any other file is in the scene
+/// language.
 pub const SCENE_FORMATS: &[SceneFormat] = &[
     gltf::FORMAT,
     pbrt::FORMAT,
@@ -34,29 +34,29 @@ pub const SCENE_FORMATS: &[SceneFormat] = &[
     alone(&stl::FORMAT),
 ];
 
-/// A mesh that is a whole model.
+/// Scene format of files that contain one mesh.
 const fn alone(format: &MeshFormat) -> SceneFormat {
     let MeshFormat { name, extensions, recognise, up, .. } = *format;
     SceneFormat { name, extensions, recognise, read: one_mesh, write: None, up, whole: false, shines: None }
 }
 
-/// Rows of a picture of all directions that is turned.
+/// Maximum height in pixels of an environment map that is resampled to another up axis.
 const MAX_ROWS: u32 = 2048;
 
-/// The format of scenes that the ending of a name says.
+/// Scene format for the extension of a file name.
 pub fn scene_format_for(name: &str) -> Option<&'static SceneFormat> {
     let extension = extension(name);
     SCENE_FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
 }
 
-/// The format of a file that is a model: by its content, or failing that by its name. `None`: it is
-/// text of the course's language, or nothing that is known.
+/// Format of a model: by the extension of its name, else by its content. `None`: the file is in the
+/// scene language, or of an unknown format.
 pub fn find_scene_format(bytes: &[u8], name: &str) -> Option<&'static SceneFormat> {
     scene_format_for(name).or_else(|| SCENE_FORMATS.iter().find(|format| (format.recognise)(bytes)))
 }
 
-/// The error about a file that is read as of a format, or of the course's language, and by its first
-/// bytes is of another.
+/// Error for a file that is read as one format (`None`: the scene language) while its first bytes
+/// are of another.
 pub fn other_format(bytes: &[u8], file: u32, name: &str, format: Option<&SceneFormat>) -> Option<Diagnostic> {
     mistaken(bytes, file, name, format.map_or(&[], |format| format.extensions))
 }
@@ -86,7 +86,7 @@ pub fn read_model(format: &SceneFormat, input: &Input, diagnostics: &mut Diagnos
     Some(scene)
 }
 
-/// A file that an option names, wherever it is, with its name.
+/// Reads a file that an option names, at any path. Returns its name and bytes.
 fn named(input: &Input, path: &Path, diagnostics: &mut Diagnostics) -> Option<(String, Arc<[u8]>)> {
     let read = input.source.read_user_file(path);
     let refuse = |error: SourceError| diagnostics.push(Diagnostic::error(error.to_string()).code("missing-file"));
@@ -99,7 +99,7 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     let data = read_mesh(input.bytes, input.file, input.name, diagnostics)?;
     input.files.borrow_mut().cut(input.file, 0, diagnostics);
     let data = if data.triangles.is_empty() && !data.positions.is_empty() {
-        // Vertices alone are a cloud of points.
+        // A file of vertices without faces is a point cloud.
         let points: Vec<u32> = (0..data.positions.len() as u32).collect();
         let note = Diagnostic::note(sticks::explained(0, points.len())).code("points-and-lines");
         diagnostics.push(note.at(span));
@@ -113,8 +113,8 @@ fn one_mesh(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// Surrounds the scene with an environment picture, instead of its background and directional
-/// lights. The picture's upper border is `up`.
+/// Replaces the background and the directional lights with an environment map. The map's upper
+/// border points along `up`.
 fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u64) -> Result<(), ImageError> {
     scene.background = Background { color: Vec3::ZERO, ..Background::default() };
     let near = |light: &Spanned<Light>| light.value.position().is_some();
@@ -122,7 +122,7 @@ fn surround(scene: &mut Scene, name: &str, bytes: Arc<[u8]>, up: Axis, memory: u
     let decoded = || Encoded::open(&bytes, name).and_then(|encoded| encoded.read(memory, image::decode_srgb));
     let sides = Sides::new(up);
     let turned = |dir: DVec3| DVec3::new(dir.dot(sides.right), dir.dot(sides.up), dir.dot(sides.front));
-    // What cannot be read is told when the scene is compiled.
+    // Compiling the scene reports pictures that cannot be decoded.
     if let Some(picture) = (up != Axis::Y).then(decoded).and_then(Result::ok) {
         let light = |dir: DVec3| panorama::looked_up(&picture, turned(dir));
         let memory = panorama::beside([&picture], memory);

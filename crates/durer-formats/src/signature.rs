@@ -1,9 +1,9 @@
-//! First bytes that tell of what format a file is, whatever its name says.
+//! Signatures of file formats: first bytes that identify a file, whatever its name.
 
 use durer_diag::{Diagnostic, Span};
 
-/// Beginnings of files: the bytes, what such a file is, and the ending that its name should have;
-/// none where nothing here reads it as a scene.
+/// Signatures: the bytes, the kind of file, and the extension that its name should have, or `None`
+/// if it is not read as a scene.
 const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"glTF", "binary glTF", Some("glb")),
     (b"ply\n", "PLY", Some("ply")),
@@ -21,8 +21,8 @@ const SIGNATURES: &[(&[u8], &str, Option<&str>)] = &[
     (b"#usda", "USD", None),
 ];
 
-/// The error about a file that is of another format than that as which it is read, which has these
-/// endings.
+/// Returns an error if the signature of a file contradicts its format, whose extensions are
+/// `extensions`.
 pub(super) fn mistaken(bytes: &[u8], file: u32, name: &str, extensions: &[&str]) -> Option<Diagnostic> {
     let (start, what, own) = SIGNATURES.iter().find(|(start, ..)| bytes.starts_with(start))?;
     if own.is_some_and(|own| extensions.contains(&own)) {

@@ -1,4 +1,4 @@
-//! Normals for meshes of files that have none, but are smooth.
+//! Vertex normals for meshes that are smooth but have no normals in their file.
 
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::MeshData;
@@ -6,9 +6,11 @@ use durer_scene::shape::mesh::NO_INDEX;
 use std::array::from_fn;
 use std::collections::HashMap;
 
-/// Gives the triangles without normals one at each vertex: the mean of those of the faces around it,
-/// by their angles there. `part` says of the corner of a triangle, by numbers, which of several
-/// vertices at its position it is; `None` for triangles that stay as they are.
+/// Computes normals for the triangles without any: at each vertex the mean of the adjacent face
+/// normals, weighted by the angle of each face there.
+///
+/// `part(triangle, corner)` separates vertices at the same position: corners share a normal if they
+/// have the same position and part. `None` leaves the triangle as it is.
 ///
 /// Source: Thürmer and Wüthrich, *Computing Vertex Normals from Polygonal Facets*, Journal of
 /// Graphics Tools 3(1), 1998.

@@ -1,11 +1,12 @@
-//! What has no surface as something that is seen: lines as sticks, points as balls.
+//! Visible geometry for lines and points, which have no surface: sticks and balls.
 
 use super::report::counted;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Node;
 use durer_scene::shape::{Cone, Cylinder, MeshData, Sphere};
 
-/// A stick from a point to another with a radius at each; `None` where they are the same.
+/// A cylinder or cone from a point to another, with a radius at each; `None` if the points
+/// coincide.
 pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Node> {
     let shape = match first == last {
         true => Cylinder { base: from, top: to, radius: first }.into(),
@@ -14,25 +15,25 @@ pub(super) fn stick(from: Vec3, to: Vec3, [first, last]: [f32; 2]) -> Option<Nod
     (from != to).then_some(Node::Primitive(shape))
 }
 
-/// A ball about a point.
+/// A sphere at a point.
 pub(super) fn ball(center: Vec3, radius: f32) -> Node {
     Node::Primitive(Sphere { center, radius }.into())
 }
 
-/// Sides of a stick of triangles.
+/// Number of sides of a stick made of triangles.
 const SIDES: u32 = 6;
-/// The radius of lines without one, as a share of the size of what they belong to, and of points.
+/// Radii of lines without one and of points, as fractions of the diagonal of the bounds.
 const LINE: f32 = 0.006;
 const POINT: f32 = 0.015;
-/// Lines and points that become triangles at most; of more, every second or third is shown.
+/// Maximum number of lines, and of points, that become geometry. Of more, every n-th is shown.
 const MAX: usize = 1 << 21;
 
-/// Of how many lines or points one is shown.
+/// Step such that one in `step` of `count` items is shown.
 fn step(count: usize) -> usize {
     count.div_ceil(MAX).max(1)
 }
 
-/// What is said of lines and points that are thickened.
+/// Message about lines and points that are shown as sticks and balls.
 pub(super) fn explained(lines: usize, points: usize) -> String {
     let all =
         [(lines, "line", "lines"), (points, "point", "points")].map(|(count, one, many)| match (count, step(count)) {
@@ -44,14 +45,15 @@ pub(super) fn explained(lines: usize, points: usize) -> String {
     format!("{all} without a surface: thin sticks and small balls are shown")
 }
 
-/// What has lines between vertices, and vertices alone, as thin sticks and small balls of
-/// triangles. Vertices keep their colours and coordinates.
+/// Builds thin sticks for lines between vertices and small balls for single vertices, all of
+/// triangles. Vertices keep their colours and texture coordinates.
 pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> MeshData {
     let used = || lines.iter().flatten().chain(points).map(|&i| data.positions[i as usize]);
     let low = used().reduce(Vec3::min).unwrap_or_default();
     let size = (used().reduce(Vec3::max).unwrap_or_default() - low).length();
     let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
-    // Balls of a dense cloud touch their neighbours on a surface.
+    // Limits the radius so that balls of a dense point cloud just touch their neighbours on a
+    // surface.
     let shown_points = points.len().div_ceil(step(points.len()));
     let ball = POINT.min(0.6 / (shown_points as f32).sqrt());
     let mut made = MeshData::default();
@@ -73,7 +75,7 @@ pub(super) fn thickened(data: &MeshData, lines: &[[u32; 2]], points: &[u32]) -> 
         }
     }
     for &vertex in points.iter().step_by(step(points.len())) {
-        // An octahedron with the normals of a ball.
+        // An octahedron with the normals of a sphere.
         let first = made.positions.len() as u32;
         for normal in [Vec3::X, Vec3::NEG_X, Vec3::Y, Vec3::NEG_Y, Vec3::Z, Vec3::NEG_Z] {
             push_vertex(&mut made, data, vertex, data.positions[vertex as usize] + ball * size * normal, normal);

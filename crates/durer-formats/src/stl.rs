@@ -1,8 +1,8 @@
-//! Stereolithography `.stl`: triangles alone, as text or binary.
+//! Reader and writer of stereolithography `.stl` meshes: triangles only, as text or binary.
 //!
-//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. Facets' normals are those
-//! of their corners' order, so the written ones are read over, as are colours that some programs
-//! put into a facet's last two bytes.
+//! Source: *StereoLithography Interface Specification*, 3D Systems, 1989. The order of its corners
+//! determines a facet's normal, so the stored normals are ignored, as are the colours that some
+//! programs put into the last two bytes of a facet.
 
 mod text;
 mod write;
@@ -16,21 +16,21 @@ use durer_scene::shape::mesh::{MeshData, place_key};
 use std::collections::HashMap;
 use write::write;
 
-/// Bytes before the facets of a binary file: a free text, and how many there are.
+/// Size in bytes of the header of a binary file: free text, and the number of facets.
 const HEAD: usize = 84;
-/// Bytes of a facet: its normal, three corners, two bytes of anything.
+/// Size in bytes of a facet: normal, three corners, two unspecified bytes.
 const FACET: usize = 50;
 
-/// The format of meshes.
+/// The STL mesh format.
 pub(super) const FORMAT: MeshFormat =
     MeshFormat { name: "STL", extensions: &["stl"], recognise, read, known: as_it_is, write, up: Axis::Z };
 
-/// Whether a file begins as files of this format do.
+/// Returns true if a file begins as an STL file does, or has the size that a binary header implies.
 fn recognise(bytes: &[u8]) -> bool {
     is_text(bytes) || promised(bytes).is_some_and(|count| count > 0 && size_of_facets(count) == bytes.len() as u64)
 }
 
-/// Whether a file is text: binary ones may begin with the word `solid` as well.
+/// Returns true if a file is text; binary files may begin with the word `solid` too.
 fn is_text(bytes: &[u8]) -> bool {
     let head =
         bytes[..bytes.len().min(1 << 12)].strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes[..bytes.len().min(1 << 12)]);
@@ -41,7 +41,7 @@ fn is_text(bytes: &[u8]) -> bool {
     begins && !exact && !head.contains(&0) && (has(b"facet") || has(b"endsolid") || head.len() < HEAD)
 }
 
-/// How many facets the head of a binary file promises.
+/// Number of facets in the header of a binary file.
 fn promised(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*bytes.get(80..)?.first_chunk()?))
 }
@@ -103,7 +103,7 @@ fn read_binary(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     }
 }
 
-/// Puts corners at the same place together: the format has triangles that know nothing of each
+/// Builds a mesh, merging corners at equal positions: STL has no shared vertices.
 /// other.
 #[derive(Default)]
 struct Builder {

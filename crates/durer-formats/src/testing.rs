@@ -1,4 +1,4 @@
-//! What tests of readers share: texts to scenes, and what is told of them.
+//! Shared tools of readers' tests: read texts as scenes and collect the findings.
 
 use crate::folder::FolderSource;
 use crate::scene::{Input, find_scene_format, read_model};
@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 use tempfile::TempDir;
 
-/// Reads a file as if it were in a folder; findings as `file:line:column severity message`, in their order.
+/// Reads a text as a file in a folder; findings as `file:line:column severity message`, in order.
 pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let path = folder.join(name);
@@ -20,8 +20,8 @@ pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Opt
     (loaded.map(|loaded| loaded.scene), lines(&diagnostics, &files))
 }
 
-/// Reads a model by this crate's own build for tests, whose limits of size are lower than those of the
-/// build that [`read_in`] reaches through the face.
+/// Reads a model with this crate's own test build, whose size limits are lower than those of the
+/// build that [`read_in`] uses through the crate `durer`.
 pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let bytes: Arc<[u8]> = text.as_bytes().into();
@@ -52,7 +52,7 @@ fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
     diagnostics.iter().map(line).collect()
 }
 
-/// A folder with some files.
+/// A temporary folder with some files.
 pub(super) fn folder(files: &[(&str, &[u8])]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     for (name, bytes) in files {

@@ -1,4 +1,4 @@
-//! What holds for all formats, and tools for the tests of each.
+//! Tests that apply to all mesh formats, and tools for the tests of each.
 
 use super::*;
 use durer_diag::{Files, Severity};
@@ -6,7 +6,7 @@ use durer_scene::math::random::Random;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Reads bytes under a name; findings as `line:column severity: message`.
+/// Reads bytes as a file of a given name; findings as `line:column severity: message`.
 pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) {
     let mut files = Files::default();
     let file = files.add(name, bytes.into());
@@ -25,15 +25,14 @@ pub(super) fn read(bytes: &[u8], name: &str) -> (Option<MeshData>, Vec<String>) 
     (mesh, diagnostics.iter().map(line).collect())
 }
 
-/// The mesh of a file without findings.
+/// The mesh of a file that must have no findings.
 pub(super) fn read_clean(bytes: &[u8], name: &str) -> MeshData {
     let (mesh, findings) = read(bytes, name);
     assert_eq!(findings, [""; 0], "{name}");
     mesh.unwrap()
 }
 
-/// Reads all prefixes of a file, and the file with bytes changed, for nothing but the absence of
-/// panics.
+/// Reads all prefixes of a file, and mutated copies of it, to find panics.
 pub(super) fn abuse(bytes: &[u8], name: &str) {
     let try_it = |bytes: &[u8]| {
         if let Some(mesh) = read(bytes, name).0 {
@@ -50,7 +49,7 @@ pub(super) fn abuse(bytes: &[u8], name: &str) {
             match random(3) {
                 0 => changed[at] ^= 1 << random(8),
                 1 => changed[at] = random(256) as u8,
-                // A byte from elsewhere in the file makes likelier mistakes.
+                // A byte from elsewhere in the file makes mistakes that are likelier in practice.
                 _ => changed[at] = changed[random(changed.len())],
             }
         }
@@ -101,13 +100,13 @@ fn errors_are_limited_and_a_full_collection_reads_nothing() {
     (0..durer_diag::ERROR_LIMIT).for_each(|_| diagnostics.push(Diagnostic::error("before")));
     assert_eq!(read_mesh(b"v 0 0 0", 0, "m.obj", &mut diagnostics), None);
     assert_eq!(diagnostics.error_count(), durer_diag::ERROR_LIMIT);
-    // Errors of other files do not spoil this one.
+    // Errors of other files do not affect this one.
     let mut diagnostics = Diagnostics::default();
     diagnostics.push(Diagnostic::error("before"));
     assert!(read_mesh(b"v 0 0 0", 0, "m.obj", &mut diagnostics).is_some());
 }
 
-/// All files of an ending below a folder.
+/// Collects all files with an extension below a folder.
 fn files_below(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for path in entries.flatten().map(|entry| entry.path()) {

@@ -1,7 +1,7 @@
-//! Volume files of Mitsuba: densities on a grid.
+//! Mitsuba's volume files: densities on a grid.
 //!
-//! Little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the counts
-//! along x, y and z, the channels (1), the six coordinates of the box, and the values, x running
+//! Layout, little-endian: `VOL`, the version (3), then as 32-bit numbers the type (1: `f32`), the
+//! counts along x, y and z, the channels (1), the six coordinates of the bounds, and the values, x
 //! fastest. Source: Mitsuba 3's documentation, `gridvolume`.
 
 use durer_diag::{Diagnostic, Diagnostics, Span};
@@ -10,12 +10,12 @@ use durer_scene::medium::DensityGrid;
 
 const HEADER: usize = 48;
 
-/// Reads the densities of a file of at most some bytes.
+/// Reads densities that take at most `memory` bytes.
 pub fn read(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<(Aabb, DensityGrid)> {
     told(parse(bytes, memory), bytes, file, diagnostics)
 }
 
-/// The mean of a file's values, of one or three channels.
+/// Mean of a file's values, which have one or three channels.
 pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics) -> Option<Vec3> {
     let (_, _, channels, values) = told(values(bytes, &[1, 3], memory), bytes, file, diagnostics)?;
     let mut sums = [0.0; 3];
@@ -24,7 +24,7 @@ pub fn mean(bytes: &[u8], file: u32, memory: u64, diagnostics: &mut Diagnostics)
     Some(Vec3::from_array(std::array::from_fn(|i| (sums[i.min(channels - 1)] / count) as f32)))
 }
 
-/// What was wrong, and at which byte.
+/// Byte offset and message of an error.
 type Wrong = (usize, String);
 
 fn told<T>(read: Result<T, Wrong>, bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<T> {
@@ -41,8 +41,8 @@ fn parse(bytes: &[u8], memory: u64) -> Result<(Aabb, DensityGrid), Wrong> {
     grid.map(|grid| (bounds, grid)).ok_or((HEADER, "the densities cannot be used".into()))
 }
 
-/// The box, the counts along its axes, the channels, and the values, of a file that has one of some
-/// numbers of channels.
+/// Bounds, counts along the axes, channels and values of a file. `channels` lists the numbers of
+/// channels that the caller supports.
 fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 3], usize, Vec<f32>), Wrong> {
     if !bytes.starts_with(b"VOL") || bytes.get(3) != Some(&3) {
         return Err((0, "this is no volume file of Mitsuba: it should begin with `VOL` and the version 3".into()));
@@ -88,7 +88,7 @@ fn values(bytes: &[u8], channels: &[usize], memory: u64) -> Result<(Aabb, [u32; 
     Ok((Aabb { min, max }, counts.map(|n| n as u32), channels, values))
 }
 
-/// The bytes of a file.
+/// Encodes a volume file.
 pub fn write(bounds: &Aabb, grid: &DensityGrid) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
     let [x, y, z] = grid.counts();
@@ -130,7 +130,7 @@ mod tests {
         assert_eq!(changed(24, f32::NAN.to_le_bytes()), 24);
         assert_eq!(changed(52, (-1.0_f32).to_le_bytes()), 52);
         assert_eq!(parse(&file(), 7).unwrap_err().0, 8);
-        // More than any file has.
+        // Larger than any file.
         assert_eq!(changed(8, i32::MAX.to_le_bytes()), file().len());
     }
 }

@@ -1,34 +1,35 @@
-//! XML, piece by piece, with the place of everything.
+//! Pull parser of XML whose elements and attributes have spans.
 //!
-//! What a reader of scenes has no use for is refused: declarations of types, by which a few bytes
-//! become gigabytes or another file, and entities other than the five that everybody knows.
+//! It rejects two features that scenes do not need: document type declarations, by which a few
+//! bytes can expand to gigabytes or include another file, and entities other than the five
+//! predefined ones.
 
 use durer_diag::{Diagnostic, Span};
 use quick_xml::events::attributes::{AttrError, Attributes};
 use quick_xml::{Reader, escape, events};
 use std::borrow::Cow;
 
-/// Elements in elements.
+/// Maximum depth of nested elements.
 const DEEPEST: usize = 128;
 
-/// A text on its way to its elements.
+/// Parser of one text.
 pub(super) struct Xml<'a> {
     text: &'a str,
     file: u32,
-    /// Bytes before the text: a mark of the encoding.
+    /// Bytes skipped before the text: a byte order mark.
     skipped: usize,
     reader: Reader<&'a [u8]>,
-    /// Where open elements begin.
+    /// Spans of the open elements.
     open: Vec<Span>,
-    /// Whether the last element closes itself.
+    /// True if the last element was self-closing.
     empty: bool,
-    /// Whether there was an element.
+    /// True after the first element.
     begun: bool,
 }
 
-/// An element as it begins.
+/// The start of an element.
 pub(super) struct Tag<'a> {
-    /// Its name, without that of its space.
+    /// Local name, without the namespace prefix.
     pub name: &'a str,
     pub at: Span,
     pub attributes: Vec<Attribute<'a>>,
@@ -36,30 +37,30 @@ pub(super) struct Tag<'a> {
 
 /// An attribute of an element.
 pub(super) struct Attribute<'a> {
-    /// Its name, without that of its space.
+    /// Local name, without the namespace prefix.
     pub name: &'a str,
     pub value: Cow<'a, str>,
-    /// Where the value is.
+    /// Span of the value.
     pub at: Span,
 }
 
-/// What comes next.
+/// A parser event.
 pub(super) enum Piece<'a> {
     Open(Tag<'a>),
-    /// The last element that was opened ends.
+    /// The innermost open element ends.
     Close,
-    /// The whole text ends.
+    /// The text ends.
     End,
 }
 
 impl<'a> Tag<'a> {
-    /// The attribute of a name.
+    /// Returns the attribute of a name.
     pub fn get(&self, name: &str) -> Option<&Attribute<'a>> {
         self.attributes.iter().find(|attribute| attribute.name == name)
     }
 }
 
-/// Whether bytes begin like XML whose first element has one of some names.
+/// Returns true if bytes are XML whose first element has one of these names.
 pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
     let head = &bytes[..bytes.len().min(1 << 12)];
     let text = match std::str::from_utf8(head) {
@@ -79,13 +80,13 @@ pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
     }
 }
 
-/// A name without that of its space.
+/// A name without its namespace prefix.
 fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
 }
 
 impl<'a> Xml<'a> {
-    /// A text in UTF-8.
+    /// Starts parsing a text, which must be UTF-8.
     pub fn new(bytes: &'a [u8], file: u32) -> Result<Self, Box<Diagnostic>> {
         let span = |start: usize, end: usize| Span { file, start: start as u32, end: end as u32 };
         if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
@@ -108,7 +109,7 @@ impl<'a> Xml<'a> {
         Span { file: self.file, start: at(start), end: at(end.max(start)) }
     }
 
-    /// The place of a piece of the text.
+    /// Span of a slice of the text.
     fn place(&self, piece: &str) -> Span {
         let start = piece.as_ptr() as usize - self.text.as_ptr() as usize;
         self.span(start, start + piece.len())
@@ -118,7 +119,7 @@ impl<'a> Xml<'a> {
         Diagnostic::error(message).code("bad-file").at(at)
     }
 
-    /// The next piece.
+    /// Returns the next event.
     pub fn next(&mut self) -> Result<Piece<'a>, Box<Diagnostic>> {
         if std::mem::take(&mut self.empty) {
             self.open.pop();
@@ -153,13 +154,13 @@ impl<'a> Xml<'a> {
                         None => Ok(Piece::End),
                     };
                 }
-                // Texts between elements, comments, and what is for other programs.
+                // Text, comments and processing instructions are skipped.
                 _ => {}
             }
         }
     }
 
-    /// An element from between its angle brackets.
+    /// Parses an element from the text between its angle brackets.
     fn tag(&mut self, start: usize, end: usize) -> Result<Tag<'a>, Box<Diagnostic>> {
         let inner = self.text.get(start..end).unwrap_or_default();
         let whole = inner.find(|c: char| c.is_ascii_whitespace()).map_or(inner, |length| &inner[..length]);
@@ -222,7 +223,7 @@ impl<'a> Xml<'a> {
 mod tests {
     use super::*;
 
-    /// All elements as `name@place[attribute=value@place]`, and the error that ends them.
+    /// The elements as `name@place[attribute=value@place]`, and the error that ends parsing.
     fn told(text: &str) -> (Vec<String>, Option<(String, u32)>) {
         let mut all = Vec::new();
         let mut xml = match Xml::new(text.as_bytes(), 0) {

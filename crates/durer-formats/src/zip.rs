@@ -1,34 +1,33 @@
-//! Archives of zip, part by part. What a part says that it unpacks to is checked before memory is
-//! taken for it.
+//! Reader of ZIP archives. It checks the uncompressed size of a part before it allocates memory.
 
 use flate2::read::DeflateDecoder;
 use rawzip::{CompressionMethod, ZipArchive, ZipArchiveEntryWayfinder};
 use std::collections::BTreeMap;
 use std::io::Read;
 
-/// Parts of an archive.
+/// Maximum number of parts of an archive.
 const MAX_PARTS: usize = 1 << 16;
-/// Bytes that may come of one byte of the archive, and of the smallest archive. Text of models is
-/// packed to a tenth, and seldom to a fiftieth.
+/// Limits against decompression bombs: maximum ratio of all uncompressed bytes to the archive's
+/// size, and bytes that are always allowed. Model text compresses to a tenth, seldom to a fiftieth.
 const MAX_TIMES: u64 = 200;
 const FREE: u64 = 1 << 24;
 
 /// An archive in memory.
 pub(super) struct Zip<'a> {
     bytes: &'a [u8],
-    /// By name: where a part is, how it is packed, and to how many bytes it unpacks.
+    /// Parts by name: location, compression method and uncompressed size.
     parts: BTreeMap<String, (ZipArchiveEntryWayfinder, CompressionMethod, u64)>,
-    /// Bytes that may still be unpacked.
+    /// Remaining budget of uncompressed bytes.
     left: u64,
 }
 
-/// Whether bytes begin as an archive does.
+/// Returns true if bytes begin as a ZIP archive does.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PK\x03\x04")
 }
 
 impl<'a> Zip<'a> {
-    /// The list of an archive's parts.
+    /// Reads the directory of an archive.
     pub fn open(bytes: &'a [u8]) -> Result<Self, String> {
         let archive = ZipArchive::from_slice(bytes).map_err(|error| error.to_string())?;
         let mut parts = BTreeMap::new();
@@ -46,12 +45,12 @@ impl<'a> Zip<'a> {
         Ok(Zip { bytes, parts, left: FREE + MAX_TIMES * bytes.len() as u64 })
     }
 
-    /// The names of all parts.
+    /// Names of all parts.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.parts.keys().map(String::as_str)
     }
 
-    /// A part; `None` where there is none of the name.
+    /// Uncompresses a part; `None` if the archive has no such part.
     pub fn part(&mut self, name: &str) -> Option<Result<Vec<u8>, String>> {
         let (place, method, size) = *self.parts.get(name)?;
         Some(self.unpacked(place, method, size))
@@ -72,8 +71,8 @@ impl<'a> Zip<'a> {
         let archive = ZipArchive::from_slice(self.bytes).map_err(|error| error.to_string())?;
         let entry = archive.get_entry(place).map_err(|error| error.to_string())?;
         let mut bytes = Vec::new();
-        // The verifier compares size and checksum at the end, so one byte too many is enough to
-        // see.
+        // The reader verifies size and checksum at the end, so reading one byte more is enough to
+        // detect a wrong size.
         let read = match method {
             CompressionMethod::STORE => entry.verifying_reader(entry.data()).take(size + 1).read_to_end(&mut bytes),
             CompressionMethod::DEFLATE => {

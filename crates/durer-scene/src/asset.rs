@@ -7,9 +7,10 @@ use crate::medium::DensityGrid;
 use crate::shape::MeshData;
 use durer_diag::Diagnostics;
 
-/// Decodes asset files other than images. `durer-formats` implements it for all formats it has.
+/// Decodes asset files other than images. `durer-formats` implements it for all its formats.
 ///
-/// `file` numbers the bytes in spans. On an error a method pushes a diagnostic and returns `None`.
+/// `file` is the index of the file, for spans. On an error a method pushes a diagnostic and returns
+/// `None`.
 pub trait AssetDecoder: Sync {
     /// Decodes a mesh. The format follows from the extension of `name`, else from the bytes.
     fn mesh(
@@ -34,7 +35,7 @@ pub trait AssetDecoder: Sync {
         diagnostics: &mut Diagnostics,
     ) -> Option<Vec<[f32; 2]>>;
 
-    /// Decodes a grid of densities and the box it fills, in at most `memory` bytes.
+    /// Decodes a grid of densities and its bounds, in at most `memory` bytes.
     fn density(
         &self,
         bytes: &[u8],

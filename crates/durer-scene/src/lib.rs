@@ -1,8 +1,8 @@
-//! What a scene is: shapes, cameras, lights, materials, BSDFs, spectra and textures, as plain data
-//! with their own mathematics.
+//! Scene description: shapes, cameras, lights, materials, BSDFs, spectra and textures, as plain
+//! data with their own mathematics.
 //!
-//! [`scene::Scene`] holds them all. Nothing here traces a ray through a scene or opens a file on its
-//! own: `durer-formats` reads scenes, `durer-render` compiles and renders them.
+//! [`scene::Scene`] holds them all. Nothing here traces rays through a scene or opens files:
+//! `durer-formats` reads scenes, `durer-render` compiles and renders them.
 
 pub mod asset;
 pub mod bsdf;

@@ -1,6 +1,6 @@
-//! Numbers for sampling: each a pure function of (seed, pixel, sample number, dimension).
+//! Sample numbers, each a pure function of (seed, pixel, sample index, dimension).
 //!
-//! There is no generator with a state, so no order of work can change a number.
+//! No generator has a state, so the order of work cannot change a number.
 //!
 //! Sources: the mixing function is the finaliser of SplitMix64 (Steele, Lea, Flood, *Fast
 //! Splittable Pseudorandom Number Generators*, OOPSLA 2014; constants: Stafford's variant 13). The
@@ -20,10 +20,10 @@ pub mod testing;
 #[cfg(test)]
 mod tests;
 
-/// Where in a pixel its samples lie.
+/// Distribution of the samples in a pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Sampler {
-    /// Owen-scrambled Sobol (0,2)-sequence, scrambled anew in each pixel: the least noise.
+    /// Owen-scrambled Sobol (0,2)-sequence, with another scrambling in each pixel: the least noise.
     #[default]
     Sobol,
     /// Independent and uniform.
@@ -34,11 +34,11 @@ pub enum Sampler {
     Jittered,
 }
 
-/// The greatest `f32` below 1.
+/// The largest `f32` below 1.
 const BELOW_ONE: f32 = 1.0 - f32::EPSILON * 0.5;
 
 impl Sampler {
-    /// Every sampler, with its name on the command line.
+    /// The samplers with their names on the command line.
     pub const NAMES: [(&'static str, Sampler); 4] = [
         ("sobol", Sampler::Sobol),
         ("random", Sampler::Random),
@@ -46,13 +46,13 @@ impl Sampler {
         ("jittered", Sampler::Jittered),
     ];
 
-    /// The sampler of a name, if there is one.
+    /// Returns the sampler of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::NAMES.iter().find(|(n, _)| *n == name).map(|&(_, sampler)| sampler)
     }
 
-    /// How many samples a pixel really gets where `samples` are asked for: at least one, and for
-    /// the samplers on a grid the next square (65535^2 at most).
+    /// Number of samples that a pixel gets for `samples` requested ones: at least one, and for grid
+    /// samplers the next square (65535^2 at most).
     pub fn round_up(self, samples: u32) -> u32 {
         match self {
             Sampler::Sobol | Sampler::Random => samples.max(1),
@@ -60,8 +60,8 @@ impl Sampler {
         }
     }
 
-    /// Where in the camera's lens a sample lies, in [0,1)^2. Positions in the pixel tell nothing of
-    /// it.
+    /// Position of a sample on the camera's lens, in [0,1)^2. It is independent of the position in
+    /// the pixel.
     pub fn lens_position(self, seed: u64, x: u32, y: u32, sample: u32) -> Vec2 {
         match self {
             Sampler::Sobol => sample_2d(seed, x, y, sample, LENS_DIMENSION),
@@ -87,31 +87,30 @@ impl Sampler {
     }
 }
 
-/// The dimension that positions in the pixel use.
+/// Dimension of positions in the pixel.
 pub const PIXEL_DIMENSION: u32 = 0;
 
-/// The dimension that positions in the camera's lens use; integrators take those from 2 upwards.
+/// Dimension of positions on the camera's lens. Integrators use the dimensions from 2.
 pub const LENS_DIMENSION: u32 = 1;
 
-/// The sample that random numbers are for, and the first dimension that is free. A number depends
-/// on nothing else.
+/// A sample of a pixel, with the first free dimension. Sample numbers depend on nothing else.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SampleId {
-    /// Of seed and pixel, worked out once.
+    /// Hash of seed and pixel.
     key: u64,
-    /// The number of the sample in its pixel.
+    /// Index of the sample in its pixel.
     pub sample: u32,
     first: u32,
 }
 
-/// Dimensions from here on are for layers that a ray passes, however many there are.
+/// First dimension for layers that a ray passes; their number is unlimited.
 const LAYER_DIMENSIONS: u32 = 1 << 16;
 
-/// The dimension that wavelengths use.
+/// Dimension of wavelengths.
 const WAVELENGTH_DIMENSION: u32 = 1 << 15;
 
 impl SampleId {
-    /// Of a sample of a pixel.
+    /// Creates the identifier of a sample of a pixel.
     pub fn new(seed: u64, pixel: (u32, u32), sample: u32) -> Self {
         SampleId { key: key(seed, pixel.0, pixel.1), sample, first: LENS_DIMENSION + 1 }
     }
@@ -121,38 +120,40 @@ impl SampleId {
         SampleId { sample, ..self }
     }
 
-    /// The points of one dimension of its pixel, whose numbers [`sample_2d`] gives one by one.
+    /// The points of one dimension of the pixel, as [`sample_2d`] returns them one by one.
     pub fn sequence(&self, dimension: u32) -> Sequence {
         Sequence::of(self.key, dimension)
     }
 
-    /// The same sample with other dimensions: `first` of those that integrators may take.
+    /// Moves the sample to other dimensions; `first` is relative to the first that integrators
+    /// use.
     pub fn at(self, first: u32) -> Self {
         SampleId { first: LENS_DIMENSION + 1 + first, ..self }
     }
 
-    /// Two numbers in [0,1), which with those of the pixel's other samples fill the square evenly.
+    /// Two numbers in [0,1). Together with those of the pixel's other samples, they are stratified
+    /// in the unit square.
     pub fn pair(&self, dimension: u32) -> Vec2 {
         Sequence::of(self.key, self.first + dimension).point(self.sample)
     }
 
-    /// The pairs of its first dimensions, as [`SampleId::pair`] gives them one by one.
+    /// The pairs of its first `N` dimensions, equal to those of [`SampleId::pair`].
     pub fn pairs<const N: usize>(&self) -> [Vec2; N] {
         run_plain(Pairs::<N>(*self))
     }
 
-    /// The number in [0,1) that wavelengths are chosen by.
+    /// Number in [0,1) for the choice of wavelengths.
     pub fn wavelength(&self) -> f32 {
         Sequence::of(self.key, WAVELENGTH_DIMENSION).point(self.sample).x
     }
 
-    /// A number in [0,1) for a layer on the way after some bounces.
+    /// Number in [0,1) for a layer, after `depth` bounces.
     pub fn layer(&self, depth: u32, layer: u32) -> f32 {
         independent(numbered(self.key, self.sample, LAYER_DIMENSIONS + (depth << 8) + layer)).x
     }
 }
 
-/// Works out pairs side by side.
+/// Computes several pairs in parallel by SIMD.
 struct Pairs<const N: usize>(SampleId);
 
 impl<const N: usize> PlainKernel for Pairs<N> {
@@ -167,10 +168,10 @@ impl<const N: usize> PlainKernel for Pairs<N> {
     }
 }
 
-/// Dimensions from here on are for media, however often light is scattered in them.
+/// First dimension for media; the number of scattering events is unlimited.
 const MEDIUM_DIMENSIONS: u32 = 1 << 17;
 
-/// Numbers in [0,1) one after the other, as many as are wanted, for a way through a medium.
+/// Unlimited sequence of numbers in [0,1) for a path segment in a medium.
 #[derive(Clone, Copy, Debug)]
 pub struct Stream {
     id: SampleId,
@@ -179,15 +180,16 @@ pub struct Stream {
 }
 
 impl SampleId {
-    /// Numbers for a way after some bounces; `side` tells ways from the same point apart.
+    /// Numbers for a path segment after `depth` bounces; `side` distinguishes segments from the
+    /// same point.
     pub fn stream(&self, depth: u32, side: u32) -> Stream {
         Stream { id: *self, dimension: MEDIUM_DIMENSIONS + 2 * depth + side, taken: 0 }
     }
 }
 
 impl Stream {
-    /// The next number. The first two fill their square evenly over the samples of a pixel; the
-    /// others are independent.
+    /// The next number. The first two are stratified over the samples of a pixel; the others are
+    /// independent.
     pub fn number(&mut self) -> f32 {
         let SampleId { key, sample, .. } = self.id;
         self.taken += 1;
@@ -198,29 +200,29 @@ impl Stream {
         }
     }
 
-    /// The next two.
+    /// The next two numbers.
     pub fn pair(&mut self) -> Vec2 {
         Vec2::new(self.number(), self.number())
     }
 }
 
-/// The least number whose square is `samples` or more, from 1 to 65535.
+/// The least number from 1 to 65535 whose square is at least `samples`.
 fn grid_side(samples: u32) -> u32 {
     let root = samples.isqrt();
     let up = if root * root < samples { root + 1 } else { root };
     up.clamp(1, 65535)
 }
 
-/// A point in [0,1)^2 that fills the square evenly as `sample` counts up from 0.
+/// Point in [0,1)^2 of a stratified sequence that is indexed by `sample`.
 ///
-/// Each first 2^k samples of a dimension, and each aligned block of as many, have one point in
-/// every elementary interval of area 2^-k. Points of different pixels or different dimensions are
+/// The first 2^k samples of a dimension, and each aligned block of 2^k, have one point in every
+/// elementary interval of area 2^-k. Points of different pixels or different dimensions are
 /// independent.
 pub fn sample_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
     Sequence::of(key(seed, x, y), dimension).point(sample)
 }
 
-/// The points of one dimension of a pixel, with what they have in common worked out once.
+/// The points of one dimension of a pixel; it stores the hashes that they share.
 #[derive(Clone, Copy, Debug)]
 pub struct Sequence {
     shuffle: u32,
@@ -230,13 +232,12 @@ pub struct Sequence {
 impl Sequence {
     #[inline(always)]
     fn of(key: u64, dimension: u32) -> Self {
-        // One hash gives the shuffle its key and another the two scrambles.
+        // One hash is the key of the shuffle, another the keys of both scrambles.
         Sequence { shuffle: numbered(key, 0, dimension) as u32, scramble: numbered(key, 1, dimension) }
     }
 
-    /// The points of several samples, each of its own sequence, as [`Sequence::point`] gives them
-    /// one by one: first coordinates, then second ones. Side by side, for compilers to make SIMD
-    /// of.
+    /// The points of several samples, each in a separate sequence, equal to those of
+    /// [`Sequence::point`]: first all x, then all y. The loops are written for auto-vectorization.
     #[inline(always)]
     pub fn points<const N: usize>(sequences: &[Sequence; N], samples: &[u32; N]) -> [[f32; N]; 2] {
         let (mut shuffle, mut scramble) = ([0; N], [[0; N]; 2]);
@@ -263,23 +264,23 @@ impl Sequence {
     }
 }
 
-/// A uniform point in [0,1)^2, independent of every other.
+/// Uniform point in [0,1)^2, independent of every other.
 pub fn random_2d(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> Vec2 {
     independent(hash(seed, x, y, sample, dimension))
 }
 
 fn independent(hash: u64) -> Vec2 {
-    // One step more than the keys of `sample_2d`, so that no number is used twice.
+    // One step more than the keys of `sample_2d`, so that no hash is used twice.
     let bits = mix(hash);
     Vec2::new(unit(bits as u32), unit((bits >> 32) as u32))
 }
 
-/// 64 evenly mixed bits of a seed, a pixel, a sample number and a dimension.
+/// 64 evenly mixed bits of a seed, a pixel, a sample index and a dimension.
 pub fn hash(seed: u64, x: u32, y: u32, sample: u32, dimension: u32) -> u64 {
     numbered(key(seed, x, y), sample, dimension)
 }
 
-/// What all hashes of a pixel have in common.
+/// Common part of all hashes of a pixel.
 fn key(seed: u64, x: u32, y: u32) -> u64 {
     mix(mix(seed) ^ (u64::from(x) | u64::from(y) << 32))
 }
@@ -289,7 +290,7 @@ fn numbered(key: u64, sample: u32, dimension: u32) -> u64 {
     mix(key ^ (u64::from(sample) | u64::from(dimension) << 32))
 }
 
-/// One step of SplitMix64: a permutation of the 64-bit numbers.
+/// One step of SplitMix64: a permutation of the 64-bit integers.
 #[inline(always)]
 fn mix(state: u64) -> u64 {
     let mut z = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -304,7 +305,7 @@ fn unit(bits: u32) -> f32 {
     (bits >> 8) as f32 * (f32::EPSILON * 0.5)
 }
 
-/// Owen's scrambling: each bit is flipped or not according to the bits above it and the key.
+/// Owen scrambling: flips each bit depending on the bits above it and the key.
 #[inline(always)]
 fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     let mut v = bits.reverse_bits();
@@ -316,11 +317,10 @@ fn nested_uniform_scramble(bits: u32, key: u32) -> u32 {
     v.reverse_bits()
 }
 
-/// The second coordinate of Sobol's sequence, in units of 2^-32; the first is the index with its
-/// bits reversed.
+/// Second coordinate of Sobol's sequence, in units of 2^-32; the first is the bit-reversed index.
 ///
-/// The generator matrix is Pascal's triangle modulo 2: a Kronecker power, hence five steps instead
-/// of 32.
+/// The generator matrix is Pascal's triangle modulo 2, a Kronecker power, so five steps suffice
+/// instead of 32.
 #[inline(always)]
 fn sobol_second(index: u32) -> u32 {
     let mut v = index;

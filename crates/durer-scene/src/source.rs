@@ -1,7 +1,8 @@
-//! Bytes by name: where a scene's files come from, without saying how they are kept.
+//! Sources of a scene's files: bytes by name, independent of their storage.
 //!
-//! [`AssetSource`] is the trait, [`MemorySource`] a map of names. Folders of the file system are
-//! `durer_formats::folder::FolderSource`. Every source has a [`ReadRecord`] of what was read.
+//! [`AssetSource`] is the trait, [`MemorySource`] a map of names.
+//! `durer_formats::folder::FolderSource` reads folders of the file system. Every source has a
+//! [`ReadRecord`] of what was read.
 
 use durer_diag::did_you_mean;
 use serde::{Deserialize, Serialize};
@@ -10,27 +11,27 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-/// A BLAKE3 hash; shown as 64 hexadecimal digits.
+/// A BLAKE3 hash, displayed as 64 hexadecimal digits.
 #[derive(Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Digest(pub [u8; 32]);
 
 impl Digest {
-    /// The hash of some bytes.
+    /// Hash of bytes.
     pub fn of(bytes: &[u8]) -> Self {
-        // Below this, threads cost more than they bring.
+        // For less data, threads cost more than they save.
         match bytes.len() < 1 << 20 {
             true => Digest(blake3::hash(bytes).into()),
             false => Digest(blake3::Hasher::new().update_rayon(bytes).finalize().into()),
         }
     }
 
-    /// A hash of numbers, to be made one by one.
+    /// Incremental hasher of numbers.
     pub fn hasher() -> Hasher {
         Hasher { hasher: blake3::Hasher::new(), waiting: Vec::with_capacity(Hasher::BLOCK) }
     }
 }
 
-/// Makes the hash of many numbers, as little-endian bytes.
+/// Hashes many numbers as little-endian bytes.
 #[derive(Debug)]
 pub struct Hasher {
     hasher: blake3::Hasher,
@@ -38,7 +39,7 @@ pub struct Hasher {
 }
 
 impl Hasher {
-    /// Bytes that are hashed at once.
+    /// Buffer size in bytes.
     const BLOCK: usize = 1 << 16;
 
     /// Adds 32 bits.
@@ -50,13 +51,13 @@ impl Hasher {
         }
     }
 
-    /// Adds a count, in 64 bits.
+    /// Adds a count as 64 bits.
     pub fn count(&mut self, count: u64) {
         self.word(count as u32);
         self.word((count >> 32) as u32);
     }
 
-    /// The hash.
+    /// Returns the hash.
     pub fn finish(mut self) -> Digest {
         self.hasher.update(&self.waiting);
         Digest(self.hasher.finalize().into())
@@ -75,53 +76,53 @@ impl std::fmt::Debug for Digest {
     }
 }
 
-/// Why a file could not be had.
+/// Reason why a file could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum SourceError {
-    /// It is in none of the places where it was looked for.
+    /// The file is in none of the searched places.
     #[error("there is no file `{name}`")]
     Missing {
-        /// As it was asked for.
+        /// Requested name.
         name: String,
-        /// Where it was looked for.
+        /// Paths that were tried.
         tried: Vec<PathBuf>,
-        /// A file there that has nearly its name.
+        /// An existing file with a similar name.
         near: Option<String>,
     },
-    /// It lies outside the allowed folders.
+    /// The file is outside the allowed folders.
     #[error("`{name}` lies outside the scene's folder")]
     Outside {
-        /// As it was asked for.
+        /// Requested name.
         name: String,
     },
-    /// It is a folder, a device or a pipe.
+    /// The path is a folder, a device or a pipe.
     #[error("`{name}` is not a regular file")]
     NotAFile {
-        /// As it was asked for.
+        /// Requested name.
         name: String,
     },
-    /// It is larger than what may still be read.
+    /// The file exceeds the remaining budget.
     #[error("`{name}` is too large: {size} bytes, and at most {left} may still be read")]
     TooLarge {
-        /// As it was asked for.
+        /// Requested name.
         name: String,
-        /// Its size in bytes.
+        /// Size in bytes.
         size: u64,
-        /// What is left of the budget.
+        /// Remaining budget in bytes.
         left: u64,
     },
-    /// The system's reason.
+    /// An input/output error.
     #[error("cannot read `{name}`: {error}")]
     Io {
-        /// As it was asked for.
+        /// Requested name.
         name: String,
-        /// The system's reason.
+        /// Error of the operating system.
         error: std::io::Error,
     },
 }
 
 impl SourceError {
-    /// What may have been meant, or what to do.
+    /// Help text: a similar name, or what to do.
     pub fn help(&self) -> Option<String> {
         match self {
             SourceError::Missing { near: Some(near), .. } => Some(format!("did you mean `{near}`?")),
@@ -134,21 +135,21 @@ impl SourceError {
     }
 }
 
-/// Version of a file: it differs once the file was saved again or replaced.
+/// Version of a file: it changes when the file is saved again or replaced.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Stamp {
-    /// Where the file is.
+    /// Path of the file.
     pub path: PathBuf,
     /// Time of the last change, in nanoseconds since 1970.
     pub modified: i128,
     /// Size in bytes.
     pub size: u64,
-    /// Number of the file in its file system, 0 where files have none. A file that takes the place
-    /// of another has another number.
+    /// Inode number; 0 if the file system has none. A file that replaces another has a different
+    /// number.
     pub number: u64,
 }
 
-/// Hashes of what was read, by the names that the scene gives the files.
+/// Hashes of the files that were read, by their names in the scene.
 #[derive(Debug, Default)]
 pub struct ReadRecord(Mutex<BTreeMap<String, Digest>>);
 
@@ -163,22 +164,22 @@ impl ReadRecord {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Adds bytes that were read by a name.
+    /// Adds bytes that were read under a name.
     pub fn add(&self, name: &str, bytes: &[u8]) {
         self.add_digest(name, Digest::of(bytes));
     }
 
-    /// Adds the hash of bytes that were read by a name.
+    /// Adds the hash of bytes that were read under a name.
     pub fn add_digest(&self, name: &str, digest: Digest) {
         self.hashes().insert(name.into(), digest);
     }
 
-    /// Hash of what was read by a name.
+    /// Hash of the bytes that were read under a name.
     pub fn digest_of(&self, name: &str) -> Option<Digest> {
         self.hashes().get(name).copied()
     }
 
-    /// Hash of all names and hashes in here, and of `more`.
+    /// Hash of all names and hashes in the record, and of `more`.
     pub fn digest(&self, more: &[u8]) -> Digest {
         let mut hasher = blake3::Hasher::new();
         hasher.update(&Digest::of(more).0);
@@ -191,30 +192,30 @@ impl ReadRecord {
 
 /// Reads the files that a scene names.
 pub trait AssetSource: std::fmt::Debug + Sync {
-    /// Reads a file by the name that the scene gives it, and adds it to the record.
+    /// Reads a file by its name in the scene, and adds it to the record.
     ///
     /// # Errors
     ///
-    /// [`SourceError`]: there is no such file, or it may not or cannot be read.
+    /// [`SourceError`]: the file does not exist, is not allowed, or cannot be read.
     fn read(&self, name: &str) -> Result<Arc<[u8]>, SourceError>;
 
-    /// Whether a name has a file that may be read.
+    /// Returns true if a file of this name exists and may be read.
     fn contains(&self, name: &str) -> bool;
 
-    /// What was read so far.
+    /// Record of what was read so far.
     fn record(&self) -> &ReadRecord;
 
-    /// Like [`AssetSource::read`]; unpacks what gzip packed.
+    /// Reads a file as [`AssetSource::read`] does, and decompresses gzip data.
     ///
     /// # Errors
     ///
-    /// [`SourceError`], also for packed bytes that are damaged or would become too large.
+    /// [`SourceError`], also for compressed bytes that are damaged or would become too large.
     fn read_unpacked(&self, name: &str) -> Result<Arc<[u8]>, SourceError> {
         let bytes = self.read(name)?;
         if is_packed(&bytes) { unpacked_file(name, &bytes, u64::MAX) } else { Ok(bytes) }
     }
 
-    /// Reads a file that the user named, and not the scene: it may lie anywhere. Adds it to the
+    /// Reads a file that the user named, not the scene, so it may be anywhere. Adds it to the
     /// record under its path.
     ///
     /// # Errors
@@ -224,12 +225,12 @@ pub trait AssetSource: std::fmt::Debug + Sync {
         self.read(&path.to_string_lossy())
     }
 
-    /// Version of the file that the scene means by a name; `None` if it has none that is known.
+    /// Version of a file by its name in the scene; `None` if it is unknown.
     fn stamp(&self, _name: &str) -> Option<Stamp> {
         None
     }
 
-    /// Adds a file to the record that was read earlier, and has not changed since `stamp`.
+    /// Adds a file to the record that was read earlier and has not changed since `stamp`.
     fn skip_reading(&self, name: &str, _stamp: &Stamp, digest: Digest) {
         self.record().add_digest(name, digest);
     }
@@ -243,7 +244,7 @@ pub struct MemorySource {
 }
 
 impl MemorySource {
-    /// Adds a file, or puts it in the place of the one of that name.
+    /// Adds a file, or replaces the file of this name.
     pub fn insert(&mut self, name: impl Into<String>, bytes: impl Into<Arc<[u8]>>) {
         self.files.insert(name.into(), bytes.into());
     }
@@ -272,7 +273,7 @@ impl AssetSource for MemorySource {
     }
 }
 
-/// Unpacks the bytes of a file that gzip packed, if they become at most `budget` bytes.
+/// Decompresses a gzip file to at most `budget` bytes.
 ///
 /// # Errors
 ///
@@ -284,18 +285,19 @@ pub fn unpacked_file(name: &str, bytes: &[u8], budget: u64) -> Result<Arc<[u8]>,
     })
 }
 
-/// Whether bytes are packed by gzip.
+/// Returns true if bytes are a gzip file.
 pub fn is_packed(bytes: &[u8]) -> bool {
     bytes.starts_with(b"\x1f\x8b")
 }
 
-/// What is packed by gzip, if it is no more than may be read: the packed file tells its size in its
-/// last four bytes, and more than that is not unpacked.
+/// Decompresses gzip data to at most `budget` bytes. The last four bytes declare the size, which
+/// the output may not exceed.
 ///
 /// # Errors
-/// Why it is not unpacked.
+///
+/// A sentence: the data are damaged or would become too large.
 pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate packs at most 1032 bytes into one.
+    // Deflate compresses at most 1032 bytes into one.
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
     if declared > budget || declared > 1032 * bytes.len() as u64 {
         return Err(format!("the packed file would have {declared} bytes: that is too large"));

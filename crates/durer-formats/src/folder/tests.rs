@@ -1,7 +1,7 @@
 use super::*;
 use std::os::unix::fs::symlink;
 
-/// `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source is of `scene`.
+/// `outside/secret.obj` and `scene/{near.obj, models/cube.obj}`; the source reads `scene`.
 fn house() -> (tempfile::TempDir, FolderSource) {
     let root = tempfile::tempdir().unwrap();
     fs::create_dir_all(root.path().join("scene/models")).unwrap();
@@ -39,7 +39,7 @@ fn nothing_outside_the_folder_is_read_unless_allowed() {
     for name in names {
         assert_eq!(&*free.read(name).unwrap(), b"secret", "{name}");
     }
-    // A link that stays inside is as good as the file.
+    // A link to a file inside the folder is allowed.
     symlink("models/cube.obj", root.path().join("scene/inner.obj")).unwrap();
     assert_eq!(&*source.read("inner.obj").unwrap(), b"cube");
 }
@@ -92,7 +92,7 @@ fn folders_of_assets_are_searched_by_path_and_by_bare_name() {
     for name in ["secret.obj", "models/secret.obj", "C:\\somebody\\secret.obj"] {
         assert_eq!(&*source.read(name).unwrap(), b"secret", "{name}");
     }
-    // The scene's own folder comes first.
+    // The scene's own folder takes precedence.
     fs::write(root.path().join("outside/near.obj"), "far").unwrap();
     assert_eq!(&*source.read("near.obj").unwrap(), b"near");
     assert!(matches!(source.read("../../etc/passwd.obj"), Err(SourceError::Missing { .. })));
@@ -117,7 +117,7 @@ fn a_file_is_read_whole_whatever_its_size_was_said_to_be() {
     let path = folder.path().join("a");
     fs::write(&path, b"0123456789").unwrap();
     let read = |size, most| all_of(fs::File::open(&path).unwrap(), size, most).unwrap().to_vec();
-    // It may have grown or shrunk, and of what is too much one byte is known.
+    // The file may have grown or shrunk; at most one byte beyond the limit is read.
     for size in [10, 0, 4, 25] {
         assert_eq!(read(size, 100), b"0123456789", "{size}");
     }

@@ -1,5 +1,5 @@
-//! Scenes as JSON: the same description as the scene language's, for programs. Things have the
-//! keywords of our own dialect, and fields the names that their statements give them.
+//! Scenes as JSON: the content of the scene language, for programs. Objects have the keywords of
+//! Dürer's own dialect, and fields the names in their statements.
 
 mod read;
 pub mod schema;
@@ -12,14 +12,14 @@ mod write;
 pub use read::Document;
 pub use write::write;
 
-/// Ending of the names of such files.
+/// File name extension of scenes as JSON, without the dot.
 pub const EXTENSION: &str = "json";
 
-/// Objects may be nested this deep, as in the language.
+/// Maximum depth of nested objects, as in the scene language.
 const DEEPEST: usize = 200;
 
-/// Whether a file is a scene as JSON, by its name or its beginning, which no text of the language
-/// has. glTF is JSON too, and is none.
+/// Returns true if a file is a scene as JSON: it has the extension `.json` or begins with `{`, as
+/// no text of the scene language does. glTF is JSON too, but is not a scene of this kind.
 pub fn recognise(bytes: &[u8], name: &str) -> bool {
     let head = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let is_json = super::extension(name) == EXTENSION || head.starts_with(b"{");

@@ -1,4 +1,4 @@
-//! A tree of JSON as a scene.
+//! Conversion of a JSON tree into a scene.
 
 use super::tree::{Member, Node, Value, parse};
 use super::values::{Members, Reader};
@@ -15,7 +15,7 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::{Group, Material, MatrixOp, NamedTexture, Node as What, Object, Operation, Scene};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 
-/// A file that is JSON, before it is known to be a scene.
+/// A parsed JSON file that has not yet been read as a scene.
 pub struct Document<'a> {
     text: &'a [u8],
     report: Report,
@@ -23,7 +23,7 @@ pub struct Document<'a> {
 }
 
 impl<'a> Document<'a> {
-    /// Reads the JSON; what is wrong with it is told by [`Document::scene`].
+    /// Parses the JSON. [`Document::scene`] reports syntax errors.
     pub fn open(text: &'a [u8], file: u32, diagnostics: &Diagnostics) -> Self {
         let mut report = Report::new(file, diagnostics);
         let root = match text.len() < u32::MAX as usize {
@@ -40,7 +40,7 @@ impl<'a> Document<'a> {
         Document { text, report, root: root.ok() }
     }
 
-    /// The dialect whose meaning its words have: ours where it says none.
+    /// Dialect that defines the meaning of the keywords; [`Dialect::Durer`] if the file names none.
     pub fn dialect(&self) -> Dialect {
         let Some(Node { value: Value::Object(members), .. }) = &self.root else { return Dialect::Durer };
         let said = members.iter().find(|member| member.name == "dialect").map(|member| &member.node.value);
@@ -50,7 +50,7 @@ impl<'a> Document<'a> {
         }
     }
 
-    /// The scene. All errors are collected; with any, there is none.
+    /// Reads the scene and reports all errors; `None` if there are any.
     pub fn scene(self, diagnostics: &mut Diagnostics) -> Option<Scene> {
         let (text, report, kinds) = (self.text, self.report, schema::objects());
         let mut reader = Reader { text, report, material: None, uses: Vec::new(), depth: 0, kinds: &kinds };
@@ -63,7 +63,7 @@ impl Reader<'_> {
     fn scene(&mut self, root: &Node) -> Scene {
         let mut scene = Scene::default();
         let Some((_, mut members)) = self.typed(root, "scene", &["Scene"]) else { return scene };
-        // Where the schema is found: editors read it.
+        // Reference to the schema, which editors read.
         members.take("$schema");
         if let Some(node) = members.take("dialect") {
             self.one_of(node, "dialect", &Dialect::ALL.map(Dialect::name));
@@ -108,7 +108,7 @@ impl Reader<'_> {
         scene
     }
 
-    /// Warns of materials that are not there.
+    /// Warns about material indices out of range.
     fn check_materials(&mut self, count: usize) {
         for (index, at) in std::mem::take(&mut self.uses) {
             if index as usize >= count {
@@ -160,7 +160,7 @@ impl Reader<'_> {
         self.items(node, name).iter().filter_map(|node| self.matrix(node, wrong)).collect()
     }
 
-    /// `{"Translate": [0, 1, 0]}`; `wrong` says what is wrong with one that has all its numbers.
+    /// Reads `{"Translate": [0, 1, 0]}`; `wrong` returns the diagnostic of a senseless operation.
     fn matrix(&mut self, node: &Node, wrong: fn(MatrixOp) -> Option<Diagnostic>) -> Option<MatrixOp> {
         let Value::Object(members) = &node.value else {
             self.expected(node, "an object", "matrix");
@@ -238,7 +238,7 @@ impl Reader<'_> {
             let wrong = |op| senseless(op).or_else(|| flat(op));
             let ops = members.take("matrices").map(|node| self.matrices(node, "matrices", wrong)).unwrap_or_default();
             let inner = self.required(&mut members, "object").and_then(|node| self.object(node));
-            // The object that is moved may say its material itself.
+            // The transformed object may name the material itself.
             if let (None, Some(inner)) = (stated, &inner) {
                 material = inner.material;
             }
@@ -259,7 +259,7 @@ impl Reader<'_> {
         Some(Object { node: what, material, span: self.span(&node.head()) })
     }
 
-    /// The objects in an object.
+    /// Reads the member `objects`.
     fn inside(&mut self, members: &mut Members) -> Vec<Object> {
         let node = self.required(members, "objects");
         node.map(|node| self.objects(node, "objects")).unwrap_or_default()

@@ -1,5 +1,5 @@
-//! What a scene as JSON is made of, as a JSON Schema (2020-12): made from the statements, as the
-//! reference of the language is.
+//! JSON Schema (2020-12) of scenes as JSON. It is generated from the statements, as the language
+//! reference is.
 
 use super::DEEPEST;
 use durer_scene::camera::Camera;
@@ -12,35 +12,35 @@ use durer_scene::scene::{Background, MatrixOp, NamedTexture, Operation};
 use durer_scene::shape::{HeightField, Primitive, Sphere, TriangleMesh, VoxelGrid};
 use serde_json::{Map, Value, json};
 
-/// The words by which the things of a list are told apart.
+/// Keywords of the kinds of a described list.
 pub(super) fn keywords<T: DescribedList>() -> Vec<&'static str> {
     T::kinds().iter().map(word).collect()
 }
 
-/// The word of a thing.
+/// Keyword of a described item in Dürer's own dialect.
 pub(super) fn word<T: DescribedList>(thing: &T) -> &'static str {
     thing.keyword(Dialect::Durer)
 }
 
-/// A thing with default values, by its word.
+/// Item with default values for a keyword.
 pub(super) fn of_keyword<T: DescribedList>(keyword: &str) -> Option<T> {
     T::kinds().into_iter().find(|thing| word(thing) == keyword)
 }
 
-/// What a material may be.
+/// Keywords of all materials.
 pub(super) fn materials() -> Vec<&'static str> {
     let own = [keywords::<PhongMaterial>(), keywords::<PrincipledMaterial>(), keywords::<HairMaterial>()].concat();
     [own, keywords::<Solid>()].concat()
 }
 
-/// What an object may be.
+/// Keywords of all objects.
 pub(super) fn objects() -> Vec<&'static str> {
     let others = [keywords::<TriangleMesh>(), keywords::<HeightField>(), keywords::<VoxelGrid>()].concat();
     let made = ["Group", "Transform"].into_iter().chain(Operation::ALL.map(|row| row.0));
     keywords::<Primitive>().into_iter().chain(others).chain(made).collect()
 }
 
-/// The schema of a whole scene.
+/// Returns the schema of a whole scene.
 pub fn schema() -> Value {
     let list = |of: &str, about: &str| json!({"type": "array", "items": reference(of), "description": about});
     let members = json!({
@@ -98,17 +98,17 @@ fn one_of(things: Vec<Value>) -> Value {
     json!({ "oneOf": things })
 }
 
-/// A number of single precision, with the digits that it is written with.
+/// A number with the shortest decimal digits of its `f32` value.
 fn number(x: f32) -> Value {
     x.to_string().parse::<f64>().map_or(Value::Null, Value::from)
 }
 
-/// A doc comment in one line.
+/// A doc comment joined into one line.
 fn about(doc: &str) -> String {
     doc.lines().map(str::trim).collect::<Vec<_>>().join(" ").trim().to_string()
 }
 
-/// What a field's value may be.
+/// Schema of a field's value.
 fn field(field: &Field) -> Value {
     let mut value = match field.kind {
         Kind::Float => json!({"type": "number"}),
@@ -142,7 +142,7 @@ fn field(field: &Field) -> Value {
     value
 }
 
-/// An object with these members, some of which must be there.
+/// Schema of an object with these members, some of them required.
 fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     json!({
         "type": "object",
@@ -153,7 +153,7 @@ fn object(doc: &str, members: Value, required: &[&str]) -> Value {
     })
 }
 
-/// A described thing by itself, with further members.
+/// Schema of a described item with further members.
 fn described<T: DescribedList>(thing: &T, more: Value, also: &[&'static str]) -> Value {
     let mut members = Map::new();
     if let Value::Object(more) = more {
@@ -165,21 +165,21 @@ fn described<T: DescribedList>(thing: &T, more: Value, also: &[&'static str]) ->
     object(thing.doc(), members.into(), &required)
 }
 
-/// One that needs no word to tell it from others.
+/// Schema of an item that needs no `type`.
 fn record<T: DescribedList + Default>(more: Value) -> Value {
     described(&T::default(), more, &[])
 }
 
-/// One with its word.
+/// Schema of an item with its `type`.
 fn named<T: DescribedList>(thing: &T, more: &Value) -> Value {
     described(thing, with(more, "type", json!({ "const": word(thing) })), &["type"])
 }
 
-/// The same members with one more.
+/// Returns a copy of `members` with one more member.
 ///
-/// A copy is changed. Closures here that changed a `Value` which they were given and returned it
-/// used memory after it was freed (rustc 1.95, opt-level 2, seen by valgrind; not in a small
-/// program of the same form): safe code, so probably compiled wrongly.
+/// Closures that changed a `Value` passed to them and returned it used memory after it was freed
+/// (rustc 1.95, opt-level 2, seen by valgrind; not in a small program of the same form). The code
+/// was safe, so this was probably a miscompilation.
 fn with(members: &Value, name: &str, value: Value) -> Value {
     let mut all = members.clone();
     all[name] = value;

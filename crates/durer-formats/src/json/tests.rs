@@ -1,5 +1,5 @@
-//! Scene to JSON to scene; what is no scene is refused at its place; the schema and the reader
-//! agree.
+//! Tests of scenes as JSON: round trips, positions of errors, and agreement of the schema with the
+//! reader.
 
 use super::{Document, schema, write};
 use crate::course;
@@ -9,7 +9,7 @@ use durer_scene::dialect::Dialect;
 use durer_scene::scene::{Material, Node, Scene};
 use serde_json::{Value, json};
 
-/// A scene, and what was said of it: place and message.
+/// Reads a scene; the findings as `line:column message`.
 fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     let (mut files, mut found) = (Files::default(), Diagnostics::default());
     let file = files.add("x.json", text.as_bytes().into());
@@ -21,7 +21,7 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     (scene, said.collect())
 }
 
-/// Equal to the bit: `PartialEq` takes 0 and -0 for one.
+/// Asserts that two scenes are equal bit for bit; `PartialEq` treats 0 and -0 as equal.
 #[track_caller]
 fn same(a: &Scene, b: &Scene, context: &str) {
     assert_eq!(a, b, "{context}");
@@ -71,8 +71,7 @@ fn what_is_written_by_hand_is_read() {
     let Material::Principled(gold) = &scene.materials[0].value else { panic!() };
     assert_eq!((gold.base_metalness, gold.specular_roughness), (1.0, 0.5));
     let objects = &scene.root.as_ref().unwrap().objects;
-    // Where no material is given, it is that of the object before, and a transform has that of its
-    // object.
+    // An object without a material takes the previous object's, and a transform takes its object's.
     assert_eq!(objects.iter().map(|object| object.material).collect::<Vec<_>>(), [Some(2), Some(1)]);
     let Node::Transform(_, inner) = &objects[1].node else { panic!() };
     let Node::Group(group) = &inner.node else { panic!() };
@@ -162,12 +161,12 @@ fn errors_are_few_and_nesting_is_bounded() {
     assert!(nested(super::DEEPEST).0.is_some());
     assert!(nested(super::DEEPEST + 1).1[0].contains("objects are nested deeper than 200"));
     assert!(nested(1000).1[0].contains("values are nested deeper than 640"));
-    // A material that is not there is told, and the scene is read.
+    // A material index out of range is reported, and the scene is still read.
     let (scene, said) = read(&SMALL.replace("\"material\": 2", "\"material\": 3"));
     assert!(scene.is_some() && said[0].contains("material 3 does not exist: the scene has 3 materials"), "{said:?}");
 }
 
-/// Whether a value is as a schema says: as much of JSON Schema as ours uses.
+/// Returns true if a value matches a schema. Supports the part of JSON Schema that ours uses.
 fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     let equal = |a: &Value, b: &Value| match (a, b) {
         (Value::Number(a), Value::Number(b)) => a.as_f64() == b.as_f64(),
@@ -220,7 +219,7 @@ fn fits(root: &Value, schema: &Value, value: &Value) -> bool {
     })
 }
 
-/// Changes something somewhere in a value.
+/// Changes one value at a random place in a tree.
 fn changed(random: &mut Random, value: &mut Value) {
     let others = [
         json!(null),
@@ -255,7 +254,7 @@ fn changed(random: &mut Random, value: &mut Value) {
     }
 }
 
-/// What the reader refuses and no schema can say.
+/// Errors that the reader reports and a JSON Schema cannot express.
 const BEYOND: [&str; 7] = [
     "there is a texture",
     "mixed of earlier",

@@ -1,25 +1,25 @@
-//! JSON (RFC 8259) as a tree whose values know their places. What the grammar does not allow is
-//! refused, and so are names that stand twice in an object.
+//! Parser of JSON (RFC 8259) into a tree whose values have byte ranges. It is strict, and it
+//! rejects duplicate names in an object.
 
 use std::ops::Range;
 
-/// Values may be nested this deep: each of the language's 200 levels of objects takes three, an
+/// Maximum depth of nested values: each of the language's 200 levels of objects takes three, an
 /// object, a list and a transform.
 const DEEPEST: usize = 640;
 
-/// A value and where it stands.
+/// A value and its byte range.
 #[derive(Clone, Debug)]
 pub(super) struct Node {
     pub value: Value,
     pub at: Range<usize>,
 }
 
-/// What a value is.
+/// A JSON value.
 #[derive(Clone, Debug)]
 pub(super) enum Value {
     Null,
     Bool,
-    /// Its text is the place's.
+    /// A number, whose text is at the node's range.
     Number,
     String(String),
     Array(Vec<Node>),
@@ -34,17 +34,17 @@ pub(super) struct Member {
     pub node: Node,
 }
 
-/// Why a text is no JSON.
+/// A syntax error.
 #[derive(Clone, Debug)]
 pub(super) struct Malformed {
     pub at: Range<usize>,
     pub message: String,
-    /// Another place that has to do with it.
+    /// Range of a related place, such as the first of two equal names.
     pub first: Option<Range<usize>>,
 }
 
 impl Node {
-    /// What kind of value it is, for messages.
+    /// Name of the kind of value, for messages.
     pub fn kind(&self) -> &'static str {
         match &self.value {
             Value::Null => "`null`",
@@ -56,7 +56,7 @@ impl Node {
         }
     }
 
-    /// Where it begins: of what is made of several, the first bracket.
+    /// Range to show in messages: the opening bracket of a list or an object, else the whole value.
     pub fn head(&self) -> Range<usize> {
         match &self.value {
             Value::Array(_) | Value::Object(_) => self.at.start..self.at.start + 1,
@@ -65,7 +65,7 @@ impl Node {
     }
 }
 
-/// Reads a whole text.
+/// Parses a whole text.
 pub(super) fn parse(text: &[u8]) -> Result<Node, Malformed> {
     // Windows editors may put a byte order mark first.
     let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
@@ -95,7 +95,7 @@ impl Parser<'_> {
         }
     }
 
-    /// Goes past a byte, if it comes next.
+    /// Skips a byte if it comes next; returns true if it did.
     fn passes(&mut self, byte: u8) -> bool {
         let passes = self.peek() == Some(byte);
         self.at += usize::from(passes);
@@ -106,7 +106,7 @@ impl Parser<'_> {
         Err(Malformed { at, message: message.into(), first: None })
     }
 
-    /// What is said where something else was expected: it shows the word that stands there.
+    /// Error at the current position, which shows the word found there.
     fn unexpected(&self, wanted: &str) -> Malformed {
         let ends = |b: &u8| b.is_ascii_whitespace() || b",:[]{}\"".contains(b);
         let rest = &self.text[self.at..];
@@ -256,7 +256,8 @@ impl Parser<'_> {
         String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is no UTF-8"))
     }
 
-    /// The character that an escape stands for; goes past it, or to where it went wrong.
+    /// Reads an escape and returns its character. After an error, the position is that of the
+    /// error.
     fn escaped(&mut self) -> Option<char> {
         self.at += 1;
         let letter = self.peek()?;
@@ -273,7 +274,7 @@ impl Parser<'_> {
                 if !(0xd800..0xdc00).contains(&first) {
                     return char::from_u32(first);
                 }
-                // Beyond the first plane of Unicode there are two of them.
+                // Characters above U+FFFF are written as a surrogate pair.
                 let second = (self.passes(b'\\') && self.passes(b'u')).then(|| self.hexadecimal()).flatten()?;
                 let low = second.checked_sub(0xdc00).filter(|low| *low < 0x400)?;
                 char::from_u32(0x10000 + ((first - 0xd800) << 10 | low))?
@@ -289,7 +290,7 @@ impl Parser<'_> {
     }
 }
 
-/// The first two members of the same name; the second is the earliest that repeats another.
+/// First duplicate: the earliest member that repeats a name, after the member that it repeats.
 fn repeated(members: &[Member]) -> Option<(&Member, &Member)> {
     let mut sorted: Vec<usize> = (0..members.len()).collect();
     sorted.sort_by_key(|&i| (&members[i].name, i));

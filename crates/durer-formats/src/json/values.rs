@@ -1,4 +1,4 @@
-//! Values of JSON as those of fields: kinds, rules, names.
+//! Reading of JSON values into the fields of statements: kinds, constraints, names.
 
 use super::schema;
 use super::tree::{Member, Node, Value};
@@ -11,32 +11,32 @@ use durer_scene::math::Vec3;
 use durer_scene::scene::Spanned;
 use std::ops::Range;
 
-/// A document being read.
+/// State of a reader of one document.
 pub(super) struct Reader<'a> {
     pub text: &'a [u8],
     pub report: Report,
-    /// The material of the object that was read last, which the next has where it names none.
+    /// Material of the previous object, the default of an object that names none.
     pub material: Option<u32>,
-    /// Every number of a material, to be checked when all are known.
+    /// Every use of a material index with its place, checked once all materials are read.
     pub uses: Vec<(u32, Range<usize>)>,
     pub depth: usize,
-    /// What an object may be.
+    /// Keywords that an object's `type` may have.
     pub kinds: &'a [&'static str],
 }
 
-/// The members of an object that is being read.
+/// Members of an object, of which some have been read.
 pub(super) struct Members<'n> {
-    /// What it is, for messages.
+    /// Name of the object in messages.
     pub name: &'n str,
     at: Range<usize>,
     all: &'n [Member],
     taken: Vec<bool>,
-    /// The names that it may have.
+    /// Names that were asked for, which are all names that the object may have.
     known: Vec<&'static str>,
 }
 
 impl<'n> Members<'n> {
-    /// The value of a name.
+    /// Returns the value of a member and marks it as read.
     pub fn take(&mut self, name: &'static str) -> Option<&'n Node> {
         self.known.push(name);
         let index = self.all.iter().position(|member| member.name == name)?;
@@ -53,7 +53,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Says that something else stands where a value should.
+    /// Reports a value of the wrong kind.
     pub fn expected(&mut self, node: &Node, what: &str, name: &str) {
         let message = format!("`{name}` needs {what}, but found {}", node.kind());
         self.error(node.head(), "bad-value", message, None);
@@ -63,7 +63,7 @@ impl Reader<'_> {
         self.report.span(at.clone())
     }
 
-    /// The members of an object.
+    /// Returns the members of an object; reports any other value.
     pub fn members<'n>(&mut self, node: &'n Node, name: &'n str) -> Option<Members<'n>> {
         let Value::Object(all) = &node.value else {
             self.expected(node, "an object", name);
@@ -72,11 +72,11 @@ impl Reader<'_> {
         Some(Members { name, at: node.head(), all, taken: vec![false; all.len()], known: Vec::new() })
     }
 
-    /// Complains of the members that nobody took.
+    /// Reports members that were not read.
     pub fn finish(&mut self, members: Members) {
         let Members { name, all, taken, known, .. } = members;
         for (member, _) in all.iter().zip(taken).filter(|(_, taken)| !taken) {
-            // A list of seventy names is no help.
+            // A list of seventy names does not help.
             let few = || (known.len() <= 24).then(|| format!("it has {}", known.join(", ")));
             let help = meant(&member.name, known.iter().copied()).or_else(few);
             let message = format!("`{name}` has no member {}", shown(member.name.as_bytes()));
@@ -104,7 +104,7 @@ impl Reader<'_> {
         }
     }
 
-    /// One of some words.
+    /// Reads a string that must be one of `words`.
     pub fn one_of<'w>(&mut self, node: &Node, name: &str, words: &[&'w str]) -> Option<&'w str> {
         let text = self.string(node, name)?;
         let word = words.iter().copied().find(|word| *word == text);
@@ -173,7 +173,7 @@ impl Reader<'_> {
         whole.map(|number| number as u32)
     }
 
-    /// A value of a field's kind, which its rule allows.
+    /// Reads a value of a field's kind and checks its constraint.
     fn value(&mut self, node: &Node, name: &str, kind: Kind, rule: Rule) -> Option<describe::Value> {
         let value = match kind {
             Kind::Float => describe::Value::Float(self.number(node, name)?),
@@ -187,7 +187,7 @@ impl Reader<'_> {
                     self.error(node.at.clone(), "bad-value", message, Some(help));
                     return None;
                 }
-                // Without its quotes, so that another path may be put in its place.
+                // Excludes the quotes, so that a path can be replaced in the text.
                 let span = self.span(&(node.at.start + 1..node.at.end - 1));
                 describe::Value::Path(FileName { path: path.to_string(), span })
             }
@@ -200,7 +200,7 @@ impl Reader<'_> {
         Some(value)
     }
 
-    /// Lists of so many numbers each.
+    /// Reads a list of rows of `width` numbers each.
     pub fn rows(&mut self, node: &Node, name: &str, width: usize) -> Option<Vec<Vec<f32>>> {
         if !matches!(node.value, Value::Array(_)) {
             self.expected(node, "a list", name);
@@ -219,7 +219,7 @@ impl Reader<'_> {
         Some(rows)
     }
 
-    /// The fields of a described thing, out of members that may have more.
+    /// Reads the fields of a described item. The object may have further members.
     pub fn fields<T: DescribedList>(&mut self, thing: &mut T, members: &mut Members) {
         for (i, field) in thing.fields().iter().enumerate() {
             match members.take(field.name) {
@@ -237,7 +237,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A thing that has nothing but its fields.
+    /// Reads a described item whose object has no other members.
     pub fn thing<T: DescribedList>(&mut self, mut thing: T, node: &Node, name: &str) -> T {
         if let Some(mut members) = self.members(node, name) {
             self.fields(&mut thing, &mut members);
@@ -246,7 +246,7 @@ impl Reader<'_> {
         thing
     }
 
-    /// The members of a thing, and what it is by its `type`.
+    /// Returns an object's `type`, which must be one of `known`, and its members.
     pub fn typed<'n>(&mut self, node: &'n Node, what: &'n str, known: &[&str]) -> Option<(&'n str, Members<'n>)> {
         let mut members = self.members(node, what)?;
         let Some(named) = members.take("type") else {
@@ -268,7 +268,7 @@ impl Reader<'_> {
         Some((word, members))
     }
 
-    /// One of a list of things.
+    /// Reads one of the kinds of a described list, chosen by its `type`.
     pub fn choice<T: DescribedList>(&mut self, node: &Node, what: &str) -> Option<T> {
         let (word, mut members) = self.typed(node, what, &schema::keywords::<T>())?;
         let mut thing = schema::of_keyword::<T>(word)?;
@@ -277,12 +277,12 @@ impl Reader<'_> {
         Some(thing)
     }
 
-    /// A thing with its place.
+    /// Reads an item and attaches its span.
     pub fn spanned<T>(&mut self, node: &Node, read: impl FnOnce(&mut Self) -> Option<T>) -> Option<Spanned<T>> {
         Some(Spanned { value: read(self)?, span: self.span(&node.head()) })
     }
 
-    /// A member that must be there.
+    /// Returns a required member; reports it if it is missing.
     pub fn required<'n>(&mut self, members: &mut Members<'n>, name: &'static str) -> Option<&'n Node> {
         let node = members.take(name);
         if node.is_none() {

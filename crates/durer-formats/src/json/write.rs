@@ -1,4 +1,4 @@
-//! Scenes as JSON text.
+//! Writer of scenes as JSON text.
 
 use super::schema::word;
 use durer_scene::describe::{DescribedList, Value};
@@ -6,18 +6,18 @@ use durer_scene::dialect::Dialect;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, MatrixOp, Node, Object, Scene};
 
-/// Lines are as long as this where what stands in them can be parted.
+/// Maximum columns of a line whose value can be split over several lines.
 const WIDTH: usize = 120;
 
-/// A value to be written.
+/// A value to write.
 enum Json {
-    /// Numbers and strings, as they are written.
+    /// A number or a string, already as JSON text.
     Plain(String),
     List(Vec<Json>),
     Object(Vec<(&'static str, Json)>),
 }
 
-/// Writes a scene. `dialect` is that of its words' meaning.
+/// Writes a scene as JSON; `dialect` defines the meaning of its keywords.
 pub fn write(scene: &Scene, dialect: Dialect) -> String {
     let mut members = vec![("type", string("Scene"))];
     if dialect != Dialect::Durer {
@@ -45,7 +45,7 @@ pub fn write(scene: &Scene, dialect: Dialect) -> String {
 }
 
 fn string(text: &str) -> Json {
-    // A string can always be written.
+    // Serializing a string cannot fail.
     Json::Plain(serde_json::to_string(text).unwrap_or_default())
 }
 
@@ -61,7 +61,7 @@ fn vector(v: Vec3) -> Json {
     numbers(&v.to_array())
 }
 
-/// The fields of a thing that are given.
+/// Members for the fields that have values.
 fn fields<T: DescribedList>(thing: &T) -> Vec<(&'static str, Json)> {
     let value = |value: Value| match value {
         Value::Float(x) => number(x),
@@ -139,7 +139,7 @@ fn object(object: &Object) -> Json {
 }
 
 impl Json {
-    /// Writes it in one line where that is short, else an item a line.
+    /// Writes the value on one line if it fits, else one item a line.
     fn write(&self, out: &mut String, depth: usize) {
         let mut line = String::new();
         if self.fits(&mut line, WIDTH.saturating_sub(4 * depth)) {
@@ -173,7 +173,7 @@ impl Json {
         }
     }
 
-    /// Writes it in one line; gives up beyond a width.
+    /// Appends the value as one line; returns false if it exceeds `width` bytes.
     fn fits(&self, line: &mut String, width: usize) -> bool {
         match self {
             Json::Plain(text) => line.push_str(text),

@@ -1,4 +1,4 @@
-//! The faces of a Wavefront file, once all of its vertices are known.
+//! Reader of the faces of a Wavefront file, after all vertices are read.
 
 use super::{Counts, Statement, Switches, counts, statement, words::Words};
 use crate::number::parse_integer;
@@ -9,25 +9,24 @@ use durer_scene::shape::mesh::{MeshData, NO_INDEX};
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// What a corner refers to: a position, a texture coordinate and a normal.
+/// Indices of a corner: position, texture coordinate and normal.
 type Corner = [u32; 3];
 
-/// The statements that corners refer to, in the order in which a corner does: singular, plural,
-/// keyword.
+/// Names of what a corner's indices refer to, in their order: singular, plural, keyword.
 const KINDS: [(&str, &str, &str); 3] =
     [("vertex", "vertices", "v"), ("texture coordinate", "texture coordinates", "vt"), ("normal", "normals", "vn")];
 
-/// What a part of a file has of faces.
+/// Faces of one part of a file.
 struct Faces {
     mesh: MeshData,
     switches: Switches,
-    /// The first face that names a vertex twice, and how many do.
+    /// Range of the first face that names a vertex twice, and the number of such faces.
     degenerate: Option<(Range<usize>, usize)>,
     report: Report,
 }
 
-/// Reads the faces and cuts them into triangles. Repeated corners are kept: they do no harm.
-/// `before` has how many vertices of each kind there are before each part.
+/// Reads the faces in parallel and triangulates them. Repeated corners are kept, since they are
+/// harmless. `before` has the number of vertices of each kind before each part.
 pub(super) fn read_faces(
     bytes: &[u8],
     parts: &[Range<usize>],
@@ -43,8 +42,8 @@ pub(super) fn read_faces(
     for part in read {
         let first = mesh.triangles.len();
         mesh.triangles.extend(part.mesh.triangles);
-        // From the first triangle that has texture coordinates or normals on, all have entries; so
-        // must those before.
+        // Once a triangle has texture coordinates or normals, every triangle has an entry, so pad
+        // the entries of those before.
         for (all, own) in
             [(&mut mesh.triangle_uvs, part.mesh.triangle_uvs), (&mut mesh.triangle_normals, part.mesh.triangle_normals)]
         {
@@ -75,7 +74,7 @@ pub(super) fn read_faces(
     }
 }
 
-/// The same of one part.
+/// Reads the faces of one part.
 fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, report: Report) -> Faces {
     let mut reader = FaceReader {
         bytes,
@@ -98,7 +97,7 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
                 reader.found.switches.materials.push((reader.found.mesh.triangles.len(), name));
             }
             Some(Statement::Smoothing) => {
-                // `off` is no number.
+                // `off` does not parse and means group 0.
                 let word = words.next_word().map_or(&[][..], |word| &bytes[word]);
                 let group = std::str::from_utf8(word).ok().and_then(|word| word.parse().ok()).unwrap_or(0);
                 reader.found.switches.groups.push((reader.found.mesh.triangles.len(), group));
@@ -113,7 +112,7 @@ fn faces(bytes: &[u8], part: Range<usize>, so_far: Counts, whole: &MeshData, rep
     reader.found
 }
 
-/// The rest of a statement as one range, for names may have blanks.
+/// Returns the rest of a statement as one range, since names may contain blanks.
 pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
     match words.next_word() {
         Some(first) => first.start..words.skip_rest().unwrap_or(first.end),
@@ -123,9 +122,9 @@ pub(super) fn rest_of(words: &mut Words, end: usize) -> Range<usize> {
 
 struct FaceReader<'a> {
     bytes: &'a [u8],
-    /// How many vertices, texture coordinates and normals the file has.
+    /// Number of vertices, texture coordinates and normals in the file.
     total: Counts,
-    /// How many of them come before this statement.
+    /// Number of them before the current statement.
     so_far: Counts,
     positions: &'a [Vec3],
     corners: Vec<Corner>,
@@ -164,7 +163,7 @@ impl FaceReader<'_> {
         for (part, slot) in corner.iter_mut().enumerate() {
             let rest = &self.bytes[start..word.end];
             let end = start + rest.iter().position(|&byte| byte == b'/').unwrap_or(rest.len());
-            // All but the position may be left empty.
+            // All indices but the position may be empty.
             if end > start || part == 0 {
                 let counts = [self.total[part], self.so_far[part]];
                 *slot = index(self.bytes, start..end, part, counts, &mut self.found.report)?;
@@ -181,7 +180,7 @@ impl FaceReader<'_> {
     }
 
     fn note_degenerate(&mut self, place: &Range<usize>) {
-        // Neighbours only: outlines with holes pass a vertex twice for good reason.
+        // Checks neighbours only: outlines with holes pass a vertex twice on purpose.
         let last = self.corners.len() - 1;
         let repeats = |i: usize| self.corners[i][0] == self.corners[if i == last { 0 } else { i + 1 }][0];
         if (0..=last).any(repeats) {
@@ -209,8 +208,8 @@ impl FaceReader<'_> {
     }
 }
 
-/// Reads an index of a kind, counted from 1 or, negative, back from the last statement of its kind.
-/// `total` and `so_far`: how many there are in the file and before this statement.
+/// Reads an index that counts from 1 or, if negative, back from the last statement of its kind.
+/// `total` and `so_far` are the numbers of such statements in the file and before this one.
 pub(super) fn index(
     bytes: &[u8],
     at: Range<usize>,
@@ -244,7 +243,7 @@ pub(super) fn index(
     None
 }
 
-/// Adds indices to a list that begins, filled up, where the first triangle has some.
+/// Appends indices; the list starts, padded, at the first triangle that has some.
 fn push_optional(list: &mut Vec<[u32; 3]>, before: usize, indices: [u32; 3]) {
     if !list.is_empty() || indices != [NO_INDEX; 3] {
         list.resize(before, [NO_INDEX; 3]);

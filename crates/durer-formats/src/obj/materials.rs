@@ -1,4 +1,4 @@
-//! Wavefront `.mtl`: the words of materials, which `written.rs` brings together.
+//! Reader of Wavefront `.mtl` files; `written.rs` translates the materials.
 //!
 //! Sources: *The MTL material format*, Alias|Wavefront, 1995; the extension for physically based
 //! materials of Clara.io (Pr, Pm, Pc, Pcr, Ps, Ke, norm).
@@ -18,14 +18,14 @@ use durer_scene::texture::{Channel, Mapping, Wrap};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// Materials by name, and the pictures that they show.
+/// Materials by name, and their textures.
 #[derive(Default)]
 pub(super) struct Library {
     pub materials: BTreeMap<String, PrincipledMaterial>,
     pub pictures: BTreeMap<String, Picture>,
 }
 
-/// Reads the files that a `mtllib` names: one whose name has blanks, or several.
+/// Reads the files of an `mtllib` statement: one file whose name has blanks, or several files.
 pub(super) fn read_files(
     input: &Input,
     names: &Range<usize>,
@@ -36,7 +36,7 @@ pub(super) fn read_files(
     let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
     let files = match found(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
-        // Some programs write a blank within a name after a backslash.
+        // Some programs escape blanks within a name by a backslash.
         None => {
             let names = all.replace("\\ ", "\0");
             let names = names.split_whitespace().map(|name| name.replace('\0', " "));
@@ -59,8 +59,7 @@ pub(super) fn read_files(
     }
 }
 
-/// Words for pictures of parameters, and where they go. What has no number of its own beside them
-/// counts as 1.
+/// Texture statements and their fields. A parameter without a value counts as 1.
 type Field = fn(&mut PrincipledMaterial) -> &mut Option<FileName>;
 const MAPS: [(&str, Field); 12] = [
     ("map_ks", |m| &mut m.specular_color_texture),
@@ -77,14 +76,14 @@ const MAPS: [(&str, Field); 12] = [
     ("map_bump", |m| &mut m.bump_texture),
 ];
 
-/// How high the white of a bump map lies that is `-bm 1`, in sizes of the model: its own unit is
-/// not defined.
+/// Height of white in a bump map with `-bm 1`, as a fraction of the diagonal of the model's bounds:
+/// the format defines no unit.
 const BUMP: f32 = 0.002;
 
-/// Numbers of words without a counterpart with which they change nothing.
+/// Statements without a counterpart, with the value at which they have no effect.
 const WITHOUT_EFFECT: [(&str, f32); 2] = [("anisor", 0.0), ("sharpness", 60.0)];
 
-/// A word, and where it stands.
+/// A word and its span.
 struct Word {
     text: String,
     at: Span,
@@ -92,12 +91,12 @@ struct Word {
 
 struct Reader<'a, 'i> {
     input: &'a Input<'i>,
-    /// The number of the file.
+    /// Index of the file.
     file: u32,
-    /// Its name.
+    /// Name of the file.
     path: &'a str,
     library: &'a mut Library,
-    /// Words that are left out, and where the first of each stands.
+    /// Ignored keywords, with the span of the first use.
     left_out: BTreeMap<String, Span>,
 }
 
@@ -135,7 +134,7 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// Takes up a statement; a problem comes with its place.
+    /// Applies a statement to a material; an error comes with its span.
     fn word(
         &mut self,
         keyword: &Word,
@@ -153,7 +152,7 @@ impl Reader<'_, '_> {
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
-            // Colours by spectrum or in CIE XYZ have a word before them.
+            // Colours given as a spectrum or in CIE XYZ begin with a word.
             match numbers(rest)[..] {
                 [r, g, b, ..] => Ok(Some(Vec3::new(r, g, b).max(Vec3::ZERO))),
                 [r, ..] => Ok(Some(Vec3::splat(r.max(0.0)))),
@@ -180,7 +179,7 @@ impl Reader<'_, '_> {
                 m.pictured = true;
                 m.diffuse_map = self.map(keyword, rest, m, diagnostics);
             }
-            // Light from everywhere and its maps are computed here.
+            // The ambient colour and its maps are ignored: indirect light is computed.
             "ka" | "map_ka" | "map_aat" => {}
             lower => match MAPS.iter().find(|row| row.0 == lower) {
                 Some((_, field)) => {
@@ -191,7 +190,7 @@ impl Reader<'_, '_> {
                             rest.iter().position(|word| word.text == "-bm").map(|at| numbers(&rest[at + 1..]));
                         let strength = strength.and_then(|numbers| numbers.first().copied());
                         m.pictures.bump_height = BUMP * strength.unwrap_or(1.0);
-                        // Many programs write pictures of normals where heights belong.
+                        // Many programs write normal maps where bump maps belong.
                         if names_normals(rest) {
                             field = |m| &mut m.normal_texture;
                         }
@@ -209,7 +208,7 @@ impl Reader<'_, '_> {
         self.left_out.entry(word.to_string()).or_insert(at);
     }
 
-    /// A texture: options that begin with `-`, and the name of its picture, which may have blanks.
+    /// Reads a texture: options that begin with `-`, then a file name, which may contain blanks.
     fn map(&mut self, keyword: &Word, rest: &[Word], m: &Written, diagnostics: &mut Diagnostics) -> Option<FileName> {
         let (mut mapping, mut at) = (Mapping::default(), 0);
         let (mut scale, mut offset) = ([1.0f32; 2], [0.0f32; 2]);
@@ -243,7 +242,7 @@ impl Reader<'_, '_> {
                 "-imfchan" => {
                     mapping.channel = next.and_then(|word| match word {
                         "m" => Some(Channel::Alpha),
-                        // Luminance and depth: of grey pictures any channel.
+                        // Luminance and depth; in grey pictures any channel gives these.
                         word => Channel::from_word(word),
                     });
                     1
@@ -252,7 +251,7 @@ impl Reader<'_, '_> {
                 _ => 1,
             };
         }
-        // Coordinates have v upwards, the picture's rows go down.
+        // Texture coordinates have v upwards; the picture's rows go down.
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
         let named = rest.get(at..).unwrap_or_default();
         let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.to(last.at));
@@ -268,7 +267,7 @@ impl Reader<'_, '_> {
         Some(FileName { path, span })
     }
 
-    /// A material that is there keeps its place: the first of a name counts.
+    /// Adds a material to the library, unless it already has one of this name.
     fn finish(&mut self, mut written: Written) {
         if written.loses_filter() {
             self.leave_out("Tf", written.filter_at);
@@ -278,20 +277,19 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The numbers with which some words begin.
+/// The leading numbers in a list of words.
 fn numbers(words: &[Word]) -> Vec<f32> {
     words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
 }
 
-/// Whether the name of a picture, the last of a statement's words, says that it has normals.
+/// Returns true if the file name at the end of a statement suggests a normal map.
 fn names_normals(rest: &[Word]) -> bool {
     let name = rest.last().map(|name| name.text.to_lowercase()).unwrap_or_default();
     let stem = name.rsplit_once('.').map_or(name.as_str(), |(stem, _)| stem);
     ["normal", "_nrm", "_ddn", "_norm"].iter().any(|word| stem.contains(word)) || stem.ends_with("_n")
 }
 
-/// The name of a file that may be had, of those that a material may mean: as written, or its last
-/// name beside the scene.
+/// Finds a file of the scene: its path as written, or its bare name beside the scene.
 fn found(input: &Input, path: &str, span: Span) -> Option<FileName> {
     let portable = path.replace('\\', "/");
     let last = portable.rsplit('/').next().unwrap_or_default();

@@ -1,11 +1,11 @@
-//! What the course's programs know of a Wavefront file.
+//! Compatibility with the course programs' readers of Wavefront files.
 
 use super::{Statement, statement, words::Words};
 use durer_scene::dialect::{Compat, CompatSet};
 use std::borrow::Cow;
 
-/// The same file, with blanks in place of what programs with some quirks pass over: all else stays
-/// where it is.
+/// Returns the file with blanks in place of what programs with these quirks ignore, so that byte
+/// offsets stay the same.
 ///
 /// The quirks are [`Compat::LostLastLine`] and [`Compat::ThreeCorners`].
 pub fn known(bytes: &[u8], quirks: CompatSet) -> Cow<'_, [u8]> {

@@ -1,4 +1,4 @@
-//! A Wavefront file with the materials that it names: a mesh for each.
+//! Reader of a Wavefront file as a scene: one mesh for each material that it names.
 
 use super::faces::rest_of;
 use super::materials::{self, Library};
@@ -18,11 +18,11 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// The format of scenes.
+/// The Wavefront scene format.
 pub(crate) const FORMAT: SceneFormat = SceneFormat {
     name: super::FORMAT.name,
     extensions: super::FORMAT.extensions,
-    // Its first word could be anything: only the name tells.
+    // The first word is not distinctive; only the extension identifies the format.
     recognise: |_| false,
     read,
     write: None,
@@ -61,7 +61,7 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     wires.found.retain(|wires| !wires.lines.is_empty() || !wires.points.is_empty());
     let alone = data.triangles.is_empty() && wires.found.is_empty() && !data.positions.is_empty();
     if alone && !report.has_errors() {
-        // A file of vertices alone is a cloud of points.
+        // A file of vertices alone is a point cloud.
         let points = (0..data.positions.len() as u32).collect();
         wires.found.push(Wires { points, ..Wires::default() });
     }
@@ -105,13 +105,13 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
     Some(scene)
 }
 
-/// From switch to switch the triangles for which it counts, of so many.
+/// Pairs each switch with the range of triangles that it applies to; the last ends at `count`.
 fn runs<T>(switches: &[Switch<T>], count: usize) -> impl Iterator<Item = (Range<usize>, &T)> {
     let ends = switches.iter().skip(1).map(|switch| switch.0).chain([count]);
     switches.iter().zip(ends).map(|((start, what), end)| (*start..end, what))
 }
 
-/// Gives the triangles of smoothing groups normals, where the file has none.
+/// Computes normals for the triangles of smoothing groups that have none in the file.
 fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     if switches.iter().all(|&(_, group)| group == 0) {
         return;
@@ -121,8 +121,8 @@ fn smooth(data: &mut MeshData, switches: &[Switch<u32>]) {
     smoothed(data, |triangle, _| (groups[triangle] > 0).then(|| groups[triangle]));
 }
 
-/// A mesh for each name of a material, in the order of the names' first triangles, and a place
-/// where it is named.
+/// Splits a mesh by material name, in the order of first use; each part comes with the range of a
+/// mention of its name.
 fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Vec<(MeshData, Range<usize>)> {
     let runs = runs(switches, data.triangles.len()).map(|(run, at)| (run, at.clone()));
     let before = 0..switches.first().map_or(data.triangles.len(), |switch| switch.0);
@@ -136,14 +136,14 @@ fn parts(data: &MeshData, bytes: &[u8], switches: &[Switch<Range<usize>>]) -> Ve
         order[number].0.push(run);
     }
     match order.as_slice() {
-        // Nothing to part.
+        // Nothing to split.
         [] => vec![(data.clone(), 0..0)],
         [(_, at)] => vec![(data.clone(), at.clone())],
         _ => order.into_iter().map(|(runs, at)| (part(data, &runs), at)).collect(),
     }
 }
 
-/// Some of the triangles, with what they use.
+/// Copies some of the triangles with the vertices that they use.
 fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     let mut part = MeshData::default();
     let pick = |list: &[[u32; 3]]| -> Vec<[u32; 3]> {
@@ -170,7 +170,7 @@ fn part(data: &MeshData, runs: &[Range<usize>]) -> MeshData {
     part
 }
 
-/// Numbers what is used from 0 on; gives the old numbers.
+/// Renumbers the used indices from 0; returns the old indices.
 fn renumber(list: &mut [[u32; 3]]) -> Vec<u32> {
     let mut used: Vec<u32> = list.iter().flatten().copied().filter(|&i| i != NO_INDEX).collect();
     used.sort_unstable();

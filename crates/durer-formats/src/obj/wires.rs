@@ -10,21 +10,21 @@ use std::ops::Range;
 /// Lines and points of one material.
 #[derive(Default)]
 pub(super) struct Wires {
-    /// A place where the material is named; empty without one.
+    /// Range of a mention of the material's name; empty if there is none.
     pub(super) material: Range<usize>,
-    /// Pairs of vertices.
+    /// Pairs of vertex indices.
     pub(super) lines: Vec<[u32; 2]>,
     pub(super) points: Vec<u32>,
 }
 
-/// Collects the statements `l` and `p`.
+/// Reader of the statements `l` and `p`.
 pub(super) struct WireReader<'a> {
     pub(super) bytes: &'a [u8],
-    /// How many vertices the file has, and how many of them come before this statement.
+    /// Number of vertices in the file, and number of those before the current statement.
     pub(super) vertices: [usize; 2],
-    /// Where the current material is named.
+    /// Range of the current material's name.
     pub(super) material: Range<usize>,
-    /// In the order in which materials are first used.
+    /// Lines and points by material, in order of first use.
     pub(super) found: Vec<Wires>,
     numbers: BTreeMap<&'a [u8], usize>,
 }
@@ -43,7 +43,7 @@ impl<'a> WireReader<'a> {
         let wires = &mut self.found[number];
         let mut last = None;
         while let Some(word) = words.next_word() {
-            // A texture coordinate may follow, for which a stick has no place.
+            // Ignores a texture coordinate: a stick has none.
             let length = self.bytes[word.clone()].iter().position(|&byte| byte == b'/').unwrap_or(word.len());
             let at = word.start..word.start + length;
             let Some(vertex) = index(self.bytes, at, 0, self.vertices, report) else { return };

@@ -1,12 +1,12 @@
-//! The words of a Wavefront file, statement by statement.
+//! Tokenizer of Wavefront files, statement by statement.
 
 use crate::number::is_not_finite_tail;
 use std::ops::Range;
 
-/// Walks over the words of one statement after the other.
+/// Cursor over the words of a file, one statement after the other.
 ///
-/// A statement ends with its line, unless a backslash ends the line; a `#` starts a comment that
-/// ends with the line in any case. Words are ranges of bytes, so nothing is copied.
+/// A statement ends with its line, unless the line ends in a backslash. `#` starts a comment, which
+/// always ends with the line. Words are byte ranges, so nothing is copied.
 #[derive(Clone)]
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
@@ -14,30 +14,30 @@ pub(super) struct Words<'a> {
 }
 
 impl<'a> Words<'a> {
-    /// From the start of a file, after a byte order mark.
+    /// Starts at the beginning of a file, after a byte order mark.
     pub fn new(bytes: &'a [u8]) -> Self {
         Words { bytes, at: if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 } }
     }
 
-    /// Those of a part of a file that [`parts`] gave; places are still those in the file.
+    /// Starts at one of the [`parts`] of a file. Ranges are relative to the whole file.
     pub fn within(bytes: &'a [u8], part: Range<usize>) -> Self {
         let whole = Words::new(&bytes[..part.end]);
         Words { at: whole.at.max(part.start), ..whole }
     }
 
-    /// Goes to the next statement and returns its first word, or `None` at the end of the file.
+    /// Moves to the next statement and returns its first word; `None` at the end of the file.
     pub fn next_statement(&mut self) -> Option<Range<usize>> {
         loop {
             match self.next_word() {
                 Some(word) => return Some(word),
-                // Past the end of the line, where there is one.
+                // Skip the line end, if there is one.
                 None if self.at < self.bytes.len() => self.at += 1,
                 None => return None,
             }
         }
     }
 
-    /// The next word of this statement.
+    /// Returns the next word of the current statement.
     pub fn next_word(&mut self) -> Option<Range<usize>> {
         loop {
             match *self.bytes.get(self.at)? {
@@ -62,7 +62,7 @@ impl<'a> Words<'a> {
             let ends = match byte {
                 b' ' | b'\t' | 0x0b | 0x0c | b'\n' | b'\r' => true,
                 b'\\' => self.continuation() > 0,
-                // A comment, unless it is the middle of `1.#INF`.
+                // `#` starts a comment, unless it is within `1.#INF`.
                 b'#' => !is_not_finite_tail(&self.bytes[self.at..]),
                 _ => false,
             };
@@ -74,12 +74,12 @@ impl<'a> Words<'a> {
         Some(start..self.at)
     }
 
-    /// Skips what is left of this statement and returns where its last word ended, if any was left.
+    /// Skips the rest of the statement; returns the end of its last word, if there was a word left.
     pub fn skip_rest(&mut self) -> Option<usize> {
         std::iter::from_fn(|| self.next_word()).last().map(|word| word.end)
     }
 
-    /// Skips what is left of this statement.
+    /// Skips the rest of the statement.
     pub fn skip(&mut self) {
         let rest = &self.bytes[self.at.min(self.bytes.len())..];
         match rest.iter().position(|byte| matches!(byte, b'\n' | b'\r' | b'\\')) {
@@ -89,8 +89,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// How many bytes the backslash and the end of line here take; 0 where they are no
-    /// continuation.
+    /// Length in bytes of the line continuation at the cursor, or 0.
     fn continuation(&self) -> usize {
         match self.bytes[self.at..] {
             [b'\\', b'\r', b'\n', ..] => 3,
@@ -101,7 +100,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Cuts a file into parts of about a megabyte that end where statements do. Where they end does not
+/// Splits a file into parts of about a megabyte that end between statements. The result does not
 /// depend on the machine.
 pub(super) fn parts(bytes: &[u8]) -> Vec<Range<usize>> {
     const SIZE: usize = 1 << 20;

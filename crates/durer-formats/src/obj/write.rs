@@ -1,10 +1,10 @@
-//! Meshes as Wavefront files: everything but the vertices' second coordinates and tangents.
+//! Writer of meshes as Wavefront files: all but second texture coordinates and tangents.
 
 use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use std::fmt::Write;
 
-/// Numbers are written as short as they can be to be read as the same.
+/// Writes a mesh. Numbers have as few digits as read back to the same value.
 pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     // Writing to a String cannot fail.
     let mut out = String::new();

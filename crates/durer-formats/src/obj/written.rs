@@ -1,4 +1,4 @@
-//! What a material of an `.mtl` says, and what it is in the words of OpenPBR.
+//! Statements of a material in an `.mtl` file, and their translation into OpenPBR parameters.
 
 use durer_diag::Span;
 use durer_scene::bsdf::layers::opaque_ior;
@@ -6,14 +6,14 @@ use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 
-/// What a material's words say, before they are brought together.
+/// Values of a material's statements.
 #[derive(Default)]
 pub(super) struct Written {
     pub name: String,
     pub diffuse: Option<Vec3>,
     pub specular: Option<Vec3>,
     pub emission: Option<Vec3>,
-    /// The filter of what passes through (`Tf`).
+    /// Transmission filter (`Tf`).
     pub filter: Option<Vec3>,
     pub filter_at: Span,
     pub exponent: Option<f32>,
@@ -27,14 +27,14 @@ pub(super) struct Written {
     pub coat_roughness: Option<f32>,
     pub anisotropy: Option<f32>,
     pub diffuse_map: Option<FileName>,
-    /// Whether a picture was named, there or not.
+    /// True if the material has a statement `map_Kd`, even if its file is missing.
     pub pictured: bool,
-    /// Its other pictures, and no more.
+    /// The other textures and the bump height; all else has default values.
     pub pictures: PrincipledMaterial,
 }
 
 impl Written {
-    /// Whether it has words of the extension for physically based materials.
+    /// Returns true if the material uses the extension for physically based materials.
     fn is_physical(&self) -> bool {
         let pictured = |picture: &Option<FileName>| picture.is_some();
         let pictures = [&self.pictures.specular_roughness_texture, &self.pictures.base_metalness_texture];
@@ -45,8 +45,9 @@ impl Written {
         self.model.unwrap_or(2.0) as i32
     }
 
-    /// How much of the light passes through. Beside physical words `Tf` says it, as Blender writes
-    /// and reads it; else the model, of which 4, 6, 7 and 9 are glass.
+    /// Fraction of light that is transmitted. In a physically based material it is `Tf`, as Blender
+    /// writes and reads it; else it follows from the illumination model, of which 4, 6, 7 and 9 are
+    /// glass.
     fn transmission(&self) -> f32 {
         let opacity = self.opacity();
         match (self.filter, self.model()) {
@@ -61,28 +62,28 @@ impl Written {
         self.opacity.unwrap_or(1.0).clamp(0.0, 1.0)
     }
 
-    /// Whether light that passes should be coloured, and is not.
+    /// Returns true if transmitted light should be tinted, but the translation cannot do it.
     pub fn loses_filter(&self) -> bool {
         let filters = self.filter.is_some_and(|filter| filter != Vec3::ONE);
         filters && !self.is_physical() && self.transmission() == 0.0 && self.opacity() < 1.0
     }
 
-    /// Brings the words together.
+    /// Translates the statements into OpenPBR parameters.
     pub fn layers(self) -> PrincipledMaterial {
         let (physical, model) = (self.is_physical(), self.model());
         let (transmission, opacity) = (self.transmission(), self.opacity());
-        // A picture alone is not darkened.
+        // A texture without `Kd` is not darkened.
         let usual = if self.diffuse_map.is_some() { Vec3::ONE } else { Vec3::splat(0.8) };
         let mut m = PrincipledMaterial { base_color: self.diffuse.unwrap_or(usual), ..self.pictures };
         m.base_color_texture = self.diffuse_map;
-        // Black under a picture is what programs write that mean the picture alone.
+        // Programs that mean the texture alone often write a black `Kd`.
         if self.pictured && m.base_color == Vec3::ZERO {
             m.base_color = Vec3::ONE;
         }
         let pictured = |picture: &Option<FileName>| if picture.is_some() { 1.0 } else { 0.0 };
         let specular = self.specular.unwrap_or(Vec3::splat(pictured(&m.specular_color_texture)));
-        // A highlight as wide as Blinn's of the exponent: alpha^2 = 2 / (n + 2); roughness^2 =
-        // alpha.
+        // Roughness of a highlight as wide as Blinn's with this exponent: alpha^2 = 2 / (n + 2),
+        // roughness^2 = alpha.
         let exponent = self.exponent.unwrap_or(if specular == Vec3::ZERO { 0.0 } else { 50.0 }).max(0.0);
         let rough = m.specular_roughness_texture.is_some();
         let by_exponent = if rough { 1.0 } else { (2.0 / (exponent + 2.0)).sqrt().sqrt() };
@@ -91,36 +92,37 @@ impl Written {
         m.specular_ior = self.ior.filter(|ior| *ior >= 1.0 && *ior < 10.0).unwrap_or(1.5);
         let level = specular.max_element().min(1.0);
         m.specular_weight = match model {
-            // Models without highlights.
+            // These models have no highlights.
             0 | 1 => 0.0,
             _ if !physical => level,
-            // Beside physical words it is Disney's `specular`, of which a half is what the index
-            // reflects; Blender writes and reads it so.
+            // In a physically based material `Ks` is Disney's `specular`, where 0.5 equals the
+            // reflectance of the index; Blender writes and reads it so.
             _ if self.specular.is_some() || m.specular_color_texture.is_some() => 2.0 * level,
             _ => 1.0,
         };
         if physical && m.base_metalness > 0.0 {
-            // That is of what is no metal alone.
+            // The specular weight only applies to the dielectric part.
             (m.specular_ior, m.specular_weight) = (opaque_ior(&m), 1.0);
         }
-        // Models 3 and 8 mirror: what is black and mirrors is metal.
+        // Models 3 and 8 are mirrors: a black base colour with a mirror is a metal.
         if matches!(model, 3 | 8) && m.base_color.max_element() < 0.05 && specular != Vec3::ZERO {
             (m.base_color, m.base_metalness, m.specular_weight) = (specular.min(Vec3::ONE), 1.0, 1.0);
         }
         let by_filter = physical && self.filter.is_some();
         match transmission > 0.0 && !by_filter {
             true => m.specular_weight = 1.0,
-            // What is not glass by its model is there in part.
+            // In other models, `d` is the opacity.
             false => m.opacity = opacity,
         }
         m.transmission_weight = transmission;
         if let Some(filter) = self.filter.filter(|_| transmission > 0.0) {
             let (tint, picture) = match by_filter {
-                // Its greatest part is a share, and what passes takes on the base colour too.
+                // The maximum of `Tf` is the fraction; transmitted light is tinted by the base
+                // colour too.
                 true => (m.base_color * filter / filter.max_element(), m.base_color_texture.clone()),
                 false => (filter.min(Vec3::ONE), None),
             };
-            // Light meets the skin of a body twice, as it enters and as it leaves.
+            // Light crosses the surface twice, as it enters and as it leaves.
             m.transmission_color = Vec3::from_array(tint.to_array().map(f32::sqrt));
             m.transmission_color_texture = picture;
         }

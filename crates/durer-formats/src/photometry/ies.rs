@@ -1,11 +1,13 @@
-//! IES files: measured light of lamps, ANSI/IES LM-63 of 1986 to 2019.
+//! Reader and writer of IES files: light distributions of luminaires, ANSI/IES LM-63 of 1986 to
+//! 2019.
 //!
-//! Text lines, among them `TILT=`, then numbers: how many angles, the angles, and the candela.
+//! A file has lines of text, the last of them `TILT=`, then numbers: counts of angles, the angles,
+//! and the candela values.
 
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{Profile, ProfileKind};
 
-/// More angles than any photometer has.
+/// Limit on the number of angles, above what any photometer has.
 const MAX_ANGLES: f64 = 4_000.0;
 
 struct Numbers<'t> {
@@ -20,7 +22,7 @@ impl Numbers<'_> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// The next number. Commas part numbers too, as files in the wild have it.
+    /// Reads the next number. Commas separate numbers too, as in some real files.
     fn next(&mut self, what: &str) -> Result<(f64, usize), Box<Diagnostic>> {
         let rest = &self.text[self.at..];
         let between = |c: char| c.is_whitespace() || c == ',';
@@ -47,7 +49,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A factor, which turns no light into darkness.
+    /// Reads a factor, which must not be negative.
     fn factor(&mut self, what: &str) -> Result<f64, Box<Diagnostic>> {
         let (number, start) = self.next(what)?;
         match number >= 0.0 {
@@ -56,7 +58,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// Angles that rise, within a turn to either side.
+    /// Reads ascending angles from -360 to 360 degrees.
     fn angles(&mut self, count: usize, what: &str) -> Result<Vec<f32>, Box<Diagnostic>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
@@ -101,7 +103,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     match tilt.as_str() {
         "NONE" => {}
         "INCLUDE" => {
-            // How lamps fade that burn tilted: of a lamp in its usual position it says nothing.
+            // Factors for tilted luminaires are skipped: they have no effect in the usual position.
             numbers.next("lamp's position")?;
             let pairs = numbers.count("number of tilt angles")?;
             numbers.angles(pairs, "tilt angle")?;
@@ -133,7 +135,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
         numbers.next(what)?;
     }
     let ballast = numbers.factor("ballast factor")?;
-    // Of 1986: a factor for ballast and lamp; later reserved, and 1.
+    // A photometric factor in the standard of 1986; reserved in later ones, and 1.
     let (reserved, _) = numbers.next("reserved number")?;
     numbers.next("watts")?;
     let vertical = numbers.angles(verticals, "vertical angle")?;
@@ -162,7 +164,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     };
     let (first, last) = (horizontal[0], horizontal[horizontals - 1]);
     if kind == ProfileKind::C && horizontals > 1 && first == 0.0 && last > 180.0 && last < 360.0 {
-        // Nothing is said of what follows: as all around, it leads back to the first.
+        // The file leaves the rest open: close the circle with the first values.
         warn(angles.clone(), "the horizontal angles end before 360: from there to the first candela are linear");
         horizontal.push(360.0);
         candela.extend_from_within(..verticals);
@@ -176,7 +178,7 @@ fn parse(text: &str, file: u32) -> Result<(Profile, Vec<Diagnostic>), Box<Diagno
     Ok((Profile { kind, vertical, horizontal, candela }, odd))
 }
 
-/// The same as a file: what is read of it is equal to the bit.
+/// Writes a profile as a file that reads back bit for bit.
 pub fn write(profile: &Profile) -> Vec<u8> {
     let Profile { kind, vertical, horizontal, candela } = profile;
     let kind = match kind {
@@ -187,7 +189,7 @@ pub fn write(profile: &Profile) -> Vec<u8> {
     let mut text = String::from("IESNA:LM-63-2002\nTILT=NONE\n");
     text += &format!("1 -1 1 {} {} {kind} 2 0 0 0\n1 1 0\n", vertical.len(), horizontal.len());
     for values in [vertical, horizontal, candela] {
-        // Lines of more than 256 characters are not allowed.
+        // Lines may have at most 256 characters.
         for line in values.chunks(10) {
             let words: Vec<String> = line.iter().map(f32::to_string).collect();
             text += &(words.join(" ") + "\n");
@@ -269,7 +271,7 @@ mod tests {
                 "{text}: {line}:{column} {warning:?}"
             );
             if told.contains("360") {
-                // Half way from 270 on to 0.
+                // Halfway from 270 to 360.
                 let (sin, cos) = durer_scene::math::fp::sin_cos_degrees(315.0);
                 let dir = durer_scene::math::Vec3::new(cos as f32, sin as f32, 0.0);
                 assert!((profile.at(dir) - 2.0).abs() < 1e-3, "{}", profile.at(dir));

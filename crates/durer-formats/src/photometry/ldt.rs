@@ -1,7 +1,8 @@
-//! EULUMDAT files (`.ldt`): measured light of lamps, as it is exchanged in Europe.
+//! Reader of EULUMDAT files (`.ldt`): light distributions of luminaires, common in Europe.
 //!
-//! One value a line, in an order that never changes: what the lamp is, how its planes are
-//! symmetric, its lamps and their flux, the angles, and candela for each 1000 lumen of that flux.
+//! A file has one value a line in a fixed order: the type of luminaire, the symmetry of its planes,
+//! its light sources and their flux, the angles, and intensities in candela per 1000 lumens of that
+//! flux.
 //!
 //! Source: A. W. Stockmar, *EULUMDAT: ein Leuchtendatenformat für den europäischen
 //! Beleuchtungsplaner*, Licht '90; the order of lines as Paul Bourke and Lighting Sciences publish
@@ -10,21 +11,21 @@
 use durer_diag::{Diagnostic, Diagnostics, Severity, Span};
 use durer_scene::light::photometric::{Profile, ProfileKind};
 
-/// More angles than any photometer has, as the format says: planes, and angles in each.
+/// Limits of the format: number of planes, and number of angles in each.
 const MAX_PLANES: usize = 721;
 const MAX_ANGLES: usize = 361;
 
-/// How the light distribution repeats itself.
+/// Symmetry of the light distribution.
 #[derive(Clone, Copy)]
 enum Symmetry {
     None,
-    /// All planes are alike.
+    /// Rotational symmetry: all planes are equal.
     Axis,
-    /// To the plane of C = 0 and 180 degrees.
+    /// Mirror symmetry about the plane C = 0 and 180 degrees.
     C0,
-    /// To that of 90 and 270 degrees.
+    /// Mirror symmetry about the plane C = 90 and 270 degrees.
     C90,
-    /// To both.
+    /// Symmetry about both planes.
     Both,
 }
 
@@ -42,7 +43,7 @@ impl<'t> Lines<'t> {
         Box::new(Diagnostic::error(message).code("bad-file").at(span))
     }
 
-    /// The next line without spaces around it, and where it starts.
+    /// Returns the next line, trimmed, and its offset.
     fn next(&mut self, what: &str) -> Found<(&'t str, usize)> {
         if self.at >= self.text.len() {
             return Err(self.error(self.at, self.at, format!("the file ends where the {what} should be")));
@@ -58,7 +59,7 @@ impl<'t> Lines<'t> {
         (0..lines).try_for_each(|_| self.next(what).map(drop))
     }
 
-    /// A number; a comma is as good as a point.
+    /// Reads a number; the decimal separator may be a comma.
     fn number(&mut self, what: &str) -> Found<(f64, usize, usize)> {
         let (line, start) = self.next(what)?;
         let end = start + line.len();
@@ -84,7 +85,7 @@ impl<'t> Lines<'t> {
         Ok(number)
     }
 
-    /// Angles that rise from 0 on.
+    /// Reads ascending angles from 0 to `most` degrees.
     fn angles(&mut self, count: usize, what: &str, most: f64) -> Found<Vec<f32>> {
         let mut angles: Vec<f32> = Vec::with_capacity(count);
         for _ in 0..count {
@@ -101,8 +102,8 @@ impl<'t> Lines<'t> {
     }
 }
 
-/// Whether a text begins as such a file does: the kind of lamp and its symmetry stand in the second
-/// and the third line, as whole numbers.
+/// Returns true if a text begins as a EULUMDAT file does: the type of luminaire and the symmetry
+/// are whole numbers in the second and third line.
 pub(super) fn recognise(text: &str) -> bool {
     let mut lines = text.lines().map(str::trim).skip(1);
     let mut is_whole = || lines.next().is_some_and(|line| line.parse::<u32>().is_ok());
@@ -133,7 +134,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
     let factor = lines.not_negative("conversion factor")?;
     lines.skip(1, "tilt")?;
     let sets = lines.whole("number of sets of lamps", 1, 20)?;
-    // Sets stand for each other: the light is that of the first.
+    // The sets are alternatives; the first one is used.
     lines.skip(2, "number and kind of the lamps")?;
     let flux = lines.not_negative("flux of the lamps")?;
     lines.skip(3 + 6 * (sets - 1), "colour and watts of the lamps")?;
@@ -156,12 +157,12 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
     }
     let mut profile = Profile { kind: ProfileKind::C, vertical, horizontal, candela };
     match symmetry {
-        // From the last plane it leads back to the first.
+        // Close the circle with the first plane.
         Symmetry::None if count > 1 && profile.horizontal[count - 1] < 360.0 => {
             profile.horizontal.push(360.0);
             profile.candela.extend_from_within(..verticals);
         }
-        // From 270 over 0 to 90: as IES has it, from 90 to 270.
+        // The file has 270 over 0 to 90 degrees; a profile has 90 to 270, as in IES files.
         Symmetry::C90 => turned(&mut profile),
         _ => {}
     }
@@ -173,7 +174,7 @@ fn parse(text: &str, file: u32, diagnostics: &mut Diagnostics) -> Found<Profile>
 }
 
 impl Lines<'_> {
-    /// The planes of which intensities follow, of all that are named.
+    /// Selects the planes that the file has intensities for.
     fn kept(&self, symmetry: Symmetry, planes: Vec<f32>, at: std::ops::Range<usize>) -> Found<Vec<f32>> {
         let within = |from: f32, to: f32| planes.iter().copied().filter(|c| (from..=to).contains(c)).collect();
         let (kept, ends): (Vec<f32>, _) = match symmetry {
@@ -181,13 +182,13 @@ impl Lines<'_> {
             Symmetry::None => (planes, [0.0, f32::NAN]),
             Symmetry::C0 => (within(0.0, 180.0), [0.0, 180.0]),
             Symmetry::C90 => {
-                // They follow each other from 270 to 360, and from 0 to 90.
+                // They run from 270 to 360, then from 0 to 90.
                 let below = planes.iter().filter(|c| **c >= 270.0 && **c < 360.0).map(|c| c - 360.0);
                 (below.chain(within(0.0, 90.0)).collect(), [-90.0, 90.0])
             }
             Symmetry::Both => (within(0.0, 90.0), [0.0, 90.0]),
         };
-        // All around there is no last one.
+        // Without symmetry the last plane is not fixed.
         let [first, last] = ends;
         if kept.first() == Some(&first) && (last.is_nan() || kept.last() == Some(&last)) {
             return Ok(kept);
@@ -199,7 +200,7 @@ impl Lines<'_> {
     }
 }
 
-/// Mirrors what is from -90 to 90 degrees to the other half of the circle.
+/// Mirrors the half circle from -90 to 90 degrees to the other half.
 fn turned(profile: &mut Profile) {
     let verticals = profile.vertical.len();
     profile.horizontal = profile.horizontal.iter().rev().map(|c| 180.0 - c).collect();
@@ -212,8 +213,8 @@ mod tests {
     use durer_diag::Files;
     use durer_scene::math::{Vec3, fp};
 
-    /// A file: symmetry, number of planes in a turn, the flux of its lamps, and intensities by
-    /// plane and gamma angle, of those planes that are written.
+    /// A test file with a symmetry, a number of planes around the circle, a flux, and intensities
+    /// by plane and gamma angle, for the `written` planes.
     fn file(symmetry: u32, count: usize, flux: &str, written: &[f64], value: impl Fn(f64, f64) -> f64) -> String {
         let gammas: Vec<f64> = (0..=36).map(|i| 5.0 * f64::from(i)).collect();
         let planes = (0..count).map(|i| 360.0 / count as f64 * i as f64);
@@ -247,7 +248,7 @@ mod tests {
 
     #[test]
     fn every_symmetry_fills_the_circle() {
-        // Candela for each 1000 lumen, of 2000; each function has the symmetry that is told.
+        // Candela per 1000 lumens, of 2000; each function has its named symmetry.
         let cos = |degrees: f64| fp::sin_cos_degrees(degrees).1;
         let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
         let all: Vec<f64> = (0..24).map(|i| 15.0 * f64::from(i)).collect();
@@ -271,7 +272,7 @@ mod tests {
                     let dir = Vec3::new((flat * cos(c)) as f32, (flat * sin(c)) as f32, cos(g) as f32);
                     let expected = 2.0 * value(cos(c), sin(c)) * (1.0 + cos(g));
                     let found = f64::from(profile.at(dir));
-                    // Between planes it is linear.
+                    // Values between planes are interpolated linearly.
                     assert!(
                         (found - expected).abs() < 0.006 * expected,
                         "{symmetry}, {c}, {g}: {found}, not {expected}"

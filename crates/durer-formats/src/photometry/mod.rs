@@ -1,4 +1,4 @@
-//! Files of measured light of lamps.
+//! Files of measured light distributions.
 
 mod ies;
 mod ldt;
@@ -7,9 +7,10 @@ use durer_diag::Diagnostics;
 use durer_scene::light::photometric::Profile;
 pub use ies::write;
 
-/// Reads a profile of either format; what is wrong is said at its place.
+/// Reads a profile in either format; errors have spans.
 pub fn read(bytes: &[u8], file: u32, diagnostics: &mut Diagnostics) -> Option<Profile> {
-    // Names of makers may be in any encoding; all else is ASCII, and places stay the same.
+    // Manufacturers' names may be in any encoding; all else is ASCII. Replacing bytes one by one
+    // keeps offsets.
     let text: String = bytes.iter().map(|&b| if b.is_ascii() { char::from(b) } else { '?' }).collect();
     match ldt::recognise(&text) {
         true => ldt::read(&text, file, diagnostics),

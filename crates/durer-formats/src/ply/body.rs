@@ -1,4 +1,4 @@
-//! The rows of a PLY file: which of them are read, and in which order.
+//! Reader of the rows of a PLY file: decides which elements to read, and in which order.
 
 use super::header::{Element, Property};
 use super::values::{ValueError, Values};
@@ -8,17 +8,17 @@ use crate::report::{Report, counted, shown};
 use durer_scene::shape::mesh::MeshData;
 use std::ops::Range;
 
-/// Reading cannot go on; why has been reported.
+/// Signals that reading cannot continue; the error has been reported.
 pub(super) struct Stop;
 
-/// Reads the rows of all elements.
+/// Reader of the rows of all elements.
 pub(super) struct Body<'a, 'r, V> {
     pub bytes: &'a [u8],
     pub report: &'r mut Report,
     pub values: V,
     pub mesh: MeshData,
     pub cutter: Cutter,
-    /// Corners of the face or strip that is being read.
+    /// Corners of the current face or strip.
     pub corners: Vec<u32>,
 }
 
@@ -28,7 +28,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Body { bytes, report, values, mesh: MeshData::default(), cutter, corners: Vec::new() }
     }
 
-    /// Reads all elements: the vertices first, wherever they stand.
+    /// Reads all elements: the vertices first, wherever they are in the file.
     pub fn read(mut self, elements: &[Element]) -> Option<MeshData> {
         self.read_elements(elements).ok()?;
         Some(self.mesh)
@@ -36,7 +36,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
 
     fn read_elements(&mut self, elements: &[Element]) -> Result<(), Stop> {
         let mut has_vertices = false;
-        // Faces that come before the vertices are passed over and read at the end.
+        // Faces that precede the vertices are skipped and read at the end.
         let mut later: Vec<(&Element, V)> = Vec::new();
         for element in elements {
             self.check_rows(element)?;
@@ -68,7 +68,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
             self.read_faces(element)?;
         }
         let MeshData { uvs, normals, triangles, triangle_uvs, triangle_normals, .. } = &mut self.mesh;
-        // Vertices carry their texture coordinates and normals themselves.
+        // Each vertex has its own texture coordinates and normal.
         if !uvs.is_empty() {
             triangle_uvs.clone_from(triangles);
         }
@@ -78,7 +78,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
-    /// Refuses at once what can never be there.
+    /// Reports an element whose rows exceed the rest of the file.
     fn check_rows(&mut self, element: &Element) -> Result<(), Stop> {
         let sizes = element.properties.iter().map(|p| p.count.map_or(V::fixed_size(p.scalar), |_| None));
         let Some(size) = sizes.sum::<Option<usize>>() else { return Ok(()) };
@@ -97,16 +97,16 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Ok(())
     }
 
-    /// As many rows as are promised, but no more than can be there: for reserving memory.
+    /// Number of promised rows, limited by the size of the file. Used to reserve memory.
     pub fn likely_rows(&self, element: &Element) -> usize {
-        // An empty list still has a length; a value in text is a digit and a blank.
+        // An empty list still has a length; a text value takes at least a digit and a blank.
         let smallest = |p: &Property| V::fixed_size(p.count.unwrap_or(p.scalar)).unwrap_or(2);
         let row = element.properties.iter().map(smallest).sum::<usize>().max(1);
         element.rows.min((self.values.remainder().len() / row + 1) as u64) as usize
     }
 
     fn skip_rows(&mut self, element: &Element) -> Result<(), Stop> {
-        // Rows of nothing take no bytes, and any number of them may be promised.
+        // Rows without properties take no bytes, so the header may promise any number of them.
         if element.properties.is_empty() {
             return Ok(());
         }
@@ -126,7 +126,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         self.values.skip(property.scalar, count).map_err(|error| self.fail(error, element, row))
     }
 
-    /// Reads how many values of a list follow: never more than there can be.
+    /// Reads the length of a list, which never exceeds the values that can follow.
     pub fn list_length(&mut self, element: &Element, row: u64, property: &Property) -> Result<usize, Stop> {
         let Some(scalar) = property.count else { return Ok(1) };
         let length = self.values.integer(scalar).map_err(|error| self.fail(error, element, row))?;
@@ -145,7 +145,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         }
     }
 
-    /// Reports a missing or wrong value after which reading cannot go on.
+    /// Reports a missing or invalid value. The caller must stop, unless it can skip the value.
     pub fn fail(&mut self, error: ValueError, element: &Element, row: u64) -> Stop {
         let at = self.values.last();
         match error {
@@ -161,7 +161,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
         Stop
     }
 
-    /// Reports a wrong value; reading goes on after it while errors are collected.
+    /// Reports an invalid value and continues, unless the file ended or the report is full.
     pub fn tolerate(&mut self, error: ValueError, element: &Element, row: u64) -> Result<(), Stop> {
         let stop = self.fail(error, element, row);
         if error == ValueError::End || self.report.is_full() { Err(stop) } else { Ok(()) }
@@ -169,7 +169,7 @@ impl<'a, 'r, V: Values> Body<'a, 'r, V> {
 
     fn wrong_number(&mut self, error: NumberError, at: Range<usize>) {
         let value = &self.bytes[at.clone()];
-        // The bytes of a binary value say nothing to people.
+        // The raw bytes of a binary value would not help the reader of the message.
         if V::fixed_size(super::header::Scalar::U8).is_some() {
             self.report.error(at, "expected a finite number, found an infinite one or none").help =
                 Some("numbers must lie within the range of 32-bit floating point, about ±3.4e38".into());

@@ -1,7 +1,7 @@
-//! Binary rows of one size, many at once: what nearly all large files have.
+//! Fast reader of binary rows of one size, as nearly all large files have.
 //!
-//! Rows that are not sound, or not all of one size, are left to the reader of single rows, which
-//! knows what to say of them.
+//! It leaves rows that are invalid or differ in size to the reader of single rows, which reports
+//! errors.
 
 use super::body::Body;
 use super::header::{Element, Scalar};
@@ -10,19 +10,19 @@ use super::values::Values;
 use durer_scene::math::{Vec2, Vec3};
 use rayon::prelude::*;
 
-/// Rows that one thread reads at a time: they stay in its cache while their columns are read one
-/// after the other.
+/// Rows of a task. They stay in the cache of a core while their columns are read one after the
+/// other.
 const BLOCK: usize = 1 << 11;
 
-/// Columns of numbers in binary rows.
+/// Binary rows of one size.
 struct Rows<'a> {
     bytes: &'a [u8],
-    /// Bytes of a row.
+    /// Size of a row in bytes.
     size: usize,
     big_endian: bool,
 }
 
-/// Goes along a column of numbers of a type; whether all are found good.
+/// Visits a column of numbers of one type; true if all are valid.
 macro_rules! column {
     ($rows:expr, $at:expr, $number:ty, |$i:ident, $value:ident| $is_good:expr) => {{
         let (rows, mut good) = ($rows, true);
@@ -36,11 +36,11 @@ macro_rules! column {
     }};
 }
 
-/// The type of a number, and where in its row it is.
+/// Type of a number and its byte offset in a row.
 type Place = (Scalar, usize);
 
 impl Rows<'_> {
-    /// Some numbers of each row; `None` where one is not finite.
+    /// Reads `N` numbers of each row; `None` if one is not finite.
     fn gather<const N: usize>(&self, places: [Place; N]) -> Option<Vec<[f32; N]>> {
         let mut all = vec![[0.0; N]; self.bytes.len() / self.size];
         let blocks = all.par_chunks_mut(BLOCK).zip(self.bytes.par_chunks(BLOCK * self.size));
@@ -51,7 +51,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// The same where the rows may lack them: then there are none.
+    /// Reads `N` numbers of each row; an empty list if the rows lack one of the columns.
     fn all<const N: usize>(&self, places: &[Option<Place>]) -> Option<Vec<[f32; N]>> {
         let places: Option<Vec<Place>> = places.iter().copied().collect();
         match places.and_then(|places| places.try_into().ok()) {
@@ -60,7 +60,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Hands on one number of each row; whether all are finite.
+    /// Passes one number of each row to `put`; true if all are finite.
     fn each(&self, (scalar, at): Place, mut put: impl FnMut(usize, f32)) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -83,8 +83,8 @@ impl Rows<'_> {
         }
     }
 
-    /// Three corners of each row, whose list begins at a place; `None` where a list has another
-    /// length, or a corner that is not among so many vertices.
+    /// Reads three corners of each row, whose list starts at a given place; `None` if a list has
+    /// another length or a corner is not below `vertices`.
     fn triangles(&self, count: Place, corners: Scalar, vertices: usize) -> Option<Vec<[u32; 3]>> {
         let mut all = vec![[0; 3]; self.bytes.len() / self.size];
         let first = count.1 + count.0.size();
@@ -102,7 +102,7 @@ impl Rows<'_> {
         sound.all(|sound| sound).then_some(all)
     }
 
-    /// Hands on one whole number of each row; whether all are found good.
+    /// Passes one whole number of each row to `is_good`; true if all are good.
     fn whole(&self, (scalar, at): Place, mut is_good: impl FnMut(usize, i64) -> bool) -> bool {
         macro_rules! read {
             ($number:ty) => {
@@ -122,7 +122,7 @@ impl Rows<'_> {
 }
 
 impl<V: Values> Body<'_, '_, V> {
-    /// The rows of an element, if they have one size, `size`, and are all there.
+    /// The rows of an element of `size` bytes each, if the file contains all of them.
     fn rows(&self, element: &Element, size: usize) -> Option<Rows<'_>> {
         let big_endian = V::BIG_ENDIAN?;
         let left = &self.bytes[self.values.remainder()];
@@ -130,7 +130,7 @@ impl<V: Values> Body<'_, '_, V> {
         Some(Rows { bytes: left.get(..length).filter(|_| size > 0)?, size, big_endian })
     }
 
-    /// Reads all vertices, whose columns are known; `None` where they must be read one by one.
+    /// Reads all vertices at once; `None` if they must be read one by one.
     pub(super) fn fixed_vertices(&mut self, element: &Element, columns: &[Option<usize>]) -> Option<()> {
         let mut places = [None; COLUMNS.len()];
         let mut size = 0;
@@ -143,7 +143,7 @@ impl<V: Values> Body<'_, '_, V> {
             }
             size += property.scalar.size();
         }
-        // Colours are few, and more than numbers.
+        // Colours need decoding and clamping, which the reader of single rows does.
         if places[8..12].iter().any(Option::is_some) {
             return None;
         }
@@ -162,7 +162,7 @@ impl<V: Values> Body<'_, '_, V> {
         self.values.skip(Scalar::U8, length).ok()
     }
 
-    /// Reads all faces, if they are triangles; `None` where they must be read one by one.
+    /// Reads all faces at once if they are triangles; `None` if they must be read one by one.
     pub(super) fn fixed_faces(&mut self, element: &Element, list: usize) -> Option<()> {
         let mut size = 0;
         let mut found = None;

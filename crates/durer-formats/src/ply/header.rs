@@ -1,11 +1,11 @@
-//! The header of a PLY file: what the rows of numbers after it mean.
+//! Header of a PLY file, which describes the rows after it.
 
 use crate::number::parse_integer;
 use crate::report::{Report, shown};
 use durer_diag::did_you_mean;
 use std::ops::Range;
 
-/// How the rows are written.
+/// Encoding of the rows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Ascii,
@@ -19,7 +19,7 @@ const ENCODINGS: [(&str, Encoding); 3] = [
     ("binary_big_endian", Encoding::BigEndian),
 ];
 
-/// The type of a single value.
+/// Type of a single value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scalar {
     I8,
@@ -32,7 +32,7 @@ pub(super) enum Scalar {
     F64,
 }
 
-/// The names of the types, old and new.
+/// Old and new name of each type.
 const SCALARS: [(&str, &str, Scalar); 8] = [
     ("char", "int8", Scalar::I8),
     ("uchar", "uint8", Scalar::U8),
@@ -45,7 +45,7 @@ const SCALARS: [(&str, &str, Scalar); 8] = [
 ];
 
 impl Scalar {
-    /// Bytes in a binary file.
+    /// Size in bytes in a binary file.
     pub fn size(self) -> usize {
         match self {
             Scalar::I8 | Scalar::U8 => 1,
@@ -55,7 +55,8 @@ impl Scalar {
         }
     }
 
-    /// The greatest value of the type where colours are whole numbers; 1 where they are not.
+    /// Value of full intensity in a colour of this type: the maximum of an integer type, 1 for
+    /// floats.
     pub fn greatest(self) -> f32 {
         match self {
             Scalar::I8 => 127.0,
@@ -73,41 +74,42 @@ impl Scalar {
     }
 }
 
-/// One column of an element.
+/// A column of an element.
 pub(super) struct Property {
-    /// Where its name stands.
+    /// Byte range of the name.
     pub name: Range<usize>,
-    /// The type of the value, or of the values of a list.
+    /// Type of the value, or of a list's values.
     pub scalar: Scalar,
-    /// The type of the number of values, where it is a list.
+    /// Type of the length if the property is a list.
     pub count: Option<Scalar>,
 }
 
 /// A table of rows.
 pub(super) struct Element {
-    /// Where its name stands.
+    /// Byte range of the name.
     pub name: Range<usize>,
-    /// How many rows the header promises.
+    /// Number of rows that the header promises.
     pub rows: u64,
     pub properties: Vec<Property>,
 }
 
-/// Everything before the rows.
+/// The header of a PLY file.
 pub(super) struct Header {
     pub encoding: Encoding,
     pub elements: Vec<Element>,
-    /// Whether triangles without normals are flat, whatever is usual: a word of ours.
+    /// True if triangles without normals are shaded flat, whatever the default; an extension of
+    /// ours.
     pub flat: bool,
-    /// Where the rows begin.
+    /// Byte offset of the first row.
     pub body: usize,
 }
 
 const KEYWORDS: [&str; 6] = ["format", "element", "property", "comment", "obj_info", "end_header"];
 
-/// What `obj_info` may say.
+/// Value of `obj_info` that sets [`Header::flat`].
 pub(super) const FLAT: &[u8] = b"flat";
 
-/// Reads a header. Errors are reported, and then there is none.
+/// Reads a header. Returns `None` after reporting errors.
 pub(super) fn read_header(bytes: &[u8], report: &mut Report) -> Option<Header> {
     let mut lines = Lines { bytes, at: 0 };
     let first = lines.next_line().unwrap_or(0..0);
@@ -155,7 +157,7 @@ impl<'a> HeaderReader<'a, '_> {
         self.report.error(at.clone(), format!("expected {what}, found {}", shown(&self.bytes[at]))).help = help;
     }
 
-    /// Reports a line that has not the words it should have.
+    /// Reports a line with missing or extra words.
     fn incomplete(&mut self, words: &[Range<usize>], form: &str) {
         let line = words[0].start..words[words.len() - 1].end;
         self.report.error(line, format!("expected `{form}`"));
@@ -168,7 +170,7 @@ impl<'a> HeaderReader<'a, '_> {
         match ENCODINGS.iter().find(|(name, _)| *name == self.text(encoding)) {
             Some(&(_, known)) => self.encoding = Some(known),
             None => {
-                // Reading goes on, to find what else is wrong.
+                // Continue, to report further errors.
                 self.encoding = Some(Encoding::Ascii);
                 let names = ENCODINGS.map(|(name, _)| name);
                 self.unknown(&format!("one of `{}`", names.join("`, `")), encoding.clone(), names);
@@ -183,7 +185,7 @@ impl<'a> HeaderReader<'a, '_> {
     fn element(&mut self, words: &[Range<usize>]) {
         let [_, name, rows] = words else {
             self.incomplete(words, "element <name> <number of rows>");
-            // The properties that follow are still looked at.
+            // Keep the element, so that its properties are checked too.
             return self.elements.push(Element { name: words[0].clone(), rows: 0, properties: Vec::new() });
         };
         let found = parse_integer(&self.bytes[rows.clone()]).filter(|&rows| rows >= 0);
@@ -232,7 +234,7 @@ impl<'a> HeaderReader<'a, '_> {
     }
 }
 
-/// The lines of the header, without their ends.
+/// Iterator over the lines of the header, without their line ends.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -243,7 +245,7 @@ impl Lines<'_> {
         let rest = self.bytes.get(self.at..).filter(|rest| !rest.is_empty())?;
         let length = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
         let line = self.at..self.at + length;
-        // A carriage return alone ends a line only where the first line ends so: binary rows may
+        // A lone carriage return ends a line only if the first line ends in one: binary rows may
         // begin with any byte.
         let ending = match rest[length..] {
             [b'\r', b'\n', ..] if !self.ends_with_return_alone() => 2,

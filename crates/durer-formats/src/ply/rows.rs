@@ -10,9 +10,9 @@ use durer_image::decode_srgb;
 use durer_scene::math::{Vec2, Vec3};
 use durer_scene::shape::mesh::NO_INDEX;
 
-/// The properties of a vertex that are read, by all of their names, in the order of a [`Row`].
+/// Properties of a vertex that are read, each with all its names, in the order of a [`Row`].
 ///
-/// The last ten are words of ours, for what else a mesh may have.
+/// The last ten are extensions of ours, for the other attributes of a mesh.
 pub(super) const COLUMNS: [&[&str]; 22] = [
     &["x"],
     &["y"],
@@ -38,14 +38,14 @@ pub(super) const COLUMNS: [&[&str]; 22] = [
     &["tangent_w"],
 ];
 
-/// Position, normal, texture coordinates, colour and opacity; linear colour and opacity, second
-/// texture coordinates, tangent.
+/// Values of a vertex: position, normal, texture coordinates, colour and opacity; then linear
+/// colour and opacity, second texture coordinates, tangent.
 type Row = [f32; COLUMNS.len()];
 
 const CORNER_LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
 
 impl<V: Values> Body<'_, '_, V> {
-    /// Which column of a [`Row`] each property is.
+    /// Column of a [`Row`] for each property; `None` if it is not read.
     fn columns(&mut self, element: &Element) -> Result<Vec<Option<usize>>, Stop> {
         let mut columns = vec![None; element.properties.len()];
         let mut found: [Option<usize>; COLUMNS.len()] = [None; COLUMNS.len()];
@@ -54,7 +54,7 @@ impl<V: Values> Body<'_, '_, V> {
             let Some(column) = COLUMNS.iter().position(|names| names.iter().any(|n| n.as_bytes() == name)) else {
                 continue;
             };
-            // Lists by the names of colours are something else.
+            // Lists with the name of a colour mean something else.
             if property.count.is_some() && column >= 8 {
                 continue;
             }
@@ -62,7 +62,7 @@ impl<V: Values> Body<'_, '_, V> {
                 self.report.error(property.name.clone(), format!("{} must be a number, not a list", shown(name)));
             }
             match found[column] {
-                // Files with two sets of texture coordinates exist; the first counts.
+                // Some files have two sets of texture coordinates. The first one is used.
                 Some(_) if column >= 6 => continue,
                 Some(first) => {
                     let first = self.report.span(element.properties[first].name.clone());
@@ -87,7 +87,7 @@ impl<V: Values> Body<'_, '_, V> {
         let has = |range: std::ops::Range<usize>| range.clone().all(|column| columns.contains(&Some(column)));
         let (has_normals, has_uvs, has_colors) = (has(3..6), has(6..8), has(8..11));
         let (has_linear, has_second, has_tangents) = (has(12..16), has(16..18), has(18..22));
-        // Whole numbers are shares of the greatest of their type.
+        // Colours of an integer type are fractions of its maximum.
         let most = |column: usize| {
             let at = columns.iter().position(|found| *found == Some(column));
             at.map_or(1.0, |at| element.properties[at].scalar.greatest())
@@ -140,7 +140,7 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(())
     }
 
-    /// Reads faces or strips of triangles, by the element's name.
+    /// Reads faces or triangle strips, depending on the element's name.
     pub(super) fn read_faces(&mut self, element: &Element) -> Result<(), Stop> {
         if element.rows == 0 {
             return Ok(());
@@ -160,7 +160,7 @@ impl<V: Values> Body<'_, '_, V> {
                     self.skip_property(element, row, property)?;
                     continue;
                 }
-                // A wrong corner has been reported: the face is left out.
+                // An invalid corner has been reported; the face is skipped.
                 match self.read_corners(element, row, list, strips)? {
                     true if strips => self.cut_strip(),
                     true => self.cut_face()?,
@@ -171,13 +171,13 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(())
     }
 
-    /// The property that lists the corners.
+    /// Index of the property that lists the corners.
     fn corner_list(&mut self, element: &Element) -> Result<usize, Stop> {
         let named = |i: &usize| {
             CORNER_LISTS.iter().any(|list| list.as_bytes() == &self.bytes[element.properties[*i].name.clone()])
         };
         let Some(list) = (0..element.properties.len()).find(named) else {
-            // A list by nearly that name is worth pointing at.
+            // Suggests a list whose name is similar.
             let text = |p: &Property| String::from_utf8_lossy(&self.bytes[p.name.clone()]);
             let near = element.properties.iter().find(|p| did_you_mean(&text(p), CORNER_LISTS).is_some());
             let help = near.map(|p| format!("rename {} to `vertex_indices`", shown(&self.bytes[p.name.clone()])));
@@ -194,7 +194,7 @@ impl<V: Values> Body<'_, '_, V> {
         Ok(list)
     }
 
-    /// Reads one list of corners; `false` where one is wrong.
+    /// Reads one list of corners; `false` if one is invalid.
     fn read_corners(&mut self, element: &Element, row: u64, list: usize, strips: bool) -> Result<bool, Stop> {
         let property = &element.properties[list];
         let length = self.list_length(element, row, property)?;
@@ -241,12 +241,13 @@ impl<V: Values> Body<'_, '_, V> {
         })
     }
 
-    /// Every corner makes a triangle with the two before it; every other one winds the other way.
+    /// Each corner forms a triangle with the two before it; every other triangle has the opposite
+    /// winding.
     fn cut_strip(&mut self) {
         for strip in self.corners.split(|&corner| corner == NO_INDEX) {
             for (i, window) in strip.windows(3).enumerate() {
                 let [a, b, c] = [window[0], window[1], window[2]];
-                // Strips are joined by triangles of no area.
+                // Degenerate triangles only join strips.
                 if a != b && b != c && a != c {
                     self.mesh.triangles.push(if i % 2 == 0 { [a, b, c] } else { [b, a, c] });
                 }

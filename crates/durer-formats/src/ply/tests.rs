@@ -8,7 +8,7 @@ const HEADER: &str = "ply\nformat ascii 1.0\ncomment by hand\nobj_info none\nele
     property int8 b\nelement nothing 99999999999\nelement face 2\nproperty uint flags\n\
     property list int uint vertex_indices\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n";
 
-/// What the header promises: text, and for binary the type of each value.
+/// Rows of the test file, with a type before each value for the binary encodings.
 const VALUES: &str = "u8:255 f32:0 f64:0.1 i16:-3 f32:0 f32:0 f32:1 u8:0 f32:0.5 f32:1
     u8:0 f32:1e-3 f64:0 i16:0 f32:0 f32:0 f32:1 u8:1 f32:7 f32:0 f32:0
     u8:0 f32:1 f64:1 i16:0 f32:0 f32:0 f32:1 u8:2 f32:7 f32:8 f32:1 f32:0
@@ -52,7 +52,7 @@ fn text_and_both_byte_orders_give_the_same_mesh() {
     assert_eq!(mesh.positions[0], Vec3::new(0.0, 0.1, -3.0));
     assert_eq!(mesh.normals[3], Vec3::Y);
     assert_eq!(mesh.uvs[0], Vec2::new(0.5, 1.0));
-    // A triangle, a quadrilateral, a strip with a joint, a strip after a restart.
+    // A triangle, a quadrilateral, a strip with a degenerate joint, a strip after a restart.
     assert_eq!(mesh.triangles[0], [0, 1, 2]);
     assert_eq!(mesh.triangles[3..], [[0, 1, 2], [2, 1, 3], [1, 2, 3]]);
     assert_eq!((&mesh.triangle_uvs, &mesh.triangle_normals), (&mesh.triangles, &mesh.triangles));
@@ -68,7 +68,7 @@ fn faces_may_come_before_vertices() {
     assert_eq!(read_clean(text.as_bytes(), "m.ply"), read_clean(TRIANGLE.as_bytes(), "m.ply"));
 }
 
-/// The only finding of the triangle with a piece replaced.
+/// Reads the triangle with a piece of text replaced; returns the only finding.
 fn finding(from: &str, to: &str) -> String {
     assert!(TRIANGLE.contains(from), "{from}");
     let findings = read(TRIANGLE.replacen(from, to, 1).as_bytes(), "m.ply").1;
@@ -233,7 +233,7 @@ fn all_that_a_mesh_has_is_written_and_read() {
             assert_eq!(again.second_uvs[corner], mesh.second_uvs[place]);
             assert_eq!(again.tangents[corner], mesh.tangents[place]);
             assert_eq!(again.uvs[corner], mesh.uvs[mesh.triangle_uvs[i][k] as usize]);
-            // A corner without a normal has the triangle's.
+            // A corner without a normal gets the face normal.
             let flat = durer_scene::shape::triangle::face_normal(mesh.triangles[i].map(|i| mesh.positions[i as usize]));
             let normal = mesh.normals.get(mesh.triangle_normals[i][k] as usize).copied().unwrap_or(flat);
             assert_eq!(again.normals[corner], normal);

@@ -1,39 +1,39 @@
-//! The values of a PLY file one after the other, as text or as bytes.
+//! Sequential reading of the values of a PLY file, as text or binary.
 
 use super::header::Scalar;
 use crate::number::{NumberError, parse_f32, parse_integer};
 use std::ops::Range;
 
-/// Why there is no usable value.
+/// Reason why a value cannot be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ValueError {
     /// The file ends.
     End,
-    /// It is no usable number.
+    /// The value is not a usable number.
     Number(NumberError),
 }
 
-/// A position in the rows.
+/// A cursor in the rows of a PLY file.
 pub(super) trait Values: Clone {
-    /// Whether numbers are bytes with the greatest first; `None`: they are text.
+    /// Byte order of binary values, true if big-endian; `None` for text.
     const BIG_ENDIAN: Option<bool>;
-    /// The bytes of the value that was read last, or of nothing at the end of the file.
+    /// Byte range of the last value read; empty at the end of the file.
     fn last(&self) -> Range<usize>;
-    /// At most this many values of a type can still follow.
+    /// Upper bound of the number of values of a type that can still follow.
     fn most_left(&self, scalar: Scalar) -> usize;
     /// Reads a finite number.
     fn float(&mut self, scalar: Scalar) -> Result<f32, ValueError>;
     /// Reads a whole number.
     fn integer(&mut self, scalar: Scalar) -> Result<i64, ValueError>;
-    /// Passes over some values of a type, which need not be numbers.
+    /// Skips `count` values of a type. They need not be valid numbers.
     fn skip(&mut self, scalar: Scalar, count: usize) -> Result<(), ValueError>;
-    /// What is left when everything was read, without blanks.
+    /// Byte range of the unread rest, without leading blanks.
     fn remainder(&self) -> Range<usize>;
-    /// Bytes that a value of a type takes, where that is the same for all.
+    /// Bytes of a value of a type; `None` if it varies.
     fn fixed_size(scalar: Scalar) -> Option<usize>;
 }
 
-/// Values as text, divided by blanks and line ends.
+/// Values as text, separated by blanks and line ends.
 #[derive(Clone)]
 pub(super) struct AsciiValues<'a> {
     bytes: &'a [u8],
@@ -64,7 +64,7 @@ impl Values for AsciiValues<'_> {
     }
 
     fn most_left(&self, _: Scalar) -> usize {
-        // A digit and a blank.
+        // A value takes at least a digit and a blank.
         (self.bytes.len() - self.end).div_ceil(2)
     }
 
@@ -82,7 +82,7 @@ impl Values for AsciiValues<'_> {
 
     fn remainder(&self) -> Range<usize> {
         let mut rest = self.clone();
-        // Where there is no word, the range is empty.
+        // The range is empty after the last word.
         _ = rest.word();
         rest.start..self.bytes.len()
     }
@@ -92,7 +92,7 @@ impl Values for AsciiValues<'_> {
     }
 }
 
-/// Values as bytes.
+/// Values in binary form.
 #[derive(Clone)]
 pub(super) struct BinaryValues<'a, const BIG_ENDIAN: bool> {
     bytes: &'a [u8],

@@ -1,5 +1,5 @@
-//! Meshes as PLY files, binary: places and colours of vertices, and triangles, for any program; or
-//! all that there is, for us.
+//! Writer of meshes as binary PLY. `write` writes positions, colours and triangles, for any
+//! program; `write_whole` writes all attributes, for our own reader.
 
 use super::rows::COLUMNS;
 use durer_image::Transfer;
@@ -31,8 +31,9 @@ pub(crate) fn write(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Writes all that a mesh has: normals, both sets of texture coordinates, colours as they are,
-/// tangents. A corner that has no normal or coordinates where others do gets the triangle's, or 0.
+/// Writes all attributes of a mesh: normals, both sets of texture coordinates, linear colours and
+/// tangents. Where other corners have a normal or texture coordinates, a corner without them gets
+/// the face normal or 0.
 pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
     let Corners { vertices, triangles, normals } = Corners::of(mesh);
     let (has_normals, has_uvs) = (!mesh.triangle_normals.is_empty(), !mesh.triangle_uvs.is_empty());
@@ -74,11 +75,11 @@ pub(crate) fn write_whole(mesh: &MeshData) -> Vec<u8> {
     out
 }
 
-/// Vertices that have a place, texture coordinates and a normal each, by their numbers.
+/// Unique vertices: each is the indices of a position, of texture coordinates and of a normal.
 struct Corners {
     vertices: Vec<[u32; 3]>,
     triangles: Vec<[u32; 3]>,
-    /// The mesh's normals, and those of triangles that lack them.
+    /// The mesh's normals, followed by face normals of triangles that lack normals.
     normals: Vec<Vec3>,
 }
 

@@ -1,4 +1,4 @@
-//! One thing of a file: its modifier, type, name and arguments.
+//! A primitive of a scene file: its modifier, type, name and arguments.
 
 use super::words::{Word, Words};
 use crate::said::Said;
@@ -6,7 +6,7 @@ use durer_diag::{Diagnostic, Span};
 use durer_scene::math::Vec3;
 use glam::DVec3;
 
-/// A thing as it is written.
+/// A primitive as it is written.
 #[derive(Debug)]
 pub(super) struct Thing {
     pub modifier: Word,
@@ -17,7 +17,8 @@ pub(super) struct Thing {
 }
 
 impl Thing {
-    /// The thing whose first word was read. `None` after an error: what follows cannot be known.
+    /// Reads a primitive after its first word. `None` after an error, since the position of the
+    /// next primitive is unknown.
     pub fn read(modifier: Word, words: &mut Words, said: &Said) -> Option<Thing> {
         let start = modifier.at;
         let mut next = || {
@@ -46,12 +47,12 @@ impl Thing {
         Some(Thing { modifier, kind, name, texts, numbers })
     }
 
-    /// Where it is written.
+    /// Span of the type and the name.
     pub fn at(&self) -> Span {
         self.kind.at.to(self.name.at)
     }
 
-    /// Whether it has one of these counts of numbers; complains if not.
+    /// Returns true if the number of real arguments is one of `counts`; reports an error otherwise.
     pub fn has(&self, counts: &[usize], said: &Said) -> bool {
         let right = counts.contains(&self.numbers.len());
         if !right {
@@ -62,18 +63,18 @@ impl Thing {
         right
     }
 
-    /// Three of its numbers as a place.
+    /// Three real arguments as a point.
     pub fn point(&self, first: usize) -> DVec3 {
         let number = |i: usize| self.numbers.get(first + i).copied().unwrap_or(0.0);
         DVec3::new(number(0), number(1), number(2))
     }
 
-    /// Three of its numbers as a colour, none of them negative.
+    /// Three real arguments as a colour; negative ones become 0.
     pub fn color(&self, first: usize) -> Vec3 {
         self.point(first).as_vec3().max(Vec3::ZERO)
     }
 
-    /// A number.
+    /// A real argument.
     pub fn number(&self, i: usize) -> Option<f32> {
         self.numbers.get(i).map(|x| *x as f32)
     }

@@ -1,5 +1,6 @@
-//! Surfaces of one material as one mesh: a ray knows the objects that it is in, so what bounds one
-//! body of glass must be one object, and many small objects cost more than their triangles.
+//! Merges the surfaces of one material into one mesh. Dürer tracks the objects that a ray is
+//! inside, so the surface of a glass body must be one object; besides, many small objects cost more
+//! than their triangles.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec3, fp};
@@ -7,10 +8,10 @@ use durer_scene::shape::MeshData;
 use durer_scene::shape::mesh::NO_INDEX;
 use glam::{DAffine3, DVec3};
 
-/// Faces by their corners.
+/// Faces, each by its corners.
 pub(super) type Facets = Vec<Vec<DVec3>>;
 
-/// Sides of what is round.
+/// Number of sides of a tessellated round surface.
 const SIDES: u32 = 128;
 
 /// A mesh to which surfaces are added.
@@ -24,7 +25,7 @@ impl Body {
         Body { data: MeshData { flat: true, ..MeshData::default() }, at }
     }
 
-    /// Adds a flat face of some corners, cut into triangles.
+    /// Adds a triangulated flat face.
     pub fn facet(&mut self, corners: &[Vec3], triangles: &[[usize; 3]]) {
         let first = self.data.positions.len() as u32;
         self.data.positions.extend(corners);
@@ -34,8 +35,8 @@ impl Body {
         }
     }
 
-    /// Adds what is round about the line between two points, with a radius at each: open, with
-    /// normals to the outside or, if it is inverted, to the inside.
+    /// Adds the lateral surface of a cone or cylinder, without caps, between two points with a
+    /// radius at each. Normals point outwards, or inwards if `inverted`.
     pub fn round(&mut self, [base, top]: [DVec3; 2], radii: [f64; 2], map: DAffine3, inverted: bool) {
         let along = top - base;
         let axis = along.normalize_or(DVec3::Z);
@@ -69,7 +70,7 @@ impl Body {
         }
     }
 
-    /// Adds a flat ring in the world.
+    /// Adds a flat ring in world space.
     pub fn ring(&mut self, center: DVec3, normal: DVec3, [inner, outer]: [f64; 2]) {
         let (x, y) = normal.any_orthonormal_pair();
         let first = self.data.positions.len() as u32;
@@ -90,13 +91,13 @@ impl Body {
         }
     }
 
-    /// The corners of the box around it.
+    /// Corners of the bounds.
     pub fn bounds(&self) -> [Vec3; 2] {
         let all = || self.data.positions.iter().copied();
         [all().fold(Vec3::INFINITY, Vec3::min), all().fold(Vec3::NEG_INFINITY, Vec3::max)]
     }
 
-    /// All of it.
+    /// Returns the mesh.
     pub fn finish(mut self) -> MeshData {
         if self.data.normals.is_empty() {
             self.data.triangle_normals.clear();

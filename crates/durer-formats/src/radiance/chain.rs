@@ -1,18 +1,19 @@
-//! Chains of modifiers: a surface names a pattern, that a material, that a pattern, and so on.
+//! Chains of modifiers: a surface names a pattern, which names a material, which names a pattern,
+//! and so on.
 
 use super::made::{Below, Made};
 use super::state::{MIXTURES, Modifier, PATTERNS, Reader};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// What a modifier becomes.
+    /// Converts a modifier.
     pub fn made(&mut self, number: usize) -> Rc<Made> {
         self.below(number, &Below::default())
     }
 
-    /// What a modifier becomes below patterns that a surface names before it.
+    /// Converts a modifier below the patterns that a surface names before it.
     pub fn below(&mut self, number: usize, patterns: &Below) -> Rc<Made> {
-        // Skies and lamps are few: what is below one is made anew.
+        // Modifiers below skies and light distributions are few, so they are not cached.
         let plain = patterns.sky.is_none() && patterns.spread.is_none();
         let key = plain.then(|| (number, patterns.tint.to_array().map(f32::to_bits)));
         if let Some(made) = key.as_ref().and_then(|key| self.made.get(key)) {

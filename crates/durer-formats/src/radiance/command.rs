@@ -1,5 +1,5 @@
-//! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, also through pipes into
-//! `xform`. Nothing is run: what they would print is made here.
+//! Commands: `!xform`, `!cat`, `!genbox`, `!genprism` and `!gensky`, optionally piped into `xform`.
+//! No program is run: their output is generated here.
 
 use super::body::Facets;
 use super::gensky;
@@ -12,11 +12,11 @@ use durer_diag::Diagnostic;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Places where the output of a command goes.
+/// Transforms and settings, one for each copy of a command's output.
 type Places = Vec<Place>;
 
 impl Reader<'_> {
-    /// Carries out a command.
+    /// Executes a command.
     pub(super) fn command(&mut self, mut words: Words, place: &Place) {
         let mut stages: Vec<Vec<Word>> = vec![Vec::new()];
         while let Some(word) = words.next() {
@@ -31,7 +31,7 @@ impl Reader<'_> {
             let at = stages.iter().skip(empty).flatten().next().map_or(words.end(), |word| word.at);
             return self.said.bad(at, what);
         }
-        // What is printed goes through the last stage last: its map is the outermost.
+        // The output passes the last stage last, so its transform is the outermost.
         let mut places = vec![place.clone()];
         for stage in stages[1..].iter().rev() {
             if stage[0].text != "xform" {
@@ -72,7 +72,7 @@ impl Reader<'_> {
     }
 }
 
-/// Says that a command is not known, and what to do.
+/// Reports an unsupported command and suggests a workaround.
 fn refuse(reader: &Reader, name: &Word) {
     let help = format!(
         "known are `xform`, `cat`, `genbox`, `genprism` and `gensky`. Run the command with Radiance's own `{}`, keep what it prints in a \
@@ -83,8 +83,8 @@ fn refuse(reader: &Reader, name: &Word) {
     reader.said.push(Diagnostic { help: Some(help), ..error.at(name.at) });
 }
 
-/// The places of an `xform` in some places, the files that it names, and whether commands in those
-/// are run beside them.
+/// Applies an `xform` to outer places; returns the new places, the files that it names, and whether
+/// commands in these files run in the files' own folders.
 fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Places, &'w [Word], bool)> {
     let (mut transform, mut modifier, mut inverted) = (Transform::default(), None, false);
     let mut beside = true;
@@ -96,7 +96,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
         let takes = match option.text.as_str() {
             "-m" | "-n" => 1,
             "-c" | "-e" => {
-                // Commands go on as they are, or are carried out.
+                // `-c` copies commands unchanged, `-e` expands them.
                 beside = option.text == "-e";
                 0
             }
@@ -132,7 +132,7 @@ fn xform<'w>(reader: &Reader, words: &'w [Word], outer: &[Place]) -> Option<(Pla
     Some((outer.iter().flat_map(|outer| maps.iter().map(move |map| place(outer, map))).collect(), rest, beside))
 }
 
-/// Polygons of the material that is a generator's first argument.
+/// Adds polygons with the material of a generator's first argument.
 fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[Place]) {
     let Some(facets) = facets else { return };
     for place in places {
@@ -143,7 +143,7 @@ fn build(reader: &mut Reader, facets: Option<Facets>, args: &[Word], places: &[P
     }
 }
 
-/// The numbers of a generator's arguments from one on, and where options begin.
+/// Reads the first `count` arguments of a generator as numbers.
 fn numbers(reader: &Reader, args: &[Word], count: usize) -> Option<Vec<f64>> {
     args[..count].iter().map(|word| word.number(reader.said)).collect()
 }
@@ -186,7 +186,7 @@ fn genbox(reader: &Reader, name: &Word, args: &[Word]) -> Option<Facets> {
     Some(SIDES.iter().map(|side| turned(side.map(corner).to_vec(), inward != negative)).collect())
 }
 
-/// Corners in the other order.
+/// Returns the corners in reverse order if `other`.
 fn turned(mut corners: Vec<DVec3>, other: bool) -> Vec<DVec3> {
     if other {
         corners.reverse();
@@ -245,7 +245,7 @@ fn genprism(reader: &mut Reader, name: &Word, args: &[Word], place: &Place) -> O
     let base: Vec<DVec3> = corners.chunks_exact(2).map(|c| DVec3::new(c[0], c[1], 0.0)).collect();
     let next = |i: usize| base[(i + 1) % base.len()];
     let area: f64 = (0..base.len()).map(|i| base[i].x * next(i).y - next(i).x * base[i].y).sum();
-    // A base that winds about the way that it is pushed looks inwards as it is written.
+    // A base that winds around the extrusion direction would face inwards as written.
     let inward = (area > 0.0) == (along.z > 0.0);
     let mut facets = Facets::new();
     if ends {

@@ -1,21 +1,21 @@
-//! Tables of numbers over one or more coordinates.
+//! Data files: tables of numbers over one or more coordinates.
 
 use super::words::{Start, Words};
 use crate::said::Said;
 
-/// Coordinates of a table.
+/// Maximum number of coordinates.
 const MOST_DIMENSIONS: usize = 8;
 
-/// A table, the last coordinate fastest.
+/// A table of numbers, the last coordinate fastest.
 #[derive(Debug, PartialEq)]
 pub(super) struct Table {
-    /// The values of each coordinate.
+    /// Sample positions of each coordinate.
     axes: Vec<Vec<f64>>,
     values: Vec<f64>,
 }
 
 impl Table {
-    /// Reads a file of data.
+    /// Reads a data file.
     pub fn read(bytes: &[u8], file: u32, said: &Said) -> Option<Table> {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         let end = words.end();
@@ -60,7 +60,7 @@ impl Table {
         Some(Table { axes, values })
     }
 
-    /// The mean of all values.
+    /// Mean of all values.
     pub fn mean(&self) -> f32 {
         (self.values.iter().sum::<f64>() / self.values.len() as f64).max(0.0) as f32
     }
@@ -69,10 +69,11 @@ impl Table {
         self.axes.len()
     }
 
-    /// Between the values around, as many coordinates as it has; 0 beyond the ends.
+    /// Interpolates linearly in all coordinates; 0 outside the table.
     pub fn at(&self, coordinates: &[f64]) -> f64 {
         const SLACK: f64 = 1e-4;
-        // Of each coordinate the value before, and the way from there to the next.
+        // For each coordinate: the index of the sample below, and the fraction of the way to the
+        // next.
         let mut cells = [(0, 0.0); MOST_DIMENSIONS];
         for ((axis, &x), cell) in self.axes.iter().zip(coordinates).zip(&mut cells) {
             let (first, last) = (axis[0].min(axis[axis.len() - 1]), axis[0].max(axis[axis.len() - 1]));

@@ -1,10 +1,11 @@
-//! What `gensky` prints: the sun and a sky of the CIE, by place, date and time or by angles.
+//! Generator of the output of `gensky`: the sun and a CIE sky, by location, date and time or by
+//! angles.
 //!
 //! Sources: the manual page of gensky; Cooper, *The absorption of radiation in solar stills*, Solar
 //! Energy 12, 1969, for the declination; IES, *Recommended Practice for the Calculation of Daylight
 //! Availability*, 1984, for the equation of time and the sun's brightness; Krochmann and Seidl,
 //! *Quantitative data on daylight for illuminating engineering*, 1974, for the zenith. The tests
-//! compare with what Radiance 6.0's own program prints.
+//! compare with the output of Radiance 6.0's own program.
 
 use super::words::Word;
 use crate::said::Said;
@@ -12,10 +13,10 @@ use durer_scene::math::fp;
 use durer_scene::texture::almanac::{self, Moment};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
-/// Lumen per watt of the sky and of the sun.
+/// Luminous efficacy of the sky and of the sun in lumens per watt.
 const SKY_EFFICACY: f64 = 203.0;
 const SUN_EFFICACY: f64 = 208.0;
-/// Its solid angle is that of half a degree.
+/// Solid angle of the sun in steradians: half a degree across.
 const SUN_SOLID_ANGLE: f64 = 5.98e-5;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -26,12 +27,12 @@ enum Kind {
     Uniform,
 }
 
-/// What its arguments ask for; angles in degrees, brightness in watts.
+/// Parsed arguments. Angles are in degrees, radiances in W/(sr m²).
 struct Asked {
     kind: Kind,
     sunny: bool,
     latitude: f64,
-    /// West of Greenwich, as the meridian of the clock.
+    /// Degrees west of Greenwich, as is the meridian of the clock.
     longitude: f64,
     meridian: f64,
     year: Option<i32>,
@@ -43,7 +44,7 @@ struct Asked {
     sun_horizontal: Option<f64>,
 }
 
-/// Degrees west of the meridians of clocks.
+/// Degrees west of the meridians of time zones.
 const ZONES: [(&str, f64); 28] = [
     ("YST", 135.0),
     ("YDT", 120.0),
@@ -75,7 +76,7 @@ const ZONES: [(&str, f64); 28] = [
     ("UTC", 0.0),
 ];
 
-/// The text that it prints, or `None` and what is wrong.
+/// Returns the text that `gensky` prints; `None` after reporting an error.
 pub(super) fn text(said: &Said, name: &Word, args: &[Word]) -> Option<String> {
     let by_angles = args.first().is_some_and(|word| word.text == "-ang");
     let fixed = 3;
@@ -143,7 +144,8 @@ impl Asked {
         Some(())
     }
 
-    /// Altitude, and azimuth from south over west, by month, day and hour.
+    /// Altitude and azimuth of the sun in degrees, by month, day and hour. The azimuth grows from
+    /// south to west.
     fn sun_by_clock(&mut self, said: &Said, args: &[Word]) -> Option<[f64; 2]> {
         let whole = |word: &Word, most: f64, what: &str| {
             let number = word.number(said)?;
@@ -156,7 +158,7 @@ impl Asked {
         let month = whole(&args[0], 12.0, "month")?;
         let day = whole(&args[1], 31.0, "day")?;
         let (hours, is_solar) = self.hour(said, &args[2])?;
-        // Without a year every one is like that.
+        // Without a year, the formulas use an average year.
         const BEFORE: [i32; 12] = [0, 31, 59, 90, 120, 151, 181, 212, 243, 273, 304, 334];
         let date = f64::from(BEFORE[month as usize - 1] + day);
         if let (Some(year), false) = (self.year, is_solar) {
@@ -175,7 +177,7 @@ impl Asked {
         Some([fp::asin_f64(up.clamp(-1.0, 1.0)).to_degrees(), fp::atan2_f64(west, south).to_degrees()])
     }
 
-    /// Hours of the day, as 14.5, 14:30 or 14:30EST, and whether they are the sun's own (+14.5).
+    /// Hours of the day from 14.5, 14:30 or 14:30EST; the flag is true for solar time (+14.5).
     fn hour(&mut self, said: &Said, word: &Word) -> Option<(f64, bool)> {
         let wrong = || {
             let what = "the hour is as 14.5, 14:30, 14:30EST or, by the sun, +14.5";
@@ -209,7 +211,7 @@ impl Asked {
 
     fn print(&self, altitude: f64, azimuth: f64) -> String {
         let covered = matches!(self.kind, Kind::Overcast | Kind::Uniform);
-        // Where the formula of the zenith ends.
+        // Upper limit of the zenith formula.
         let altitude = if covered { altitude } else { altitude.min(87.0) };
         let ((s, c), (sin, cos)) = (fp::sin_cos_degrees(azimuth), fp::sin_cos_degrees(altitude));
         let sun = [-s * cos, -c * cos, sin];
@@ -230,7 +232,7 @@ impl Asked {
             (None, Some(flux)) => flux / (SUN_SOLID_ANGLE * sin.max(1e-6)),
             (None, None) => {
                 let whole = 1.5e9 / SUN_EFFICACY * (1.147 - 0.147 / sin.max(0.16));
-                // Half of the sky is cloud.
+                // Half of the sky is cloudy.
                 if self.kind == Kind::Intermediate { 0.15 * whole } else { whole }
             }
         };
@@ -256,8 +258,9 @@ impl Asked {
         text
     }
 
-    /// What the formula of the sky gives at the zenith, and the even radiance of a sky that lights
-    /// the ground as much as this with a zenith of 1. `a` is the sun's altitude in radians.
+    /// Returns the value of the sky formula at the zenith, and the radiance of a uniform sky with
+    /// the same horizontal irradiance as this sky with a zenith of 1. `a` is the sun's altitude in
+    /// radians, `sin` its sine.
     fn normalization(&self, a: f64, sin: f64) -> (f64, f64) {
         let from_zenith = (FRAC_PI_2 - a) as f32;
         let (given, row) = match self.kind {

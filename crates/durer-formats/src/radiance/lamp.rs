@@ -1,4 +1,4 @@
-//! Surfaces that shine otherwise in each direction, as points that do.
+//! Converts surfaces with a directional distribution into point lights.
 
 use super::made::{Kind, Made};
 use super::outline::Outline;
@@ -10,15 +10,15 @@ use durer_scene::light::photometric::PhotometricLight;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// Points that stand for a surface.
+/// Number of point lights for each surface.
 const POINTS: u32 = 16;
 
-/// Lamps with tables or directions of their own.
+/// Maximum number of different profiles.
 const MOST_PROFILES: usize = 256;
 
 impl Reader<'_> {
-    /// Points all over a surface: light that depends on its direction has no counterpart that is a
-    /// surface.
+    /// Replaces a surface by point lights spread over it: area lights here have no directional
+    /// distribution.
     pub fn lamp(&mut self, made: &Made, outline: &Outline, span: Span) {
         let Kind::Aimed { radiance, spread, at } = &made.kind else { return };
         let [down, front] = spread.axes();
@@ -41,8 +41,8 @@ impl Reader<'_> {
         }
     }
 
-    /// The name of the profile of a surface that shines so. Surfaces that show the same of
-    /// themselves in all directions share one.
+    /// Name of the light profile for a distribution on a surface. Surfaces with the same
+    /// orientation share it.
     fn profile(&mut self, spread: &Rc<Spread>, outline: &Outline, span: Span) -> Option<FileName> {
         let facing = outline.facing();
         let known = self.profiles.iter().position(|(own, axis)| Rc::ptr_eq(own, spread) && *axis == facing);

@@ -1,4 +1,4 @@
-//! What modifiers and sources become.
+//! Results of converting modifiers and sources.
 
 use super::sky::Sky;
 use super::spread::Spread;
@@ -7,12 +7,12 @@ use durer_scene::math::{Color, Vec3};
 use glam::DVec3;
 use std::rc::Rc;
 
-/// What a modifier became.
+/// A converted modifier.
 pub(super) struct Made {
-    /// The number of the material in the scene; `None`: nothing is there.
+    /// Number of the material in the scene; `None` for `void`.
     pub number: Option<u32>,
     pub kind: Kind,
-    /// The patterns above it.
+    /// Patterns that modify it.
     pub patterns: Below,
 }
 
@@ -26,13 +26,13 @@ impl Made {
     }
 }
 
-/// Patterns over a material.
+/// Combined effect of the patterns over a material.
 #[derive(Clone)]
 pub(super) struct Below {
-    /// What they multiply, everywhere alike.
+    /// Constant factor.
     pub tint: Color,
     pub sky: Option<Sky>,
-    /// What they multiply by the direction of light.
+    /// Factor that depends on the direction of emission.
     pub spread: Option<Rc<Spread>>,
 }
 
@@ -43,7 +43,8 @@ impl Default for Below {
 }
 
 impl Below {
-    /// These and others, which come after them: of skies and spreads there is one.
+    /// Combines these patterns with others that come after them. Only one sky and one distribution
+    /// apply.
     pub fn with(&self, others: &Below) -> Below {
         Below {
             tint: self.tint * others.tint,
@@ -53,18 +54,17 @@ impl Below {
     }
 }
 
-/// What matters of a material to surfaces.
+/// Properties of a material that affect how surfaces are converted.
 pub(super) enum Kind {
     Plain,
-    /// The skin of a body; `outside`: the material of what is inside of a surface turned inside
-    /// out.
+    /// A boundary of a dielectric; `outside` is the material for the inside of an inverted surface.
     Glass {
         outside: Option<u32>,
     },
     Shining {
         radiance: Color,
     },
-    /// Shining otherwise in each direction.
+    /// An emitter with a directional distribution.
     Aimed {
         radiance: Color,
         spread: Rc<Spread>,
@@ -72,7 +72,7 @@ pub(super) enum Kind {
     },
 }
 
-/// A cone of directions, and the light that comes from them.
+/// A cone of directions, and the radiance from them.
 pub(super) struct Distant {
     pub direction: DVec3,
     pub cosine: f64,

@@ -1,8 +1,8 @@
-//! Materials, in the words of OpenPBR.
+//! Translation of materials into OpenPBR parameters.
 //!
 //! Sources: the reference manual; Ward, *Measuring and Modeling Anisotropic Reflection*, SIGGRAPH
-//! 1992, whose roughness is the mean slope of the surface, as GGX's alpha; alpha is the square of
-//! our roughness.
+//! 1992, whose roughness is the mean slope of the surface, like GGX's alpha. Alpha is the square of
+//! OpenPBR's roughness.
 
 use super::args::Thing;
 use super::made::{Below, Kind, Made};
@@ -19,13 +19,13 @@ use durer_scene::scene::{Material, Spanned};
 
 const TURNED: &str = "highlights are longer along the surface's own directions, not along those that are written";
 
-/// Matte, without a boundary.
+/// A matte material without a specular layer.
 fn matte(base_color: Color) -> PrincipledMaterial {
     let base_color = base_color.min(Vec3::ONE);
     PrincipledMaterial { base_color, specular_weight: 0.0, specular_roughness: 1.0, ..PrincipledMaterial::default() }
 }
 
-/// Our roughness and anisotropy by Ward's along u and v.
+/// Sets roughness and anisotropy from Ward's roughness along u and v.
 fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
     let [u, v] = [u, v].map(|alpha| alpha.clamp(0.0, 1.0));
     m.specular_roughness = (0.5 * (u * u + v * v)).sqrt().sqrt();
@@ -33,7 +33,7 @@ fn rough(m: &mut PrincipledMaterial, [u, v]: [f32; 2]) {
     m.specular_rotation = if v > u { 0.25 } else { 0.0 };
 }
 
-/// Plastic: a matte base below what reflects a share of all light.
+/// Plastic: a matte base below a dielectric layer that reflects `specular` at normal incidence.
 fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let mut m = matte(color);
     if specular > 0.0 {
@@ -44,10 +44,10 @@ fn plastic(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMateri
     m
 }
 
-/// Metal: the share that it reflects is the same in all directions.
+/// Metal whose reflectance is the same in all directions.
 fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial {
     let color = color.min(Vec3::ONE);
-    // The share at 82 degrees that Schlick's rule would have.
+    // Schlick's reflectance at 82 degrees, the reference for the specular colour.
     let specular_color = color / schlick_82(color).max(Vec3::splat(1e-6));
     let mut m = PrincipledMaterial { base_metalness: specular.min(1.0), specular_color, ..matte(color) };
     if specular > 0.0 {
@@ -57,19 +57,20 @@ fn metal(color: Color, specular: f32, roughness: [f32; 2]) -> PrincipledMaterial
     m
 }
 
-/// A sheet through which light comes scattered and straight.
+/// A translucent sheet with diffuse and specular transmission.
 fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [f32; 2]) -> PrincipledMaterial {
     let [transmitted, straight] = [transmitted, straight].map(|share| share.clamp(0.0, 1.0));
     let through = transmitted * straight;
     let (back, forth) = (1.0 - transmitted, transmitted * (1.0 - straight));
-    // What goes straight through is reflected at both sides of a sheet, 2 F / (1 + F), all else
-    // once, F. This F, and this share of the sheet, leave what is written for each at right angles.
+    // Specularly transmitted light is reflected at both sides of the sheet, 2 F / (1 + F), the rest
+    // once, F. These values of F and of the sheet's weight reproduce the given fractions at normal
+    // incidence.
     let specular = specular.min(0.9);
     let once = specular / (1.0 + (1.0 - specular) * through);
     let sheet = (1.0 - specular) * through * (1.0 + once) / (1.0 - once);
     let mut m = plastic(color, once, roughness);
     if specular == 0.0 && through > 0.0 {
-        // Without a boundary there is a roughness for what goes through.
+        // Even without reflection, the transmitted light is rough.
         m.specular_ior = 1.0;
         rough(&mut m, roughness);
     }
@@ -84,7 +85,7 @@ fn trans(color: Color, [specular, transmitted, straight]: [f32; 3], roughness: [
     }
 }
 
-/// A body with an index, of which a share of light is left at depth 1.
+/// A dielectric body with an index; `left` is the transmittance at distance 1.
 fn body(left: Color, index: f32) -> PrincipledMaterial {
     let m = PrincipledMaterial {
         transmission_weight: 1.0,
@@ -102,7 +103,7 @@ fn body(left: Color, index: f32) -> PrincipledMaterial {
     }
 }
 
-/// What shines and is black else.
+/// A black emitter.
 fn shining(radiance: Color) -> PrincipledMaterial {
     let most = radiance.max_element();
     let emission_color = if most > 0.0 { radiance / most } else { Vec3::ONE };
@@ -115,7 +116,7 @@ impl Reader<'_> {
         (self.scene.materials.len() - 1) as u32
     }
 
-    /// What a material becomes below the patterns that are above it.
+    /// Converts a material below the patterns that modify it.
     pub fn material(&mut self, number: usize, thing: &Thing, above: &Below) -> Made {
         let (kind, at, said) = (thing.kind.text.as_str(), thing.at(), self.said);
         let counts: &[usize] = match kind {
@@ -154,8 +155,7 @@ impl Reader<'_> {
             "metal2" => metal(color, value(3), [value(4), value(5)]),
             "trans2" => trans(color, [value(3), value(6), value(7)], [value(4), value(5)]),
             "ashik2" => {
-                // A power of the cosine of the half vector is a slope of the root of 2 / (power +
-                // 2).
+                // A cosine power of the half vector corresponds to the slope sqrt(2 / (power + 2)).
                 let slope = |power: f32| (2.0 / (power + 2.0)).sqrt();
                 let specular = thing.color(3);
                 plastic(color, specular.element_sum() / 3.0, [slope(value(6)), slope(value(7))])
@@ -250,8 +250,8 @@ impl Reader<'_> {
         Made { number: Some(self.add_material(m, at)), ..Made::nothing() }
     }
 
-    /// Rough plastic gives back the same share as a highlight in all directions, in white, and
-    /// scatters the rest: only smooth plastic reflects more at an angle.
+    /// Converts rough plastic: a white highlight with the same reflectance in all directions, and a
+    /// matte rest. Only smooth plastic reflects more at grazing angles.
     fn rough_plastic(&mut self, color: Color, share: f32, roughness: [f32; 2], at: Span) -> Made {
         let material1 = self.add_material(metal(Vec3::ONE, 1.0, roughness), at);
         let material2 = self.add_material(matte(color), at);
@@ -260,7 +260,7 @@ impl Reader<'_> {
         Made { number: Some((self.scene.materials.len() - 1) as u32), ..Made::nothing() }
     }
 
-    /// Mist in a body: it does not bend light.
+    /// Mist fills a body without refraction.
     fn mist(&mut self, thing: &Thing) -> Made {
         let extinction = thing.color(0);
         let most = extinction.max_element();
@@ -278,7 +278,7 @@ impl Reader<'_> {
             ..body(Vec3::ONE, 1.0)
         };
         let number = self.add_material(m, thing.at());
-        // What is in the air thins light by its brightness.
+        // Fog attenuates all colours alike, by the luminance.
         let mean = extinction.dot(LUMINANCE);
         let color = (albedo * extinction / mean).min(Vec3::ONE);
         self.mists.insert(number, Fog { extinction: mean, color, anisotropy, ..Fog::default() });
@@ -287,7 +287,8 @@ impl Reader<'_> {
     }
 }
 
-/// A pane: what its inside does not absorb goes straight through, or is reflected.
+/// A pane of glass, which reflects light or transmits it without scattering; `left` is the
+/// transmittance of its inside.
 fn sheet(left: Color, index: f32) -> PrincipledMaterial {
     PrincipledMaterial {
         transmission_color: left.min(Vec3::ONE),

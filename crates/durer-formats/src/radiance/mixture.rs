@@ -10,7 +10,7 @@ use durer_scene::scene::{Material, Spanned};
 use std::collections::BTreeMap;
 
 impl Reader<'_> {
-    /// Two materials in the same proportion everywhere.
+    /// Converts a mixture; its proportion is constant.
     pub fn mixture(&mut self, number: usize, thing: &Thing, patterns: &Below) -> Made {
         let (at, kind) = (thing.at(), thing.kind.text.as_str());
         if thing.texts.len() < 4 {
@@ -20,7 +20,7 @@ impl Reader<'_> {
         let constant = parse_f32(thing.texts[2].text.as_bytes()).ok().filter(|_| kind == "mixfunc");
         let share = match (kind, constant) {
             (_, Some(share)) => share.clamp(0.0, 1.0),
-            // Letters are few beside what is around them.
+            // Letters cover little of the surface.
             ("mixtext", _) => {
                 self.said.once(at, "letters have no counterpart: the modifier around them is taken");
                 0.0
@@ -52,7 +52,7 @@ impl Reader<'_> {
                 self.said.once(at, "bodies of glass are not there in part: they are whole");
                 first.or(second)
             }
-            // Where nothing is mixed in, it is seen through.
+            // A missing part makes the material partly transparent.
             [first, second] => {
                 let share = if first.is_some() { share } else { 1.0 - share };
                 first.or(second).map(|number| self.there_in_part(number, share, &mut BTreeMap::new()))
@@ -62,7 +62,7 @@ impl Reader<'_> {
         Made { number, kind, ..Made::nothing() }
     }
 
-    /// A material of which only a share is there.
+    /// Returns a copy of a material whose opacity is multiplied by `share`.
     fn there_in_part(&mut self, number: u32, share: f32, made: &mut BTreeMap<u32, u32>) -> u32 {
         if let Some(made) = made.get(&number) {
             return *made;

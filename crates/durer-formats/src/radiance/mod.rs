@@ -1,9 +1,9 @@
-//! Scenes of Radiance: `.rad` (geometry and materials), `.rif` (which files, seen from where),
-//! `.vf` (views).
+//! Reader of Radiance scenes: `.rad` (geometry and materials), `.rif` (files and views), `.vf`
+//! (views).
 //!
 //! Sources: *The RADIANCE 5.4 Synthetic Imaging System*, reference manual; the manual pages of
-//! xform, genbox, genprism, gensky, rad and rpict. A pixel of value 1 shows radiance 1 W/(sr m²), as in
-//! Radiance's own pictures; times 179 that is luminance in cd/m².
+//! xform, genbox, genprism, gensky, rad and rpict. A pixel value of 1 is a radiance of 1 W/(sr m²),
+//! as in Radiance's own pictures; times 179 it is the luminance in cd/m².
 
 mod args;
 mod body;
@@ -42,11 +42,11 @@ use durer_scene::scene::{Axis, Scene};
 use place::Place;
 use state::Reader;
 
-/// The format of scenes.
+/// The Radiance scene format.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "Radiance",
     extensions: &["rad", "rif"],
-    // Its first word could be anything: only the name tells.
+    // The first word is not distinctive; only the extension identifies the format.
     recognise: |_| false,
     read,
     write: None,
@@ -68,14 +68,14 @@ fn read(input: &Input, diagnostics: &mut Diagnostics) -> Option<Scene> {
         false => reader.text(input.bytes, input.file, &Place::default()),
     }
     let mut scene = reader.finish();
-    // As rtrace's manual has it: 179 lm/W, and the weights of its colours.
+    // From the manual of rtrace: 179 lm/W, and its weights of the colours.
     scene.lumens = Some(179.0 * Vec3::new(0.265, 0.670, 0.065));
     let sound = !said.has_errors() && !diagnostics.has_errors();
     diagnostics.extend(said.finish());
     sound.then_some(scene)
 }
 
-/// Gives a scene the camera of a file of views: its last.
+/// Sets a scene's camera to the last view in a file.
 pub(super) fn look(scene: &mut Scene, input: &Input, (name, bytes): (&str, &std::sync::Arc<[u8]>)) -> Diagnostics {
     let said = Said::default();
     let file = input.files.borrow_mut().add(name, bytes.clone());

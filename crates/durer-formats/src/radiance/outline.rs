@@ -1,12 +1,12 @@
-//! What of a surface is seen in a direction, and points all over it.
+//! Geometry of emitting surfaces: projected area by direction, and points spread over them.
 
 use durer_scene::math::fp;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// A surface that may shine.
+/// A surface that may emit light.
 pub(super) enum Outline<'a> {
-    /// Flat, by its corners.
+    /// A flat polygon, by its corners.
     Polygon(&'a [DVec3]),
     Ring {
         center: DVec3,
@@ -17,29 +17,29 @@ pub(super) enum Outline<'a> {
         center: DVec3,
         radius: f64,
     },
-    /// The side of a cylinder or cone.
+    /// The lateral surface of a cylinder or cone.
     Side {
         ends: [DVec3; 2],
         radii: [f64; 2],
     },
 }
 
-/// How a surface faces, which says how much of it is seen in a direction.
+/// Orientation of a surface, which determines its projected area in a direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Facing {
-    /// Flat, with a normal.
+    /// Flat, with a unit normal.
     To(DVec3),
-    /// Round, about an axis. A cone counts as a cylinder.
+    /// Round, about an axis. A cone is treated as a cylinder.
     Around(DVec3),
     All,
 }
 
 impl Facing {
-    /// The share of its area that is seen in a direction, and the cosine to its normal: 1 for round
-    /// things.
+    /// Returns the projected area in a direction as a fraction of the area, and the cosine to the
+    /// normal, which is 1 for round surfaces.
     pub fn shows(self, dir: DVec3) -> (f64, f64) {
         match self {
-            // Not what lies in the plane but for rounding.
+            // The tolerance excludes directions within the plane.
             Facing::To(normal) if normal.dot(dir) > 1e-6 => (normal.dot(dir), normal.dot(dir)),
             Facing::To(_) => (0.0, 1.0),
             Facing::Around(axis) => ((1.0 - axis.dot(dir) * axis.dot(dir)).max(0.0).sqrt() / PI, 1.0),
@@ -61,7 +61,7 @@ impl Outline<'_> {
         }
     }
 
-    /// How it faces.
+    /// Orientation of the surface.
     pub fn facing(&self) -> Facing {
         match self {
             Outline::Polygon(corners) => Facing::To(twice(corners).normalize_or_zero()),
@@ -71,7 +71,8 @@ impl Outline<'_> {
         }
     }
 
-    /// Points all over it, each for an equal area; of a round thing in its middle.
+    /// Points spread over the surface, each for an equal area; for round surfaces, on the centre or
+    /// the axis.
     pub fn places(&self, count: u32) -> Vec<DVec3> {
         let share = |i: u32| (f64::from(i) + 0.5) / f64::from(count);
         match *self {
@@ -79,12 +80,12 @@ impl Outline<'_> {
             Outline::Ring { center, normal, radii: [inner, outer] } => {
                 let (x, y) = normal.any_orthonormal_pair();
                 let place = |i: u32| {
-                    // Vogel's spiral: as many points in equal areas.
+                    // Vogel's spiral: equal areas contain equal numbers of points.
                     let radius = (inner * inner + (outer * outer - inner * inner) * share(i)).sqrt();
                     let (sin, cos) = fp::sin_cos_degrees(137.507_764 * f64::from(i));
                     radius * (cos * x + sin * y)
                 };
-                // Of opposite points the middle is that of the ring.
+                // Pairs of opposite points keep the mean at the centre of the ring.
                 (0..count / 2).map(|i| place(2 * i)).flat_map(|offset| [center + offset, center - offset]).collect()
             }
             Outline::Ball { center, .. } => vec![center],
@@ -93,12 +94,12 @@ impl Outline<'_> {
     }
 }
 
-/// The normal of corners, as long as twice their area.
+/// Normal of a polygon whose length is twice the area.
 fn twice(corners: &[DVec3]) -> DVec3 {
     corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0])).sum()
 }
 
-/// Points all over a polygon, in the fan of triangles of its first corner.
+/// Points spread over a polygon, in the triangle fan around its first corner.
 fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
     let areas: Vec<f64> =
         corners.windows(2).skip(1).map(|pair| (pair[0] - corners[0]).cross(pair[1] - corners[0]).length()).collect();
@@ -110,7 +111,7 @@ fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
             along -= areas[triangle];
             triangle += 1;
         }
-        // The fractions of multiples of the golden ratio are as even as can be.
+        // The fractional parts of multiples of the golden ratio are evenly distributed.
         let (u, v) = (
             (along / areas[triangle].max(f64::MIN_POSITIVE)).clamp(0.0, 1.0),
             (f64::from(i) * 0.618_033_988_749).fract(),
@@ -120,7 +121,7 @@ fn polygon(corners: &[DVec3], count: u32) -> Vec<DVec3> {
         a * (1.0 - root) + root * ((1.0 - v) * b + v * c)
     };
     let mut places: Vec<DVec3> = (0..count).map(place).collect();
-    // What is far away sees the middle of all points where that of the surface is.
+    // Shift the points so that their mean is the polygon's centroid, as seen from far away.
     let middle =
         areas.iter().enumerate().map(|(i, area)| *area * (corners[0] + corners[i + 1] + corners[i + 2])).sum::<DVec3>()
             / (3.0 * whole.max(f64::MIN_POSITIVE));

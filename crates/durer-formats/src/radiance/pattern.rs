@@ -1,4 +1,4 @@
-//! Patterns and textures: each becomes one colour everywhere, the mean where that can be had.
+//! Patterns and textures: each is replaced by a constant colour, the mean if it can be computed.
 
 use super::args::Thing;
 use super::data::Table;
@@ -16,8 +16,8 @@ use glam::{DAffine3, DMat3};
 use std::rc::Rc;
 
 impl Reader<'_> {
-    /// What a pattern, by its number among the modifiers, multiplies. `map` is where its text was
-    /// put.
+    /// Evaluates a pattern, a modifier given by its index, as a factor of the emission or
+    /// reflectance. `map` is the transform of the text that contains it.
     pub fn pattern(&mut self, number: usize, thing: &Thing, map: &DAffine3) -> Below {
         let (at, kind, said) = (thing.at(), thing.kind.text.as_str(), self.said);
         let text = |i: usize| thing.texts.get(i).map_or("", |word| word.text.as_str());
@@ -67,14 +67,14 @@ impl Reader<'_> {
         Below { tint, ..Below::default() }
     }
 
-    /// The turn that `xform` has written behind so many names of a function.
+    /// Rotation that `xform` appended after the first `names` words of a function's arguments.
     fn own_turn(&self, thing: &Thing, names: usize) -> DMat3 {
         let (mut rest, mut transform) = (thing.texts.get(names..).unwrap_or_default(), Transform::default());
         while transform.option(&mut rest, self.said) {}
         transform.places().and_then(|places| places.first().map(|map| map.matrix3)).unwrap_or(DMat3::IDENTITY)
     }
 
-    /// What a table over the directions of a lamp says, which is read once.
+    /// Table of a light's directional distribution; it is read once.
     fn spread(&mut self, number: usize, thing: &Thing, map: &DAffine3) -> Option<Rc<Spread>> {
         if let Some(known) = self.spreads.get(&number) {
             return Some(known.clone());
@@ -96,17 +96,17 @@ impl Reader<'_> {
         Table::read(&bytes, file, self.said)
     }
 
-    /// The mean of a table.
+    /// Mean of a data file.
     fn mean_of_data(&self, thing: &Thing, name: Option<&Word>) -> f32 {
         let Some(table) = self.table(thing, name) else { return 1.0 };
         self.said.once(thing.at(), "patterns of data have no counterpart: the mean is taken");
         table.mean()
     }
 
-    /// The mean colour of a picture.
+    /// Mean colour of a picture.
     fn mean_of_picture(&self, name: &Word) -> Option<Color> {
         let (bytes, _) = self.open(name)?;
-        // Radiance's pictures have names without a rule; their content tells.
+        // The names of Radiance's pictures follow no rule, so the content decides.
         let hint = if bytes.starts_with(b"#?") { "picture.hdr" } else { name.text.as_str() };
         let memory = self.input.memory;
         let read = Encoded::open(&bytes, hint).and_then(|encoded| encoded.read(memory, image::decode_srgb));
@@ -123,8 +123,8 @@ impl Reader<'_> {
     }
 }
 
-/// The colour around letters: nine numbers say where they are, then theirs and that of the rest,
-/// then distances.
+/// Colour around letters. The arguments are nine numbers of their position, the foreground and
+/// background colours, and distances.
 fn background(thing: &Thing) -> Color {
     match thing.kind.text.as_str() {
         "brighttext" => Vec3::splat(thing.number(10).unwrap_or(1.0).max(0.0)),

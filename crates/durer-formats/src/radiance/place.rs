@@ -1,24 +1,24 @@
-//! Where what a text says goes.
+//! Context of a text that is read.
 
 use super::words::Word;
 use glam::DAffine3;
 use std::rc::Rc;
 
-/// Where the things of a text go.
+/// Transform and settings that apply to all primitives of a text.
 #[derive(Clone, Default)]
 pub(super) struct Place {
     pub map: DAffine3,
-    /// What modifies all surfaces instead of what is written.
+    /// Modifier that replaces the modifiers of all surfaces.
     pub modifier: Option<Word>,
-    /// Whether all surfaces are turned inside out.
+    /// True if all surfaces are inverted.
     pub inverted: bool,
     pub depth: u32,
-    /// The folder in which commands are run, with its last `/`, from that of the scene.
+    /// Folder in which commands run, relative to the scene's folder, with a trailing `/`.
     pub folder: Rc<str>,
 }
 
 impl Place {
-    /// The name of a file that a command has, from the folder of the scene.
+    /// Path of a command's file relative to the scene's folder.
     pub fn seen(&self, name: &Word) -> Word {
         match self.folder.is_empty() || name.text.starts_with(['/', '\\']) {
             true => name.clone(),
@@ -26,7 +26,7 @@ impl Place {
         }
     }
 
-    /// The same in the folder of a file that a command has.
+    /// Returns this context with the folder of a file that a command names.
     pub fn beside(&self, name: &Word) -> Place {
         let text = self.seen(name).text;
         let folder = text.rfind(['/', '\\']).map_or("", |slash| &text[..=slash]);

@@ -1,4 +1,4 @@
-//! Files for Radiance's `rad`: which files make a scene, and whence it is seen.
+//! Reader of `rad` input files, which list the files of a scene and its views.
 
 use super::place::Place;
 use super::standard::{Zone, standard};
@@ -9,7 +9,7 @@ use crate::said::meant;
 use durer_diag::Diagnostic;
 use durer_scene::math::fp;
 
-/// The variables of `rad`; three letters of a name do.
+/// Variables of `rad`; three letters suffice.
 const VARIABLES: [&str; 26] = [
     "objects",
     "scene",
@@ -38,17 +38,17 @@ const VARIABLES: [&str; 26] = [
     "REPORT",
     "rpict",
 ];
-/// Variables that change no light.
+/// Variables without effect on the light.
 const MORE: [&str; 8] = ["PGMAP", "PCMAP", "mkpmap", "rvu", "rtrace", "rpiece", "EYESEP", "MATERIAL"];
 
-/// A line of a file: the variable's full name, and its values.
+/// A line: the variable's full name and its values.
 struct Setting {
     name: &'static str,
     values: Vec<Word>,
 }
 
 impl Reader<'_> {
-    /// Reads the file that the scene is.
+    /// Reads the scene's main file.
     pub fn rif(&mut self) {
         let (bytes, file) = (self.input.bytes.clone(), self.input.file);
         let settings = self.settings(&bytes, file);
@@ -85,7 +85,7 @@ impl Reader<'_> {
         self.exposure(exposure);
     }
 
-    /// The view that is wanted by name or number, or the first.
+    /// Selects the view by name or number; the default is the first.
     fn view(&mut self, views: &[&Setting], zone: &Zone, larger: u32) {
         let name = |i: usize| views[i].values.first().filter(|word| !word.text.starts_with('-'));
         let wanted = match &self.input.staging.camera {
@@ -135,7 +135,7 @@ impl Reader<'_> {
         view.place(&mut self.scene, larger, self.said);
     }
 
-    /// Tells of an exposure: stops where it has a sign, and else a factor.
+    /// Notes an exposure: stops if it has a sign, else a factor.
     fn exposure(&self, word: Option<Word>) {
         let Some((word, value)) = word.and_then(|word| word.number(self.said).map(|value| (word, value as f32))) else {
             return;
@@ -155,7 +155,7 @@ impl Reader<'_> {
         let mut start = 0;
         while start < bytes.len() {
             let mut end = start;
-            // A line goes on behind a `\`.
+            // A backslash continues the line.
             loop {
                 end += bytes[end..].iter().take_while(|byte| **byte != b'\n').count();
                 let line = &bytes[start..end];

@@ -1,10 +1,10 @@
-//! Skies that `gensky` and `gendaylit` write.
+//! Skies as `gensky` and `gendaylit` write them.
 //!
 //! Source: *Standardization of Luminance Distribution on Clear Skies*, CIE publication 22, 1973;
-//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez,
-//! Seals and Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993;
-//! the manual pages of gensky and gendaylit for the order of the numbers; Radiance's
-//! `skybright.cal` and `perezlum.cal`, which they are for.
+//! Nakamura, Oki and Hayashi, *Luminance distribution of intermediate sky*, 1985; Perez, Seals and
+//! Michalsky, *All-weather model for sky luminance distribution*, Solar Energy 50, 1993; the manual
+//! pages of gensky and gendaylit for the order of the arguments, which are meant for Radiance's
+//! `skybright.cal` and `perezlum.cal`.
 
 use super::args::Thing;
 use crate::said::Said;
@@ -12,7 +12,7 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f32::consts::FRAC_PI_2;
 
-/// A sky over a ground.
+/// A sky above a ground.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sky {
     kind: Cover,
@@ -20,7 +20,7 @@ pub(super) struct Sky {
     ground: f32,
     factor: f32,
     sun: DVec3,
-    /// From the world into the sky's own axes.
+    /// Rotation from world space to the sky's own axes.
     turn: DMat3,
 }
 
@@ -30,13 +30,13 @@ enum Cover {
     Overcast,
     Uniform,
     Intermediate,
-    /// By its five coefficients.
+    /// Perez's sky by its five coefficients.
     Perez([f32; 5]),
 }
 
 impl Sky {
-    /// By its numbers: kind, zenith, ground, factor, way to the sun; turned by a map, which keeps
-    /// shapes.
+    /// Creates a sky from its arguments: kind, zenith, ground, factor, direction to the sun. `map`
+    /// is a similarity from the sky's axes to world space.
     pub fn of(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
         let number = |i: usize| thing.number(i).unwrap_or(0.0);
         let kind = match number(0).round() as i32 {
@@ -65,8 +65,8 @@ impl Sky {
         Some(Sky { kind, zenith: number(1).max(0.0), ground: number(2).max(0.0), factor, sun, turn })
     }
 
-    /// The sky of any weather by its numbers: brightness, ground, five coefficients, way to the
-    /// sun; turned by a map, which keeps shapes.
+    /// Creates a Perez sky from its arguments: brightness, ground, five coefficients, direction to
+    /// the sun. `map` is a similarity from the sky's axes to world space.
     pub fn perez(thing: &Thing, map: DMat3, said: &Said) -> Option<Sky> {
         if !thing.has(&[10], said) {
             return None;
@@ -78,17 +78,17 @@ impl Sky {
         Some(Sky { kind, zenith, ground, factor: 1.0, sun: thing.point(7).normalize_or_zero(), turn })
     }
 
-    /// How bright it is in a unit direction of the world.
+    /// Radiance in a unit direction of world space.
     pub fn at(&self, dir: DVec3) -> f32 {
         let dir = self.turn * dir;
         let height = (dir.z as f32).clamp(-1.0, 1.0);
-        // From the sky to the ground within some ten degrees of the horizon.
+        // Blends the sky into the ground within about ten degrees of the horizon.
         let above = fp::pow(height + 1.01, 10.0);
         let below = 1.0 / above;
         ((self.bare(dir, height) * above + self.ground * below) / (above + below)).max(0.0)
     }
 
-    /// The sky without the ground, whose formulas go on below the horizon.
+    /// Radiance of the sky without the ground; its formulas extend below the horizon.
     fn bare(&self, dir: DVec3, height: f32) -> f32 {
         let cosine = (dir.dot(self.sun) as f32).clamp(-1.0, 1.0);
         let angle = fp::atan2((1.0 - cosine * cosine).sqrt(), cosine);
@@ -104,7 +104,7 @@ impl Sky {
                 self.zenith * by_height * (1.0 + c * fp::exp(d * angle) + e * cosine * cosine)
             }
             Cover::Intermediate => {
-                // From the zenith.
+                // Angle from the zenith.
                 let eta = FRAC_PI_2 - fp::asin(height);
                 let sun = (self.sun.z as f32).clamp(-1.0, 1.0);
                 let zenith_angle = fp::atan2((1.0 - sun * sun).sqrt(), sun);

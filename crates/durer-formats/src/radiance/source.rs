@@ -1,4 +1,4 @@
-//! Light from infinitely far away.
+//! Sources: light from infinitely far away.
 
 use super::args::Thing;
 use super::made::{Distant, Kind};
@@ -12,9 +12,10 @@ use durer_scene::math::{Vec3, fp};
 use durer_scene::scene::Spanned;
 use glam::DVec3;
 
-/// Degrees across which what is far away counts as a direction, as the sun does.
+/// Maximum angular diameter in degrees of a source that becomes a directional light, as the sun
+/// does.
 const SMALL: f32 = 5.0;
-/// Rows of the picture around the scene.
+/// Height in pixels of the environment map.
 const ROWS: u32 = 256;
 
 impl Reader<'_> {
@@ -31,13 +32,13 @@ impl Reader<'_> {
         let Some(made) = modifier.map(|modifier| self.made(modifier)) else { return };
         let (radiance, sky) = match &made.kind {
             Kind::Shining { radiance } => (*radiance, made.patterns.sky.clone()),
-            // All its light goes one way.
+            // All its light has one direction.
             Kind::Aimed { radiance, spread, .. } => (*radiance * spread.at(-direction, 1.0) as f32, None),
             _ => return self.said.once(at, "a source that does not shine is not shown"),
         };
         let cosine = fp::sin_cos_degrees(0.5 * f64::from(degrees)).1;
         if degrees <= SMALL && sky.is_none() {
-            // What a white matte surface shows that faces it.
+            // Reflected radiance of a white matte surface that faces the source.
             let color = radiance * (2.0 * (1.0 - cosine)) as f32;
             let spread = Some(0.5 * degrees);
             let light =
@@ -52,7 +53,7 @@ impl Reader<'_> {
         self.scene.lights.get_or_insert_default().push(Spanned { value, span });
     }
 
-    /// Puts what is infinitely far away around the scene.
+    /// Combines all remaining sources into an environment map.
     pub fn surround(&mut self) {
         (self.scene.background.color, self.scene.background.ambient_light) = (Vec3::ZERO, Vec3::ZERO);
         let Some(at) = self.distant.first().map(|distant| distant.at) else { return };

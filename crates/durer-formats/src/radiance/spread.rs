@@ -1,5 +1,5 @@
-//! Lamps that shine otherwise in each direction: tables over the angles of a lamp, as `ies2rad`
-//! writes them, and spotlights.
+//! Directional distributions of lights: tables over angles, as `ies2rad` writes them, and
+//! spotlights.
 //!
 //! Source: `source.cal` of Radiance, for the functions and the angles; the manual for spotlights.
 
@@ -11,56 +11,57 @@ use durer_scene::math::fp;
 use glam::{DMat3, DVec3};
 use std::f64::consts::PI;
 
-/// How a lamp's radiance depends on the direction in which it shines.
+/// Factor of a light's radiance that depends on the direction of emission.
 #[derive(Debug, PartialEq)]
 pub(super) enum Spread {
     Table(Lamp),
-    /// The same within a cone about a unit direction.
+    /// Constant inside a cone of a half angle in degrees about a unit direction, 0 outside.
     Cone {
         aim: DVec3,
         degrees: f64,
-        /// How far behind its surface it seems to come from.
+        /// Distance of the apparent origin of the light behind the surface.
         focus: f64,
     },
 }
 
-/// A table over the angles of a lamp.
+/// A table over the angles of a light.
 #[derive(Debug, PartialEq)]
 pub(super) struct Lamp {
     table: Table,
     correction: Correction,
     factor: f64,
-    /// By the coordinates of the table, with what is added to each.
+    /// Angle of each coordinate of the table, and an offset in degrees.
     angles: Vec<(Angle, f64)>,
-    /// From the world into the lamp's own axes.
+    /// Rotation from world space to the light's own axes.
     turn: DMat3,
 }
 
-/// What makes a radiance of an intensity.
+/// Correction that converts intensity to radiance.
 #[derive(Debug, PartialEq)]
 enum Correction {
     Nothing,
-    /// Over the cosine to the surface.
+    /// Divides by the cosine to the surface normal.
     Flat,
-    /// Over the area that a box of these sides shows.
+    /// Divides by the projected area of a box with these sides.
     Box(DVec3),
-    /// Over the area that an upright cylinder of this diameter and height shows.
+    /// Divides by the projected area of an upright cylinder of this diameter and height.
     Cylinder(f64, f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Angle {
-    /// From straight down.
+    /// Angle from straight down.
     Theta,
-    /// Around that, from x towards y, turned back wherever it is more than so many degrees.
+    /// Angle around the vertical axis, from x towards y, mirrored at multiples of this many
+    /// degrees.
     Phi(f64),
-    /// Of a photometer of type B, the second without its sign.
+    /// Angles of a type B photometer; `true` drops the sign.
     Vertical(bool),
     Horizontal(bool),
 }
 
 impl Angle {
-    /// An angle and what is added to it.
+    /// Parses an angle and its offset.
     fn of(name: &str) -> Option<(Angle, f64)> {
         let at = name.find(['+', '-']).unwrap_or(name.len());
         let (name, more) = name.split_at(at);
@@ -79,7 +80,7 @@ impl Angle {
         Some((angle, more))
     }
 
-    /// Degrees, for a unit direction in which light goes.
+    /// Returns the angle in degrees of a unit direction of emission.
     fn at(self, e: DVec3) -> f64 {
         let degrees = |y: f64, x: f64| f64::from(fp::atan2(y as f32, x as f32)) * 180.0 / PI;
         match self {
@@ -99,15 +100,17 @@ impl Angle {
     }
 }
 
-/// How many coordinates a table has behind its function and its files, if all are a lamp's; else 0.
+/// Number of coordinates in a pattern's arguments, after its function and files; 0 if one of them
+/// is not an angle of a light.
 pub(super) fn coordinates(thing: &Thing) -> usize {
     let names = || thing.texts.iter().skip(3).take_while(|word| !word.text.starts_with('-'));
     if names().all(|word| Angle::of(&word.text).is_some()) { names().count() } else { 0 }
 }
 
 impl Lamp {
-    /// By the function and the coordinates of a pattern, whose axes are turned into the world;
-    /// `None` for functions of others.
+    /// Creates the distribution from the function and coordinates of a pattern; `None` for
+    /// functions other than those of `source.cal`. `turn` rotates from world space to the light's
+    /// axes.
     pub fn new(thing: &Thing, table: Table, turn: DMat3) -> Option<Lamp> {
         let number = |i: usize| thing.numbers.get(i).copied();
         let factor = number(0).unwrap_or(1.0).max(0.0);
@@ -115,7 +118,7 @@ impl Lamp {
         let correction = match thing.texts.first()?.text.as_str() {
             "corr" => Correction::Nothing,
             "flatcorr" => Correction::Flat,
-            // Both are the same far away.
+            // Both are equal at a distance.
             "boxcorr" | "lboxcorr" => Correction::Box(DVec3::new(side(1), side(2), side(3))),
             "cylcorr" => Correction::Cylinder(side(1), side(2)),
             _ => return None,
@@ -125,7 +128,7 @@ impl Lamp {
         (angles.len() == table.dimensions()).then_some(Lamp { table, correction, factor, angles, turn })
     }
 
-    /// In a unit direction of the world, from a surface whose normal has this cosine to it.
+    /// Factor in a unit direction of world space; `cosine` is that to the surface normal.
     fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         let e = (self.turn * dir).normalize_or_zero();
         let angles: Vec<f64> = self.angles.iter().map(|(angle, more)| angle.at(e) + more).collect();
@@ -142,8 +145,8 @@ impl Lamp {
 }
 
 impl Spread {
-    /// What multiplies the radiance in a unit direction, from a surface whose normal has this
-    /// cosine to it.
+    /// Factor of the radiance in a unit direction of world space; `cosine` is the cosine to the
+    /// surface normal.
     pub fn at(&self, dir: DVec3, cosine: f64) -> f64 {
         match self {
             Spread::Table(lamp) => lamp.at(dir, cosine),
@@ -158,7 +161,7 @@ impl Spread {
         }
     }
 
-    /// The direction from which its angles are best told, and one across it.
+    /// Axis from which the angles are measured, and a direction perpendicular to it.
     pub fn axes(&self) -> [DVec3; 2] {
         match self {
             Spread::Table(lamp) => {
@@ -169,15 +172,15 @@ impl Spread {
         }
     }
 
-    /// How strong a surface shines in each direction, over its area and its radiance: `shows` is
-    /// the share of its area that is seen in a direction, and its cosine there.
+    /// Light profile of a surface, per area and radiance. `shows` returns the projected area in a
+    /// direction as a fraction of the area, and the cosine to the normal.
     pub fn profile(&self, shows: impl Fn(DVec3) -> (f64, f64)) -> Profile {
         let [down, front] = self.axes();
         let side = front.cross(down);
         let whole = |steps: u32, most: f64| (0..=steps).map(move |i| most * f64::from(i) / f64::from(steps));
         let vertical: Vec<f64> = match self {
             Spread::Table(_) => whole(180, 180.0).collect(),
-            // It ends at once.
+            // The edge of the cone is sharp.
             Spread::Cone { degrees, .. } if *degrees < 179.9 => {
                 whole(36, *degrees).chain([degrees + 0.01, 180.0]).collect()
             }
@@ -188,12 +191,13 @@ impl Spread {
             let [(sine, cosine), (s, c)] = [from, around].map(fp::sin_cos_degrees);
             let dir = cosine * down + sine * (c * front + s * side);
             let (share, facing) = shows(dir);
-            // Where a cone ends its angle is known better than by the cosine of a direction.
+            // Compares angles at the edge of a cone, which is more exact than the cosine of a
+            // direction.
             let strength = match self {
                 Spread::Table(lamp) => lamp.at(dir, facing),
                 Spread::Cone { degrees, .. } => f64::from(from <= *degrees),
             };
-            // What is not seen may be as strong as it likes.
+            // Avoids NaN where the surface is not visible and the factor is infinite.
             if share > 0.0 { (share * strength) as f32 } else { 0.0 }
         };
         let column = |&around: &f64| vertical.iter().map(move |&from| (around, from));
@@ -202,7 +206,7 @@ impl Spread {
         let rows = vertical.len();
         let most = candela.iter().copied().fold(0.0, f32::max);
         if (rows..candela.len()).all(|i| (candela[i] - candela[i % rows]).abs() <= 1e-4 * most) {
-            // The same all around.
+            // The distribution is rotationally symmetric.
             (horizontal, candela) = (vec![0.0], candela[..rows].to_vec());
         }
         let single = |angles: Vec<f64>| angles.into_iter().map(|angle| angle as f32).collect();

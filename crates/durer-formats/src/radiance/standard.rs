@@ -1,6 +1,6 @@
-//! The views that `rad` knows by name, as `XYZ` and `yl`: from the sides and corners of a box.
+//! Standard views of `rad` by name, such as `XYZ` and `yl`: from the sides and corners of a box.
 //!
-//! Source: the manual page of rad, and what `rad -n` prints.
+//! Source: the manual page of rad, and the output of `rad -n`.
 
 use super::state::Reader;
 use super::view::View;
@@ -10,20 +10,20 @@ use durer_scene::scene::Node;
 use durer_scene::shape::Shape;
 use glam::DVec3;
 
-/// What `rad` knows of the place.
+/// The `ZONE` and `UP` settings of `rad`.
 pub(super) struct Zone {
     min: DVec3,
     size: DVec3,
-    /// Whether cameras are within.
+    /// True if cameras are inside the box.
     interior: bool,
-    /// What is up: an axis, and which end of it.
+    /// Up axis and its sign.
     up: (usize, f64),
 }
 
-/// Letters of axes.
+/// Names of the axes.
 const AXES: [char; 3] = ['X', 'Y', 'Z'];
 
-/// The way from the middle to the camera, and the type, of a view of that name.
+/// Direction from the centre to the camera, and the view type, of a standard view.
 pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
     let (mut rest, mut way) = (name, DVec3::ZERO);
     for (axis, letter) in AXES.into_iter().enumerate() {
@@ -42,8 +42,8 @@ pub(super) fn standard(name: &str) -> Option<(DVec3, char)> {
 }
 
 impl Zone {
-    /// The values of `ZONE` and `UP`, if there are any; else the cube around all surfaces, from
-    /// without, and z.
+    /// The values of `ZONE` and `UP`; the defaults are the cube around all surfaces, seen from
+    /// outside, and z.
     pub fn of(zone: Option<&[Word]>, up: Option<&[Word]>, reader: &Reader) -> Zone {
         let up = up.and_then(|words| words.first()).map_or("", |word| word.text.as_str());
         let letter = up.trim_start_matches(['+', '-']).chars().next().map(|letter| letter.to_ascii_uppercase());
@@ -63,7 +63,7 @@ impl Zone {
         let middle = self.min + 0.5 * self.size;
         let point = middle + if self.interior { 0.45 } else { 2.0 } * way * self.size;
         let (axis, side) = self.up;
-        // The axis before it where the view goes along the one that is up.
+        // The preceding axis if the view direction is parallel to the up axis.
         let up = match (0..3).map(|i| (axis + 3 - i) % 3).find(|up| (0..3).any(|i| i != *up && way[i] != 0.0)) {
             Some(up) if up == axis => side * DVec3::AXES[up],
             Some(up) => DVec3::AXES[up],
@@ -83,7 +83,7 @@ impl Zone {
 }
 
 impl Reader<'_> {
-    /// The cube around all surfaces that were read.
+    /// Bounding cube of all surfaces that were read.
     fn cube(&self) -> [DVec3; 2] {
         let objects = self.scene.root.iter().flat_map(|root| &root.objects);
         let shapes = objects.filter_map(|object| match &object.node {

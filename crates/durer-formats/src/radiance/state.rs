@@ -1,4 +1,4 @@
-//! A file on its way to a scene.
+//! State of the Radiance reader.
 
 use super::args::Thing;
 use super::body::Body;
@@ -19,27 +19,27 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Files in files, and files in all.
+/// Maximum depth of nested files, and maximum number of files.
 const DEEPEST: u32 = 32;
 const MAX_FILES: usize = 4096;
-/// So many materials may come of others.
+/// Maximum number of materials that patterns and mixtures may create.
 const MOST_COPIES: usize = 1 << 16;
-/// Corners and shapes of a scene.
+/// Maximum number of corners and shapes of a scene.
 const MAX_THINGS: usize = 1 << 26;
 
-/// What surfaces are made of, as it is written, or a pattern.
+/// A material or pattern as written.
 pub(super) struct Modifier {
     pub thing: Rc<Thing>,
-    /// The number of what modifies it.
+    /// Index of the modifier that applies to it.
     pub parent: Option<usize>,
-    /// The numbers of other modifiers that it names.
+    /// Indices of other modifiers that it names.
     pub others: [Option<usize>; 2],
     pub map: DAffine3,
-    /// How many modifiers of modifiers there are.
+    /// Length of the longest chain of modifiers above it.
     pub depth: u32,
 }
 
-/// What is not a surface.
+/// Keywords of materials.
 pub(super) const MATERIALS: [&str; 27] = [
     "plastic",
     "metal",
@@ -69,7 +69,7 @@ pub(super) const MATERIALS: [&str; 27] = [
     "BSDF",
     "ashik2",
 ];
-/// Materials of programs later than the manual, or without a counterpart that differs.
+/// Materials of later versions than the manual describes, or without any counterpart.
 pub(super) const OTHERS: [&str; 2] = ["aBSDF", "WGMDfunc"];
 pub(super) const PATTERNS: [&str; 10] = [
     "colorfunc",
@@ -87,24 +87,24 @@ pub(super) const MIXTURES: [&str; 4] = ["mixfunc", "mixdata", "mixpict", "mixtex
 pub(super) const SURFACES: [&str; 11] =
     ["source", "sphere", "bubble", "polygon", "cone", "cup", "cylinder", "tube", "ring", "mesh", "instance"];
 
-/// A file on its way to a scene.
+/// State of reading a scene.
 pub(super) struct Reader<'a> {
     pub input: &'a Input<'a>,
     pub said: &'a Said,
     pub modifiers: Vec<Modifier>,
     pub names: BTreeMap<String, usize>,
-    /// What modifiers became, if surfaces asked, by their numbers and the bits of the colour that
-    /// patterns before them multiply.
+    /// Converted modifiers, by index and the bits of the colour by which patterns before them
+    /// multiply.
     pub made: BTreeMap<(usize, [u32; 3]), Rc<Made>>,
-    /// Whether more materials were asked for than there may be.
+    /// True if the limit of materials has been reached.
     full: bool,
-    /// By the number of the material: surfaces that are one mesh.
+    /// Merged surfaces by material.
     pub bodies: BTreeMap<u32, Body>,
-    /// By the number of the material: what is in the air there.
+    /// Fog of mist materials by material.
     pub mists: BTreeMap<u32, Fog>,
     pub distant: Vec<Distant>,
-    /// What patterns make of the directions of light, by the modifier's number; and the lamps that
-    /// shine so, by what they have of a direction.
+    /// Directional distributions by the index of their modifier; then the profiles made from them,
+    /// by distribution and the orientation of the surface.
     pub spreads: BTreeMap<usize, Rc<Spread>>,
     pub profiles: Vec<(Rc<Spread>, Facing)>,
     pub cutter: Cutter,
@@ -134,7 +134,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads a text.
+    /// Reads a scene text.
     pub fn text(&mut self, bytes: &[u8], file: u32, place: &Place) {
         let mut words = Words::new(bytes, file, 0..bytes.len());
         while let Some(start) = words.start() {
@@ -151,8 +151,8 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Whether no more materials are made: those below many patterns and mixtures with `void` would
-    /// be as many as their product.
+    /// Returns true if the limit of materials is reached: the number of materials below many
+    /// patterns and mixtures with `void` can be the product of their counts.
     pub fn is_full(&mut self, at: Span) -> bool {
         if !self.full && self.scene.materials.len() > 3 * self.modifiers.len() + MOST_COPIES {
             self.full = true;
@@ -161,8 +161,8 @@ impl<'a> Reader<'a> {
         self.full
     }
 
-    /// Reads a file that a command has, with the commands in it beside that file or, as of what is
-    /// only printed, where this command is run.
+    /// Reads a file that a command names. Commands in it run in the folder of that file if
+    /// `beside`, else in the current folder, as for piped output.
     pub fn file(&mut self, name: &Word, place: &Place, beside: bool) {
         self.files += 1;
         if place.depth >= DEEPEST || self.files > MAX_FILES {
@@ -177,7 +177,7 @@ impl<'a> Reader<'a> {
         self.text(&bytes, file, &Place { depth: place.depth + 1, ..place });
     }
 
-    /// The bytes and the number of a file that another names.
+    /// Bytes and index of a file that another file names.
     pub fn open(&self, name: &Word) -> Option<(Arc<[u8]>, u32)> {
         match self.input.source.read(&name.text) {
             Ok(bytes) => {
@@ -233,7 +233,7 @@ impl<'a> Reader<'a> {
         self.names.insert(name.text, self.modifiers.len() - 1);
     }
 
-    /// Another name for a thing, which may be modified otherwise.
+    /// Defines an alias: another name for a modifier, which may change its own modifier.
     fn alias(&mut self, alias: Thing) {
         let Some(Some(real)) = self.find(&alias.texts[0]) else { return };
         let parent = match alias.modifier.text.as_str() {
@@ -248,7 +248,8 @@ impl<'a> Reader<'a> {
         self.define(alias.name, modifier);
     }
 
-    /// The number of the modifier of a name; `Some(None)` for `void`. Complains if there is none.
+    /// Index of a modifier by name; `Some(None)` for `void`. Reports an unknown name and returns
+    /// `None`.
     pub fn find(&self, name: &Word) -> Option<Option<usize>> {
         if name.text == "void" {
             return Some(None);
@@ -262,7 +263,7 @@ impl<'a> Reader<'a> {
         found.map(Some)
     }
 
-    /// Whether so much more is allowed.
+    /// Counts `more` corners or shapes; returns false if the limit is exceeded.
     pub fn room_for(&mut self, more: usize, at: Span) -> bool {
         let before = self.count;
         self.count = self.count.saturating_add(more);
@@ -273,14 +274,14 @@ impl<'a> Reader<'a> {
         self.count <= MAX_THINGS
     }
 
-    /// Adds an object.
+    /// Adds an object to the scene.
     pub fn add(&mut self, node: Node, material: u32, span: Span) {
         let object = Object { node, material: Some(material), span };
         self.scene.root.get_or_insert_default().objects.push(object);
     }
 
-    /// Makes the mist that the camera is in what is in the air: no ray would know that it begins in
-    /// a body.
+    /// Converts the mist that contains the camera into fog, since camera rays would not know that
+    /// they start inside a body.
     fn step_into_mist(&mut self) {
         let Some(eye) = self.scene.camera.as_ref().map(|camera| camera.pose().center) else { return };
         for (number, fog) in std::mem::take(&mut self.mists) {
@@ -296,7 +297,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// All that was read.
+    /// Completes the scene.
     pub fn finish(mut self) -> Scene {
         self.step_into_mist();
         for (material, body) in std::mem::take(&mut self.bodies) {

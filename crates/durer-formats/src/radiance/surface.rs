@@ -1,4 +1,4 @@
-//! Surfaces.
+//! Conversion of surfaces.
 
 use super::args::Thing;
 use super::body::Body;
@@ -20,7 +20,7 @@ impl Reader<'_> {
             return;
         }
         let map = place.map;
-        // Radiance's transforms keep shapes: all lengths grow alike.
+        // Radiance's transforms are similarities: they scale all lengths alike.
         let scale = map.matrix3.x_axis.length();
         match thing.kind.text.as_str() {
             "instance" | "mesh" => {
@@ -119,7 +119,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A face that a generator makes. Only the first complains of its material.
+    /// Adds a face from a generator. Only the first face of its output reports an unknown material.
     pub fn facet(&mut self, modifier: &Word, corners: &[DVec3], name: &Word, place: &Place, first: bool) {
         let known = modifier.text == "void" || self.names.contains_key(&modifier.text);
         if !known && !first {
@@ -152,9 +152,10 @@ impl Reader<'_> {
         self.bodies.entry(number).or_insert_with(|| Body::new(at))
     }
 
-    /// What a surface is made of, with its number in the scene; `None` where nothing is shown.
+    /// Material of a surface and its number; `None` if the surface is not shown. Adds the lights of
+    /// surfaces with a directional distribution.
     fn shown(&mut self, modifier: Option<usize>, outline: &Outline, at: Span) -> Option<(std::rc::Rc<Made>, u32)> {
-        // What is made of nothing is there for programs that ask for it.
+        // Surfaces with the modifier `void` only serve other programs.
         let made = self.made(modifier?);
         match made.kind {
             Kind::Aimed { .. } => {

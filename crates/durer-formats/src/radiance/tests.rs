@@ -1,5 +1,5 @@
-//! Radiance's files: what is read of them, conventions in closed form, and errors with their
-//! places.
+//! Tests of the Radiance reader: parsing, conventions in closed form, and errors with their
+//! positions.
 
 mod conventions;
 mod gensky;
@@ -17,20 +17,20 @@ fn read(text: &str) -> (Option<Scene>, Vec<String>) {
     read_in(&std::env::temp_dir(), "scene.rad", text)
 }
 
-/// A text of which nothing is to be said.
+/// Reads a text without findings.
 fn clean(text: &str) -> Scene {
     let (scene, told) = read(text);
     assert_eq!(told, [""; 0], "{text}");
     scene.unwrap()
 }
 
-/// The layers of a material's number.
+/// Parameters of the material of a number.
 fn layers(scene: &Scene, number: u32) -> &PrincipledMaterial {
     let Material::Principled(layers) = &scene.materials[number as usize].value else { panic!("no layers") };
     layers
 }
 
-/// All corners of a scene's meshes.
+/// Vertices of a scene's meshes.
 fn corners(scene: &Scene) -> Vec<Vec3> {
     scene.assets.meshes.values().flat_map(|mesh| mesh.positions.iter().copied()).collect()
 }
@@ -54,8 +54,8 @@ fn names_comments_quotes_and_aliases() {
     let Node::Primitive(durer_scene::shape::Primitive::Sphere(sphere)) = &object.node else { panic!("{object:?}") };
     assert_eq!((sphere.center, sphere.radius), (Vec3::new(1.0, 2.0, 3.0), 0.5));
     assert_eq!(layers(&scene, object.material.unwrap()).base_color, Vec3::new(0.1, 0.2, 0.3));
-    // What has a name again is another thing from there on; an alias takes its pattern along by
-    // `inherit`.
+    // A second definition of a name applies from there on; an alias with `inherit` keeps the
+    // pattern.
     let text = "void brightfunc half 1 .5 0 0 half plastic m 0 0 5 .8 .8 .8 0 0\n";
     for (modifier, expected) in [("inherit", 0.4), ("void", 0.8), ("half", 0.4)] {
         let scene = clean(&format!("{text}{modifier} alias n m n sphere s 0 0 4 0 0 0 1"));
@@ -71,7 +71,7 @@ fn commands_are_made_and_not_run() {
     assert_eq!(all.len(), 3 * 24);
     assert_eq!(all.iter().copied().reduce(Vec3::min), Some(Vec3::new(10.0, 0.0, 0.0)));
     assert_eq!(all.iter().copied().reduce(Vec3::max), Some(Vec3::new(11.0, 22.0, 3.0)));
-    // All faces look outwards, also of a prism with a hole, and of their mirror images.
+    // All faces are oriented outwards, also those of a prism with a hole, and of mirror images.
     let prism = "!genprism white p 10 0 0 0 4 4 4 4 0 0 0 1 1 3 1 3 3 1 3 1 1 -l 0 0 2 -c";
     for (command, volume) in [
         ("!genbox white box 1 2 3 | xform -rx 20 -t 5 6 7", 6.0),
@@ -88,7 +88,8 @@ fn commands_are_made_and_not_run() {
         let six: f64 = mesh.triangles.iter().map(|t| corner(t[0]).dot(corner(t[1]).cross(corner(t[2])))).sum();
         assert!((six / 6.0 - volume).abs() < 1e-4, "{command}: {}", six / 6.0);
     }
-    // -i repeats a part, -m gives a material, names of files in files are those beside the scene.
+    // -i repeats a part, -m sets a material; file names in included files are relative to the
+    // scene.
     let files = folder(&[
         ("part.rad", b"white sphere s 0 0 4 1 0 0 .25\n"),
         ("red.rad", b"void plastic red 0 0 5 1 0 0 0 0\n!xform -m red part.rad"),
@@ -109,7 +110,8 @@ fn materials_become_layers() {
     assert_eq!((m.base_color, told.len()), (Vec3::new(0.8, 0.4, 0.2), 0));
     // An index of 1.5 reflects 4 %.
     assert!((m.specular_ior - 1.5).abs() < 1e-5 && m.specular_roughness == 0.0);
-    // Of rough plastic that share is white, in all directions; its roughness is the root of the slope.
+    // In rough plastic the specular part is white in all directions; its roughness is the root of
+    // the slope.
     let scene = clean("void plastic m 0 0 5 .8 .4 .2 .04 .09 m sphere s 0 0 4 1 2 3 .5");
     let Material::Solid(durer_scene::material::Solid::Mix(mix), _) = &scene.materials[2].value else {
         panic!("no mixture")
@@ -123,18 +125,18 @@ fn materials_become_layers() {
     assert!(m.base_metalness == 0.95 && (m.specular_roughness - 0.2).abs() < 1e-6);
     let (m, _) = sphere("void glass m 0 0 3 .9 .8 .7");
     assert_eq!((m.walls, m.specular_ior, m.transmission_color), (Walls::Thin, 1.52, Vec3::new(0.9, 0.8, 0.7)));
-    // Its inside absorbs, of what is reflected there too.
+    // The inside absorbs, including light that is reflected internally.
     assert_eq!(m.transmission_depth, 1.0);
     let (m, _) = sphere("void dielectric m 0 0 5 .5 .25 1 1.33 0");
     assert_eq!((m.walls, m.specular_ior, m.transmission_depth), (Walls::Solid, 1.33, 1.0));
     assert_eq!(m.transmission_color, Vec3::new(0.5, 0.25, 1.0));
     let (m, _) = sphere("void trans m 0 0 7 .9 .9 .5 0 0 .5 .7");
     assert!((m.transmission_weight - 0.35).abs() < 1e-6);
-    // Half is scattered back, 0.15 forth.
+    // 0.5 is scattered back, 0.15 forward.
     assert!((m.subsurface_scatter_anisotropy + 0.35 / 0.65).abs() < 1e-6);
     let (m, _) = sphere("void light m 0 0 3 4 2 1");
     assert_eq!((m.emission_luminance, m.emission_color, m.base_color), (4.0, Vec3::new(1.0, 0.5, 0.25), Vec3::ZERO));
-    // A bubble in glass has inside what is written as outside.
+    // A bubble in glass has on its inside what the material calls outside.
     let text = "void interface m 0 0 8 1 1 1 1.5 1 1 1 1.33\n";
     for (kind, index) in [("sphere", 1.5), ("bubble", 1.33)] {
         let scene = clean(&format!("{text}m {kind} s 0 0 4 0 0 0 1"));
@@ -163,7 +165,7 @@ fn what_has_no_counterpart_is_told_once_with_its_place() {
         assert!(scene.is_some());
         assert_eq!(found, [format!("scene.rad:{told}")], "{text}");
     }
-    // A material that nothing is made of is not told of.
+    // Unused materials are not reported.
     clean("void BSDF m 1 a.xml 0 0");
 }
 
@@ -212,7 +214,7 @@ fn errors_have_places() {
     assert!(read(&many).1.len() <= 21);
 }
 
-/// A tree of mixtures, seen through, or below a pattern, again and again.
+/// A tree of mixtures, seen through other materials or below a pattern, repeatedly.
 #[test]
 fn a_short_text_asks_for_no_end_of_materials() {
     let depth = 9;

@@ -1,12 +1,11 @@
-//! What is used of a file: materials that something is made of, and files that are named and not
-//! read.
+//! Removal of unused materials, and warnings about missing files that are not read.
 
 use super::args::Thing;
 use super::state::Reader;
 use durer_scene::material::{Pattern, Solid};
 use durer_scene::scene::{Material, Scene};
 
-/// Files of functions that come with Radiance.
+/// Function files that come with Radiance.
 const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBSDF WalterBTDF ambpos bezier2 \
     blackbody blinds bsdf2rad cct cielab cieluv cieresp cieskyscan circle clamp clouds conv1 \
     conv2 cri cubic denom disk2square equivlum ferwerda filt fisheye_corr fitSH fog fovsample \
@@ -19,7 +18,7 @@ const LIBRARY: &str = "Ashikhmin LaFortune LaFortune1 WGMDaniso WGMDiso WalterBS
     tumblin uniq_rgb veil view360stereo vl vonKries vwparab vwplanis window xyz_rgb xyz_srgb";
 
 impl Reader<'_> {
-    /// Tells of files that a thing names, which nothing reads, and that are not there.
+    /// Warns about files that a primitive names, that are not read, and that do not exist.
     pub fn missing(&self, thing: &Thing) {
         for word in &thing.texts {
             let Some((name, kind)) = word.text.rsplit_once('.') else { continue };
@@ -32,13 +31,13 @@ impl Reader<'_> {
     }
 }
 
-/// Leaves materials out that nothing is made of: what only suns are made of, the other side of
-/// glass, what was mixed whole.
+/// Removes unused materials, such as those of suns only, the outer side of glass, and the parts of
+/// a mixture that was reduced to one of them.
 pub(super) fn keep_used(scene: &mut Scene) {
     let mut used = vec![false; scene.materials.len()];
     let objects = || scene.root.iter().flat_map(|root| &root.objects);
     objects().filter_map(|object| object.material).for_each(|number| used[number as usize] = true);
-    // A mixture comes after what it mixes.
+    // A mixture comes after its parts.
     for i in (0..used.len()).rev() {
         if let (true, Material::Solid(solid, _)) = (used[i], &scene.materials[i].value) {
             solid.materials().into_iter().for_each(|part| used[part as usize] = true);

@@ -1,4 +1,4 @@
-//! Views: `-vtv -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45`.
+//! Radiance's views, such as `-vtv -vp 0 0 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45`.
 
 use super::words::{Word, Words};
 use crate::said::Said;
@@ -10,9 +10,9 @@ use durer_scene::math::fp;
 use durer_scene::scene::Scene;
 use glam::DVec3;
 
-/// The larger side of a picture that nothing is said of.
+/// Default size in pixels of the picture's larger side.
 pub(super) const USUAL_SIZE: u32 = 512;
-/// Programs whose names begin a view in a file.
+/// Programs whose names start a view in a file.
 const PROGRAMS: [&str; 7] = ["VIEW=", "rpict", "rview", "rvu", "rpiece", "pinterp", "rad"];
 
 /// A view.
@@ -22,11 +22,11 @@ pub(super) struct View {
     pub point: DVec3,
     pub direction: DVec3,
     pub up: DVec3,
-    /// Across and upwards: degrees, or lengths without perspective.
+    /// Horizontal and vertical size: degrees, or lengths in parallel views.
     pub size: [f64; 2],
-    /// By how many of its own widths and heights the picture is moved.
+    /// Shift of the picture, in fractions of its width and height.
     shift: [f64; 2],
-    /// How far from the point sight begins.
+    /// Distance of the near clipping plane from the view point.
     fore: f64,
     at: Span,
 }
@@ -46,8 +46,8 @@ impl Default for View {
     }
 }
 
-/// The last view of a file: each is written in a line behind `VIEW=` or the name of a program. Of
-/// pictures that is their header, where other options of programs stand beside.
+/// Returns the last view in a file. A view is a line that starts with `VIEW=` or the name of a
+/// program. In a picture only the header is searched, and its lines may contain other options.
 pub(super) fn of_file(bytes: &[u8], file: u32, said: &Said) -> Option<View> {
     let (mut view, mut start) = (None, 0);
     let picture = bytes.starts_with(b"#?");
@@ -82,8 +82,8 @@ impl View {
         View { at, ..View::default() }
     }
 
-    /// Takes options; those that are not of views are passed over, with their numbers, and so are
-    /// those that no view has, where other programs' options are `others`.
+    /// Applies view options. Skips all other options with their arguments and, if `others`, also
+    /// unknown options that begin with `-v`.
     pub fn options(&mut self, words: &[Word], others: bool, said: &Said) {
         let mut rest = words;
         while let Some((option, more)) = rest.split_first() {
@@ -131,7 +131,7 @@ impl View {
         }
     }
 
-    /// Gives a scene this camera, and the size of its picture.
+    /// Sets the camera and the picture size of a scene.
     pub fn place(&self, scene: &mut Scene, larger: u32, said: &Said) {
         if self.kind != 'l' && self.fore != 0.0 {
             said.once(

@@ -1,11 +1,11 @@
-//! Words of a text, and commands in it.
+//! Tokenizer of words and commands.
 
 use crate::number::parse_f32;
 use crate::report::shown;
 use crate::said::Said;
 use durer_diag::Span;
 
-/// A word, without its quotes, and where it is.
+/// A word without its quotes, and its span.
 #[derive(Clone, Debug)]
 pub(super) struct Word {
     pub text: String,
@@ -13,12 +13,12 @@ pub(super) struct Word {
 }
 
 impl Word {
-    /// As it is shown in messages.
+    /// The word quoted for messages.
     pub fn shown(&self) -> String {
         shown(self.text.as_bytes())
     }
 
-    /// The number that it is; complains if it is none.
+    /// Parses the word as a number; reports an error if it is not one.
     pub fn number(&self, said: &Said) -> Option<f64> {
         let number = parse_f32(self.text.as_bytes()).ok().and_then(|_| self.text.parse::<f64>().ok());
         if number.is_none() {
@@ -27,7 +27,7 @@ impl Word {
         number
     }
 
-    /// The whole number, 0 or more, that it is; complains if it is none.
+    /// Parses the word as a non-negative integer; reports an error if it is not one.
     pub fn count(&self, said: &Said) -> Option<usize> {
         let count = self.text.parse().ok();
         if count.is_none() {
@@ -37,14 +37,14 @@ impl Word {
     }
 }
 
-/// What stands where a thing may begin.
+/// A word or command at the start of a primitive.
 pub(super) enum Start {
     Word(Word),
-    /// The range of a command, without its `!`.
+    /// Range of a command, without its `!`.
     Command(std::ops::Range<usize>),
 }
 
-/// A text on its way to words.
+/// Cursor over the words of a text.
 pub(super) struct Words<'a> {
     bytes: &'a [u8],
     file: u32,
@@ -52,13 +52,13 @@ pub(super) struct Words<'a> {
     end: usize,
 }
 
-/// Whether a byte parts words.
+/// Returns true if a byte separates words.
 fn is_space(byte: u8) -> bool {
     byte.is_ascii_whitespace() || byte == 0x0b
 }
 
 impl<'a> Words<'a> {
-    /// Of a part of a file's bytes; there are less than 2^32 of them.
+    /// Starts at the beginning of a range of a file, which must be smaller than 4 GiB.
     pub fn new(bytes: &'a [u8], file: u32, range: std::ops::Range<usize>) -> Self {
         Words { bytes, file, at: range.start, end: range.end }
     }
@@ -67,7 +67,7 @@ impl<'a> Words<'a> {
         Span { file: self.file, start: start as u32, end: end as u32 }
     }
 
-    /// The place where the text ends.
+    /// Span of the end of the text.
     pub fn end(&self) -> Span {
         self.span(self.end, self.end)
     }
@@ -76,8 +76,8 @@ impl<'a> Words<'a> {
         (self.at < self.end).then(|| self.bytes[self.at])
     }
 
-    /// The next word; in quotes of either kind it may have spaces. A `\` at the end of a line is
-    /// none.
+    /// Returns the next word. In single or double quotes it may contain blanks. A backslash at the
+    /// end of a line is skipped.
     pub fn next(&mut self) -> Option<Word> {
         loop {
             while self.peek().is_some_and(is_space) {
@@ -101,7 +101,7 @@ impl<'a> Words<'a> {
         Some(Word { text: String::from_utf8_lossy(word).into_owned(), at })
     }
 
-    /// The next word or command, behind comments.
+    /// Returns the next word or command, skipping comments.
     pub fn start(&mut self) -> Option<Start> {
         loop {
             while self.peek().is_some_and(is_space) {
@@ -123,7 +123,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Goes to the end of the line.
+    /// Moves to the end of the line.
     fn line(&mut self) {
         while self.peek().is_some_and(|byte| byte != b'\n') {
             self.at += 1;
@@ -131,7 +131,7 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Whether a line goes on in the next.
+/// Returns true if a line continues on the next.
 fn continued(line: &[u8]) -> bool {
     line.ends_with(b"\\") || line.ends_with(b"\\\r")
 }

@@ -1,23 +1,24 @@
-//! What `xform` and the transforms of instances do: one after the other, repeated, in arrays.
+//! Transforms of `xform` and of instances: sequences, repetitions and arrays.
 
 use super::words::Word;
 use crate::said::Said;
 use durer_scene::math::fp;
 use glam::{DAffine3, DMat3, DVec3};
 
-/// Places of all arrays in each other.
+/// Maximum number of copies of nested arrays.
 const MAX_PLACES: usize = 1 << 20;
 
-/// How often a part of a transform is applied.
+/// Repetition of a part of a transform.
 #[derive(Clone, Copy, PartialEq)]
 enum Times {
-    /// So often, by `-i`.
+    /// Applied a fixed number of times, by `-i`.
     Just(i32),
-    /// Once in the second place, twice in the third, and so on, by `-a`.
+    /// Array of copies, by `-a`: not applied in the first, once in the second, twice in the third,
+    /// and so on.
     Array(usize),
 }
 
-/// A transform in parts, and so many places.
+/// A transform in parts, which may yield several copies.
 #[derive(Clone)]
 pub(super) struct Transform {
     parts: Vec<(Times, DAffine3)>,
@@ -29,7 +30,7 @@ impl Default for Transform {
     }
 }
 
-/// A turn of an odd number of degrees about an axis, of a quarter exactly.
+/// Rotation about an axis by degrees; exact for multiples of a right angle.
 fn turn(axis: usize, degrees: f64) -> DAffine3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -40,7 +41,8 @@ fn turn(axis: usize, degrees: f64) -> DAffine3 {
 }
 
 impl Transform {
-    /// Takes an option with its numbers off the front of some words; whether it was one.
+    /// Parses an option with its arguments from the front of `words`; returns false if it is not a
+    /// transform.
     pub fn option(&mut self, words: &mut &[Word], said: &Said) -> bool {
         let Some((option, rest)) = words.split_first() else { return false };
         let numbers = |count: usize| -> Option<Vec<f64>> {
@@ -84,7 +86,7 @@ impl Transform {
         true
     }
 
-    /// All places, in their order; `None` where there are too many.
+    /// Transforms of all copies in order; `None` if there are too many.
     pub fn places(&self) -> Option<Vec<DAffine3>> {
         let mut places = vec![DAffine3::IDENTITY];
         for (times, map) in &self.parts {
@@ -109,7 +111,7 @@ impl Transform {
     }
 }
 
-/// A map so many times.
+/// A transform applied `count` times.
 fn power(map: DAffine3, count: i32) -> DAffine3 {
     let (mut result, mut square, mut left) = (DAffine3::IDENTITY, map, count);
     while left > 0 {

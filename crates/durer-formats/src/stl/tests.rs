@@ -1,4 +1,4 @@
-//! STL as text and binary, and what is wrong with some.
+//! Tests of text and binary STL, valid and malformed.
 
 use crate::tests::{abuse, read, read_clean};
 use durer_scene::math::Vec3;
@@ -27,7 +27,7 @@ fn text_and_binary_hold_the_same_triangles_with_shared_corners() {
     let text = read_clean(TEXT.as_bytes(), "a.stl");
     assert_eq!(text.positions, [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y]);
     assert_eq!(text.triangles, [[0, 1, 2], [1, 3, 2]]);
-    // A binary file may begin as a text does.
+    // A binary file may begin as a text file does.
     for head in [&b"made by a program"[..], b"solid facet"] {
         assert_eq!(read_clean(&binary(head, &SQUARE), "a.stl"), text);
         assert_eq!(read_clean(&binary(head, &SQUARE), "no ending"), text);

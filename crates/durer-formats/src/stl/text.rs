@@ -1,5 +1,5 @@
-//! STL as text: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three times
-//! `vertex x y z`, `endloop`, `endfacet`.
+//! Reader of text STL: `solid`, and for each triangle `facet normal x y z`, `outer loop`, three
+//! lines `vertex x y z`, `endloop`, `endfacet`.
 
 use super::Builder;
 use crate::number::{parse_f32, report_number};
@@ -7,8 +7,7 @@ use crate::report::{Report, counted, shown};
 use durer_scene::math::Vec3;
 use std::ops::Range;
 
-/// Reads the facets. Nothing but the corners counts; words between them are looked at only to find
-/// where something is odd.
+/// Reads the facets. Only the vertices are used; the other words are checked to report mistakes.
 pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     let mut corners: Vec<Vec3> = Vec::with_capacity(3);
     let mut facet: Option<Range<usize>> = None;
@@ -49,9 +48,9 @@ pub fn read(bytes: &[u8], mesh: &mut Builder, report: &mut Report) {
     unfinished(&mut corners, facet, report);
 }
 
-/// Complains of a facet that did not come to three corners.
+/// Reports a facet without exactly three vertices.
 fn unfinished(corners: &mut Vec<Vec3>, facet: Option<Range<usize>>, report: &mut Report) {
-    // A wrong number was complained of already.
+    // An invalid number has been reported already.
     if let Some(at) = facet.filter(|_| !report.has_errors()) {
         report.error(at, format!("a facet has 3 corners, found {}", counted(corners.len(), "corner", "corners")));
     }

@@ -1,4 +1,4 @@
-//! Meshes as binary STL files: triangles and their normals.
+//! Writer of meshes as binary STL: triangles and their normals.
 
 use durer_scene::math::Vec3;
 use durer_scene::shape::MeshData;

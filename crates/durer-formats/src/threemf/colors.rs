@@ -1,4 +1,4 @@
-//! What triangles are made of: colours, mixtures of them, and places in pictures.
+//! Property resources: colours, mixtures of them, and texture coordinates.
 
 use super::model::{Color, Group, Model, Properties};
 use super::parser::{Broken, Parser};
@@ -7,7 +7,7 @@ use durer_image::decode_srgb;
 use durer_scene::math::Vec2;
 
 impl Model {
-    /// The number of things in a list of properties.
+    /// Number of entries in a property list.
     pub fn count(&self, id: u32) -> Option<usize> {
         match &self.properties.get(&id)?.group {
             Group::Colors(colors) => Some(colors.len()),
@@ -16,7 +16,7 @@ impl Model {
         }
     }
 
-    /// The colour of a property; white where it is a place in a picture.
+    /// Colour of a property; white for texture coordinates.
     fn color(&self, id: u32, index: u32) -> Option<Color> {
         match &self.properties.get(&id)?.group {
             Group::Colors(colors) => colors.get(index as usize).copied(),
@@ -27,7 +27,7 @@ impl Model {
 }
 
 impl Parser<'_, '_> {
-    /// Reads a list of properties.
+    /// Reads a property list.
     pub fn properties(&mut self, tag: &Tag) -> Result<(), Broken> {
         let id = self.new_id(tag);
         let group = match tag.name {
@@ -44,7 +44,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// `#RRGGBB` or `#RRGGBBAA` of sRGB.
+    /// Reads an sRGB colour, `#RRGGBB` or `#RRGGBBAA`, as linear values.
     fn color(&self, tag: &Tag, name: &str) -> Option<Color> {
         let Some(attribute) = tag.get(name) else {
             self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"#RRGGBB\"`", tag.name));
@@ -97,7 +97,7 @@ impl Parser<'_, '_> {
         Ok(picture.map(|picture| Group::Texture { picture, uvs }))
     }
 
-    /// Whole numbers between blanks.
+    /// Reads whole numbers separated by blanks.
     fn list(&self, tag: &Tag, name: &str) -> Vec<u32> {
         let Some(attribute) = tag.get(name) else {
             self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
@@ -110,7 +110,7 @@ impl Parser<'_, '_> {
         })
     }
 
-    /// Mixtures of base materials by shares.
+    /// Reads composite materials: mixtures of base materials by proportion.
     fn composites(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
         let (base, indices) = (self.whole_number(tag, "matid"), self.list(tag, "matindices"));
         let known = base.and_then(|base| self.model.count(base));
@@ -139,7 +139,7 @@ impl Parser<'_, '_> {
         Ok(Some(Group::Colors(colors)))
     }
 
-    /// Several properties over each other, the last on top.
+    /// Reads multiproperties: layers over each other, the last on top.
     fn several(&mut self, tag: &Tag) -> Result<Option<Group>, Broken> {
         let pids = self.list(tag, "pids");
         if let Some(missing) = pids.iter().find(|pid| !self.model.properties.contains_key(pid)) {
@@ -160,7 +160,7 @@ impl Parser<'_, '_> {
                     let texture = matches!(self.model.properties.get(pid)?.group, Group::Texture { .. });
                     color.filter(|_| !texture)
                 });
-                // What is over something covers it by its opacity.
+                // Each layer covers those below it by its opacity.
                 let over = layers.reduce(|below, above| {
                     let a = above[3];
                     let mix = |c: usize| a * above[c] + (1.0 - a) * below[c];

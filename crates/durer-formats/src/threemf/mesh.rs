@@ -1,4 +1,4 @@
-//! Meshes, with what each corner of their triangles is made of, and lattices of beams.
+//! Parsing of meshes, of the properties of their corners, and of beam lattices.
 
 use super::model::{Mesh, Property};
 use super::parser::{Broken, Parser};
@@ -38,7 +38,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// The number of a vertex.
+    /// Reads the index of a vertex.
     fn corner(&self, tag: &Tag, name: &str, count: usize) -> Option<u32> {
         let number = self.whole_number(tag, name)?;
         if number as usize >= count {
@@ -71,7 +71,7 @@ impl Parser<'_, '_> {
         Ok(())
     }
 
-    /// What a triangle's corners are made of, where it says that.
+    /// Reads the properties of a triangle's corners; `None` if the triangle names none.
     fn property(&self, tag: &Tag, usual: Option<Property>) -> Option<(u32, [u32; 3])> {
         let p1 = self.optional_number(tag, "p1")?;
         let Some(pid) = self.optional_number(tag, "pid").or(usual.map(|usual| usual.0)) else {

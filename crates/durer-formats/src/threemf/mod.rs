@@ -1,8 +1,8 @@
-//! 3MF: models for printing, in an archive of zip.
+//! Reader of 3MF, a format of 3D-printing models in a ZIP archive.
 //!
 //! Sources: *3D Manufacturing Format, Core Specification* 1.3; *Materials and Properties Extension*
-//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths become
-//! millimetres.
+//! 1.2; *Production Extension* 1.1; *Beam Lattice Extension* 1.2; 3MF Consortium. Lengths are
+//! converted to millimetres.
 
 mod colors;
 mod mesh;
@@ -20,7 +20,7 @@ use super::{too_large, zip};
 use durer_diag::Diagnostics;
 use durer_scene::scene::{Axis, Scene};
 
-/// The format of scenes.
+/// The 3MF scene format.
 pub(super) const FORMAT: SceneFormat = SceneFormat {
     name: "3MF",
     extensions: &["3mf"],
@@ -32,7 +32,7 @@ pub(super) const FORMAT: SceneFormat = SceneFormat {
     shines: None,
 };
 
-/// Whether bytes are an archive: no other format that is read is one.
+/// Returns true for ZIP archives; no other supported format is one.
 fn recognise(bytes: &[u8]) -> bool {
     zip::recognise(bytes)
 }

@@ -1,69 +1,69 @@
-//! What is in a file of a model.
+//! Data structures of a model part.
 
 use durer_diag::Span;
 use durer_scene::math::{Vec2, Vec3};
 use glam::DAffine3;
 use std::collections::BTreeMap;
 
-/// What is shown: an object of a part, moved.
+/// A build item or component: an object of a part with a transform.
 pub(super) struct Place {
-    /// The name of the part, where that is another one.
+    /// Name of the object's part if it is another one.
     pub part: Option<String>,
     pub id: u32,
     pub map: DAffine3,
     pub at: Span,
 }
 
-/// An object: a mesh, or others.
+/// An object: a mesh, or components.
 pub(super) enum Object {
     Mesh(Box<Mesh>),
     Components(Vec<Place>),
 }
 
-/// A file of a model.
+/// Content of a model part.
 #[derive(Default)]
 pub(super) struct Model {
     pub objects: BTreeMap<u32, (Object, Span)>,
     pub properties: BTreeMap<u32, Properties>,
     pub items: Vec<Place>,
-    /// Millimetres of its unit.
+    /// Length of its unit in millimetres.
     pub unit: f64,
 }
 
-/// A property: the number of its list, and its place there.
+/// A property: the identifier of its list, and the index in it.
 pub(super) type Property = (u32, u32);
 
-/// Positions, triangles, beams.
+/// Positions, triangles and beams.
 #[derive(Default)]
 pub(super) struct Mesh {
     pub positions: Vec<Vec3>,
     pub triangles: Vec<[u32; 3]>,
-    /// By triangle, if any has one: the list, and the places of its corners.
+    /// Property list and indices of the corners of each triangle; empty if no triangle names one.
     pub properties: Vec<Option<(u32, [u32; 3])>>,
-    /// What triangles are made of that do not say it.
+    /// Default property of triangles that name none.
     pub usual: Option<Property>,
-    /// Two ends, and the radius at each.
+    /// The two vertices of each beam, and the radius at each.
     pub beams: Vec<([u32; 2], [f32; 2])>,
-    /// Where the first triangle of a list is.
+    /// Span of the triangle list.
     pub at: Span,
 }
 
-/// Colour and opacity, linear.
+/// Linear colour and opacity.
 pub(super) type Color = [f32; 4];
 
-/// A list that triangles point into.
+/// A list that the properties of triangles refer to.
 pub(super) struct Properties {
     pub group: Group,
     pub at: Span,
 }
 
-/// What a list holds.
+/// Content of a property list.
 pub(super) enum Group {
-    /// Of materials, vertices, composites or several at once: what they look like.
+    /// Appearance of base materials, colours, composites or multiproperties.
     Colors(Vec<Color>),
-    /// Places in the picture of a resource, with v upwards.
+    /// Texture coordinates in the picture of a resource, with v upwards.
     Texture { picture: u32, uvs: Vec<Vec2> },
-    /// The name of a picture's part, and how it goes on beyond its borders.
+    /// A picture: name of its part, and how it continues beyond its borders.
     Picture { part: String, styles: [Option<String>; 2], at: Span },
 }
 

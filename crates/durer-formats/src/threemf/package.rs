@@ -1,4 +1,4 @@
-//! The archive: which part is the model, and parts by name.
+//! The ZIP archive: finds the model part, and reads parts by name.
 
 use crate::model::Input;
 use crate::said::{Said, meant};
@@ -7,21 +7,21 @@ use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
 
-/// The last word of the type of what leads to the model.
+/// Suffix of the relationship type of the model part.
 const MODEL: &str = "/3dmodel";
 const RELATIONS: &str = "_rels/.rels";
 
-/// An archive and what is told of it.
+/// An opened archive and its diagnostics.
 pub(super) struct Package<'a> {
     pub input: &'a Input<'a>,
     said: &'a Said,
     zip: Zip<'a>,
-    /// The name of the part that is the model.
+    /// Name of the model part.
     pub root: String,
 }
 
 impl<'a> Package<'a> {
-    /// Finds the model of an archive.
+    /// Opens an archive and finds its model part.
     pub fn open(input: &'a Input<'a>, said: &'a Said) -> Option<Self> {
         let at = Span { file: input.file, start: 0, end: 0 };
         let zip = match Zip::open(input.bytes) {
@@ -36,7 +36,8 @@ impl<'a> Package<'a> {
         Some(package)
     }
 
-    /// The name of the model: what the archive's relations say, or else the only file of a model.
+    /// Name of the model part: the target of the relationship, else the only part that ends in
+    /// `.model`.
     fn found(&mut self, at: Span) -> Option<String> {
         let (mut roots, mut broken) = (Vec::new(), false);
         if let Some((bytes, file)) = self.part(RELATIONS, at) {
@@ -92,7 +93,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// The bytes of a part; complains if it cannot be read.
+    /// Reads the bytes of a part; reports an error if that fails.
     pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
         match self.zip.part(name)? {
             Ok(bytes) => Some(bytes.into()),
@@ -104,7 +105,7 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// A part of text, with its number.
+    /// Reads a text part and registers it as a file, for spans.
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
         let bytes = self.bytes(name, at)?;
         if bytes.len() >= u32::MAX as usize {

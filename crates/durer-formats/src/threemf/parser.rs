@@ -1,4 +1,4 @@
-//! The text of a model: resources, and what of them is shown where.
+//! Parser of the XML of a model part: resources and build items.
 
 use super::model::{Group, Model, Object, Place};
 use super::package::Package;
@@ -8,22 +8,22 @@ use durer_diag::{Diagnostic, Span};
 use glam::DAffine3;
 use std::sync::Arc;
 
-/// Millimetres of a unit.
+/// Units of length in millimetres.
 const UNITS: [(&str, f64); 6] =
     [("micron", 1e-3), ("millimeter", 1.0), ("centimeter", 10.0), ("inch", 25.4), ("foot", 304.8), ("meter", 1000.0)];
 const TYPES: [&str; 5] = ["model", "solidsupport", "support", "surface", "other"];
 
-/// A text on its way to a model.
+/// Parser of one model part.
 pub(super) struct Parser<'a, 'x> {
     pub xml: Xml<'x>,
     pub said: &'a Said,
     pub model: Model,
 }
 
-/// An error was told, and there is no going on.
+/// Signals that parsing cannot continue; the error has been reported.
 pub(super) struct Broken;
 
-/// Reads a part of an archive.
+/// Reads a model part of an archive.
 pub fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> Option<Model> {
     let Some((bytes, file)) = package.part(name, at) else {
         if !said.has_errors() {
@@ -45,7 +45,7 @@ pub fn read(package: &mut Package, name: &str, at: Span, said: &Said) -> Option<
 }
 
 impl<'x> Parser<'_, 'x> {
-    /// The next element inside of the one that is open; `None` at its end.
+    /// Next child of the open element; `None` at its end.
     pub fn next(&mut self) -> Result<Option<Tag<'x>>, Broken> {
         match self.xml.next() {
             _ if self.said.is_full() => Err(Broken),
@@ -58,7 +58,7 @@ impl<'x> Parser<'_, 'x> {
         }
     }
 
-    /// Passes over all that is in the element that is open.
+    /// Skips to the end of the open element.
     pub fn skip(&mut self) -> Result<(), Broken> {
         let mut depth = 1;
         while depth > 0 {
@@ -100,7 +100,7 @@ impl<'x> Parser<'_, 'x> {
                 _ => self.skip()?,
             }
         }
-        // Nothing may come after the model.
+        // No element may follow the model.
         self.next()?;
         if built.is_none() {
             self.said.bad(tag.at, "a model needs a `<build>`, which says what is shown");
@@ -119,7 +119,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    /// The number of a resource, which must be the only one of that number.
+    /// Reads the identifier of a resource, which must be unique.
     pub fn new_id(&self, tag: &Tag) -> Option<u32> {
         let id = self.whole_number(tag, "id")?;
         let known = self.model.objects.get(&id).map(|known| known.1);
@@ -131,7 +131,7 @@ impl<'x> Parser<'_, 'x> {
         Some(id)
     }
 
-    /// A whole number that must be there.
+    /// Reads a required whole number.
     pub fn whole_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         let Some(attribute) = tag.get(name) else {
             self.said.bad(tag.at, format!("`<{}>` needs `{name}=\"...\"`", tag.name));
@@ -144,13 +144,13 @@ impl<'x> Parser<'_, 'x> {
         number
     }
 
-    /// A whole number, if it is there.
+    /// Reads an optional whole number.
     pub fn optional_number(&self, tag: &Tag, name: &str) -> Option<u32> {
         tag.get(name)?;
         self.whole_number(tag, name)
     }
 
-    /// A number, if it is there.
+    /// Reads an optional number.
     pub fn number(&self, tag: &Tag, name: &str) -> Option<f32> {
         let attribute = tag.get(name)?;
         let number = attribute.value.trim().parse::<f32>().ok().filter(|number| number.is_finite());
@@ -193,7 +193,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(())
     }
 
-    /// What is shown of other objects.
+    /// Reads build items or components.
     fn places(&mut self, name: &str) -> Result<Vec<Place>, Broken> {
         let mut places = Vec::new();
         while let Some(tag) = self.next()? {
@@ -208,7 +208,7 @@ impl<'x> Parser<'_, 'x> {
         Ok(places)
     }
 
-    /// Twelve numbers, for points as rows: three axes, and the place.
+    /// Reads a transform of twelve numbers, for row vectors: three axes and the translation.
     fn map(&self, tag: &Tag) -> DAffine3 {
         let Some(attribute) = tag.get("transform") else { return DAffine3::IDENTITY };
         let words = attribute.value.split_whitespace();

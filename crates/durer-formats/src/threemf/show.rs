@@ -1,4 +1,4 @@
-//! From models to a scene: meshes by what they are made of, and components in their places.
+//! Conversion of a model into a scene: meshes by material, and components with their transforms.
 
 use super::model::{Group, Mesh, Model, Object, Place};
 use super::package::Package;
@@ -17,27 +17,28 @@ use std::collections::BTreeMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Objects in objects, objects of a scene with those of components counted each time, and parts of
-/// an archive.
+/// Limits on the depth of nested objects, on the number of scene objects (those of a component
+/// count for each use), and on the number of parts.
 const DEEPEST: u32 = 32;
 const MAX_OBJECTS: usize = 1 << 20;
 const MAX_PARTS: usize = 4096;
 
-/// Models on their way to a scene.
+/// Builder of the scene.
 struct Show<'a> {
     package: Package<'a>,
     said: &'a Said,
     models: BTreeMap<String, Option<Rc<Model>>>,
-    /// What objects of parts are, and how many of the scene's that is.
+    /// Converted objects by part and identifier, with the number of scene objects in each.
     shown: BTreeMap<(String, u32), (Rc<scene::Group>, usize)>,
-    /// Materials with the picture of a resource of a part, and for vertices with colours.
+    /// Materials: of each picture resource, by part and identifier, and of meshes with vertex
+    /// colours.
     pictures: BTreeMap<(String, u32), Option<u32>>,
     colored: Option<u32>,
     count: usize,
     scene: Scene,
 }
 
-/// The scene of a package.
+/// Builds the scene of a package.
 pub(super) fn scene(package: Package, said: &Said) -> Option<Scene> {
     let root = package.root.clone();
     let at = Span { file: package.input.file, start: 0, end: 0 };
@@ -75,7 +76,7 @@ impl Show<'_> {
         model
     }
 
-    /// Objects in their places.
+    /// Converts build items or components.
     fn places(&mut self, part: &str, places: &[Place], depth: u32) -> Vec<scene::Object> {
         let mut objects = Vec::new();
         for place in places {
@@ -88,14 +89,14 @@ impl Show<'_> {
                 return objects;
             }
             let inner = scene::Object { node: Node::Group((*group).clone()), material: None, span: place.at };
-            // Places are in the unit of the part that says them.
+            // Translations are in the unit of the part that contains the item.
             let unit = self.models.get(part).and_then(Option::as_ref).map_or(1.0, |model| model.unit);
             objects.push(inner.placed(DAffine3 { translation: unit * place.map.translation, ..place.map }));
         }
         objects
     }
 
-    /// What an object of a part is.
+    /// Converts an object of a part, once.
     fn object(&mut self, part: &str, place: &Place, depth: u32) -> Option<(Rc<scene::Group>, usize)> {
         let key = (part.to_string(), place.id);
         if let Some(known) = self.shown.get(&key) {
@@ -117,7 +118,7 @@ impl Show<'_> {
             Object::Mesh(mesh) => self.mesh((part, &model, place.id), mesh, *at),
             Object::Components(places) => self.places(part, places, depth + 1),
         };
-        // Each time that it is shown, all of it counts.
+        // Each use of the object adds this count; see `places`.
         let count = (self.count - before).max(objects.len());
         self.count = before;
         let group = (Rc::new(scene::Group { objects }), count);
@@ -125,15 +126,15 @@ impl Show<'_> {
         Some(group)
     }
 
-    /// The meshes of an object: one for what has no or one colour a corner, and one for each
-    /// picture.
+    /// Converts the mesh of an object: one mesh for the triangles with colours or without
+    /// properties, and one for each picture.
     fn mesh(&mut self, (part, model, id): (&str, &Model, u32), mesh: &Mesh, at: Span) -> Vec<scene::Object> {
         let unit = model.unit as f32;
         let property = |i: usize| {
             let own = mesh.properties.get(i).copied().flatten();
             own.or(mesh.usual.map(|(list, index)| (list, [index; 3])))
         };
-        // By picture, and without one: triangles with what is at their corners.
+        // Triangles and their corners' properties by picture; `None` is without one.
         let mut skins: BTreeMap<Option<u32>, Skin> = BTreeMap::new();
         for (i, triangle) in mesh.triangles.iter().enumerate() {
             let skin = |picture| (picture, [[1.0; 4]; 3], [Vec2::ZERO; 3]);
@@ -185,13 +186,13 @@ impl Show<'_> {
         objects
     }
 
-    /// The material of what has colours.
+    /// Material of meshes with vertex colours.
     fn colored(&mut self) -> u32 {
         let scene = &mut self.scene;
         *self.colored.get_or_insert_with(|| scene.add_material(Material::Principled(Box::new(plastic()))))
     }
 
-    /// The material with the picture of a resource.
+    /// Material with the picture of a resource.
     fn picture(&mut self, part: &str, model: &Model, id: u32, at: Span) -> Option<u32> {
         let key = (part.to_string(), id);
         if let Some(known) = self.pictures.get(&key) {
@@ -228,7 +229,7 @@ fn plastic() -> PrincipledMaterial {
     PrincipledMaterial { base_color: Vec3::ONE, specular_roughness: 0.4, ..PrincipledMaterial::default() }
 }
 
-/// Triangles of one material, each corner with its own colour and place.
+/// Triangles of one material; each corner has its own colour and texture coordinates.
 #[derive(Default)]
 struct Skin {
     data: MeshData,

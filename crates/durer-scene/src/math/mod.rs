@@ -1,4 +1,5 @@
-//! The kernel's vectors, rays, boxes and transforms, and what else every room is built from.
+//! Vectors, rays, boxes and transforms of `durer-bvh`, and further mathematics that all modules
+//! use.
 
 pub mod noise;
 pub mod roots;
@@ -8,7 +9,7 @@ pub use durer_bvh::internal::random;
 pub use durer_bvh::math::{Aabb, Affine, Line, Ray, Ray64, Side, UNIT_ROUNDOFF, Vec2, Vec3, fp, gamma};
 pub use durer_image::{Color, LUMINANCE, LUMINANCE_F64};
 
-/// The mirror image of `direction` on a surface with unit normal `normal`.
+/// Mirrors `direction` on a surface with unit normal `normal`.
 pub fn reflect(direction: Vec3, normal: Vec3) -> Vec3 {
     direction - 2.0 * direction.dot(normal) * normal
 }

@@ -26,13 +26,13 @@ fn permute(i: i32) -> i32 {
 /// Perlin's improved noise: smooth, zero at integer points, within about (-1, 1).
 pub fn perlin(p: Vec3) -> f32 {
     let floor = p.floor();
-    // Far away the lattice wraps every 256 cells, as the permutation does.
+    // The lattice repeats every 256 cells, as the permutation does.
     let cell = floor.rem_euclid(Vec3::splat(256.0));
     let (x, y, z) = (cell.x as i32, cell.y as i32, cell.z as i32);
     let f = p - floor;
     let fade = |t: f32| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
     let (u, v, w) = (fade(f.x), fade(f.y), fade(f.z));
-    // The gradient at each corner of the cell, times the offset from it.
+    // Gradient at a corner of the cell, times the offset from it.
     let corner = |dx: i32, dy: i32, dz: i32| {
         let hash = permute(permute(permute(x + dx) + y + dy) + z + dz);
         gradient(hash, f - Vec3::new(dx as f32, dy as f32, dz as f32))
@@ -53,8 +53,8 @@ pub fn turbulence(p: Vec3, octaves: u32) -> f32 {
     sum
 }
 
-/// Veins bent by noise: (sin(frequency x + amplitude N(p)) + 1) / 2, with x how far `p` is along
-/// what they run across.
+/// Veins distorted by noise: (sin(frequency x + amplitude N(p)) + 1) / 2, where x is the coordinate
+/// of `p` perpendicular to the veins.
 pub fn veins(p: Vec3, x: f32, frequency: f32, amplitude: f32, octaves: u32) -> f32 {
     let phase = frequency * x + amplitude * turbulence(p, octaves);
     0.5 * (fp::sin(phase) + 1.0)

@@ -1,10 +1,10 @@
 //! Real roots of polynomials, in double precision.
 
-/// The roots of a t^2 + 2 b t + c where it changes its sign, in rising order: none, or two. A
-/// double root is none.
+/// Roots of a t^2 + 2 b t + c where the sign changes, in ascending order: two or none. A double
+/// root does not count.
 ///
-/// `a` must not be 0. No root loses digits to cancellation: one of them is c / q. Source: Press et
-/// al., *Numerical Recipes*, section 5.6.
+/// `a` must not be 0. Computing one root as c / q avoids cancellation. Source: Press et al.,
+/// *Numerical Recipes*, section 5.6.
 pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     let discriminant = b * b - a * c;
     if discriminant.is_nan() || discriminant <= 0.0 {
@@ -15,12 +15,12 @@ pub fn quadratic(a: f64, b: f64, c: f64) -> Option<(f64, f64)> {
     Some(if x < y { (x, y) } else { (y, x) })
 }
 
-/// The places in (`low`, `high`) where a polynomial of degree 4 changes its sign, in rising order,
+/// Roots in (`low`, `high`) where a polynomial of degree 4 changes its sign, in ascending order,
 /// and their number.
 ///
-/// Coefficients are given from the constant on. Between the roots of its derivative a polynomial is
-/// monotonic, so that each piece with a change of sign has one root, found by bisection that
-/// Newton's method hastens. The derivatives' own roots are found in the same way. A polynomial with
+/// Coefficients start with the constant. Between the roots of its derivative a polynomial is
+/// monotonic, so each interval with a change of sign has one root, found by bisection accelerated
+/// by Newton's method. The roots of the derivatives are found in the same way. A polynomial with
 /// the same sign at both ends has an even number of roots.
 pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     let second = [2.0 * c[2], 6.0 * c[3], 12.0 * c[4]];
@@ -38,7 +38,7 @@ pub fn quartic(c: [f64; 5], low: f64, high: f64) -> ([f64; 4], usize) {
     between(&c, &turns[..count], low, high)
 }
 
-/// The changes of sign of a polynomial that is monotonic between these cuts.
+/// Sign changes of a polynomial that is monotonic between these cuts.
 fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     let mut roots = [0.0; 4];
     let mut count = 0;
@@ -54,12 +54,12 @@ fn between(c: &[f64], cuts: &[f64], low: f64, high: f64) -> ([f64; 4], usize) {
     (roots, count)
 }
 
-/// A polynomial and its derivative, by Horner's rule.
+/// Value and derivative of a polynomial, by Horner's rule.
 fn value(c: &[f64], t: f64) -> (f64, f64) {
     c.iter().rev().fold((0.0, 0.0), |(value, slope), &c| (value * t + c, slope * t + value))
 }
 
-/// The root between two places of different sign.
+/// Root between two points of different sign.
 fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
     let (mut low, mut high) = if a.1 < 0.0 { (a.0, b.0) } else { (b.0, a.0) };
     let mut t = 0.5 * (low + high);
@@ -71,7 +71,7 @@ fn refine(c: &[f64], a: (f64, f64), b: (f64, f64)) -> f64 {
             high = t;
         }
         let newton = t - v / slope;
-        // A step out of the bracket, or one that is no number, is replaced by halving.
+        // Bisect if Newton's step leaves the bracket or is NaN.
         let held = newton > low.min(high) && newton < low.max(high);
         let next = if held { newton } else { 0.5 * (low + high) };
         if (next - t).abs() <= 1e-16 * t.abs() || next == t {
@@ -103,7 +103,7 @@ mod tests {
             }
             let (roots, count) = quartic(c, -1.5, 1.5);
             assert_eq!(count % 2, 0);
-            // Roots closer than 1e-4 are known less well, or not told apart.
+            // Roots closer than 1e-3 are less accurate, or merge.
             if made.windows(2).any(|w| w[1] - w[0] < 1e-3) {
                 continue;
             }

@@ -1,21 +1,21 @@
-//! Densities on a grid of points, as of smoke or a cloud.
+//! Density grids, such as smoke or a cloud.
 
 use crate::math::{Aabb, Vec3};
 use crate::source::Digest;
 
-/// How dense a medium is in a box.
+/// Densities of a medium in a box.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensityGrid {
     /// Points along x, y and z; at least one each.
     counts: [u32; 3],
-    /// x runs fastest.
+    /// Values, x fastest.
     values: Vec<f32>,
     most: f32,
 }
 
 impl DensityGrid {
-    /// From values, x running fastest; `None` unless there are as many as counts say, none of them
-    /// negative or without bounds.
+    /// Creates a grid from values, x fastest. `None` unless their number is the product of the
+    /// counts and all are finite and not negative.
     pub fn new(counts: [u32; 3], values: Vec<f32>) -> Option<Self> {
         let wanted = counts.iter().try_fold(1_usize, |product, &count| product.checked_mul(count as usize))?;
         if wanted == 0 || wanted != values.len() || values.iter().any(|x| !x.is_finite() || *x < 0.0) {
@@ -30,12 +30,12 @@ impl DensityGrid {
         self.counts
     }
 
-    /// The values, x running fastest.
+    /// Values, x fastest.
     pub fn values(&self) -> &[f32] {
         &self.values
     }
 
-    /// The hash of all that it holds.
+    /// Hash of the whole grid.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         self.counts.iter().for_each(|count| hasher.word(*count));
@@ -48,12 +48,12 @@ impl DensityGrid {
         self.most
     }
 
-    /// Bytes in memory.
+    /// Size in memory in bytes.
     pub fn bytes(&self) -> usize {
         self.values.len() * size_of::<f32>()
     }
 
-    /// The value at a point of the box that it fills: linear between the middles of its cells.
+    /// Density at a point of the grid's box: trilinear between the centres of its cells.
     pub fn at(&self, bounds: &Aabb, point: Vec3) -> f32 {
         let counts = Vec3::from_array(self.counts.map(|n| n as f32));
         let place = (point - bounds.min) / (bounds.max - bounds.min) * counts - 0.5;

@@ -1,4 +1,4 @@
-//! Media: what light goes through, and may be absorbed and scattered in.
+//! Participating media, which absorb and scatter light.
 
 mod fog;
 pub mod grid;
@@ -14,58 +14,57 @@ pub use grid::DensityGrid;
 pub use phase::HenyeyGreenstein;
 use std::sync::Arc;
 
-/// What fills a body, or the air.
+/// Medium inside a body, or around the camera.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Medium {
-    /// How much light loses by absorption and scattering, per unit of the world and by colour,
-    /// where the density is 1.
+    /// Extinction coefficient by colour per unit of length, for density 1.
     pub extinction: Color,
-    /// The share of that which is scattered.
+    /// Scattering albedo.
     pub albedo: Color,
-    /// Into which directions.
+    /// Phase function.
     pub phase: HenyeyGreenstein,
-    /// Where it is, and how dense; `None`: everywhere alike.
+    /// Region and density; `None` for an infinite homogeneous medium.
     pub place: Option<Place>,
 }
 
-/// Where a medium is.
+/// Region of a medium.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// In this box and nowhere else.
+    /// Bounds of the medium.
     pub bounds: Aabb,
-    /// How the box lies in the world; `None`: as it is.
+    /// Transform from the bounds to world space; `None` for the identity.
     pub placed: Option<Affine>,
-    /// How dense it is there; `None`: the same everywhere.
+    /// Density grid; `None` for density 1 everywhere.
     pub density: Option<Arc<DensityGrid>>,
 }
 
 impl Place {
-    /// How dense it is at a point of the world.
+    /// Density at a point in world space.
     fn density(&self, grid: &DensityGrid, point: Vec3) -> f32 {
         let own = self.placed.as_ref().map_or(point, |placed| placed.inverse_point(point));
         grid.at(&self.bounds, own)
     }
 }
 
-/// What became of light on a straight way.
+/// Result of sampling a distance along a segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Flight {
-    /// It got through; this is left of it.
+    /// The light passed the segment, with this weight.
     Passed(Spectrum),
-    /// It was scattered at this distance; this is left of it.
+    /// The light was scattered at this distance, with this weight.
     Scattered(f32, Spectrum),
 }
 
-/// A straight way.
+/// A straight segment.
 #[derive(Clone, Copy, Debug)]
 pub struct Way {
-    /// Where it begins.
+    /// Origin of the distances.
     pub origin: DVec3,
-    /// Unit vector.
+    /// Unit direction.
     pub dir: Vec3,
-    /// Its part: from how far to how far, which may be infinite.
+    /// Distance of the start.
     pub from: f32,
-    /// The end of the part.
+    /// Distance of the end, which may be infinite.
     pub to: f32,
 }
 
@@ -75,16 +74,16 @@ impl Way {
     }
 }
 
-/// Most steps through a grid: one that is far denser somewhere than elsewhere takes many.
+/// Maximum steps through a grid: strongly varying densities take many.
 const MAX_STEPS: u32 = 1 << 16;
 
 impl Medium {
-    /// Whether light is scattered, and not only absorbed.
+    /// Returns true if the medium scatters light, not only absorbs it.
     pub fn scatters(&self) -> bool {
         self.albedo.max_element() > 0.0
     }
 
-    /// The part of a way that lies in it.
+    /// Part of a segment inside the medium.
     fn clipped(&self, way: &Way) -> Option<(f32, f32)> {
         let Some(place) = &self.place else { return Some((way.from, way.to)) };
         let (origin, dir) = match &place.placed {
@@ -104,13 +103,13 @@ impl Medium {
         Some((place.density.as_deref()?, place))
     }
 
-    /// How much light is scattered at a point, per unit of the world.
+    /// Scattering coefficient at a point, per unit of length.
     pub fn scattering(&self, point: DVec3, lanes: &Lanes) -> Spectrum {
         let density = self.grid().map_or(1.0, |(grid, place)| place.density(grid, point.as_vec3()));
         lanes.coefficient(self.extinction) * lanes.reflectance(self.albedo) * density
     }
 
-    /// The share of light that gets through a way.
+    /// Transmittance of a segment.
     ///
     /// Source of ratio tracking: Novák, Selle and Jarosz, *Residual Ratio Tracking*, 2014.
     pub fn transmittance(&self, way: &Way, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Spectrum {
@@ -123,7 +122,7 @@ impl Medium {
             let Some(next) = collision(at, to, most, numbers) else { break };
             at = next;
             left *= Spectrum::ONE - extinction * (place.density(grid, way.point(at)) / most);
-            // What hardly counts ends at random, and the rest makes up for it.
+            // Russian roulette for small weights.
             if left.max_element() < 0.1 {
                 if numbers() < 0.5 {
                     return Spectrum::ZERO;
@@ -134,8 +133,8 @@ impl Medium {
         left
     }
 
-    /// Whether light with these weights gets through a way, or where it is scattered. What it is
-    /// multiplied by has the probability of that worked in.
+    /// Samples a distance along a segment for light with these weights: it passes or is scattered.
+    /// The returned weight is divided by the probability of the event.
     pub fn flight(&self, way: &Way, weights: Spectrum, lanes: &Lanes, numbers: &mut dyn FnMut() -> f32) -> Flight {
         let Some((from, to)) = self.clipped(way) else { return Flight::Passed(Spectrum::ONE) };
         let extinction = lanes.coefficient(self.extinction);
@@ -145,10 +144,9 @@ impl Medium {
         let albedo = lanes.reflectance(self.albedo);
         match self.grid() {
             Some((grid, place)) => {
-                // Null collisions fill it up to its greatest density, and lanes are weighed as they
-                // count by then.
-                // Sources: Woodcock and others, 1965; Kutz and others, *Spectral and Decomposition
-                // Tracking*, 2017.
+                // Null collisions fill the grid up to its majorant. Lanes are weighted by their
+                // current contribution. Sources: Woodcock and others, 1965; Kutz and others,
+                // *Spectral and Decomposition Tracking*, 2017.
                 let most = extinction.max_element() * grid.most();
                 let (mut at, mut left) = (from, Spectrum::ONE);
                 for _ in 0..MAX_STEPS {
@@ -164,8 +162,8 @@ impl Medium {
                 Flight::Passed(left)
             }
             None => {
-                // One lane chooses the distance; all are weighed by how likely any of them was to
-                // choose it.
+                // One lane samples the distance; the weight combines the densities of all lanes
+                // (one-sample MIS).
                 let weights = shares(weights);
                 let mut choice = numbers();
                 let lane = (0..3).find(|&lane| {
@@ -186,21 +184,21 @@ impl Medium {
     }
 }
 
-/// Where light next meets something on its way, were the medium as dense as at its densest
-/// everywhere.
+/// Distance of the next tentative collision with a medium of constant extinction `most`, or `None`
+/// beyond `to`.
 fn collision(at: f32, to: f32, most: f32, numbers: &mut dyn FnMut() -> f32) -> Option<f32> {
     let next = at - fp::ln(1.0 - numbers()) / most;
     (next < to).then_some(next)
 }
 
-/// How much each lane counts, of 1 in all.
+/// Normalizes the weights of the lanes to a sum of 1.
 fn shares(weights: Spectrum) -> Spectrum {
     let weights = weights.max(Spectrum::ZERO);
     let sum = weights.element_sum();
     if sum > 0.0 { weights / sum } else { Spectrum::splat(0.25) }
 }
 
-/// What a distance leaves of light: Beer's law.
+/// Transmittance of a distance by Beer's law.
 fn absorbed(extinction: Spectrum, distance: f32) -> Spectrum {
     (-extinction * distance.min(f32::MAX)).map(fp::exp)
 }

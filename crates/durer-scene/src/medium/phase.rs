@@ -1,28 +1,28 @@
-//! Into which directions a medium scatters.
+//! Phase functions of media.
 
 use crate::math::{Vec2, Vec3, fp};
 use std::f32::consts::{PI, TAU};
 
-/// Henyey and Greenstein's phase function.
+/// The Henyey-Greenstein phase function.
 ///
 /// Source: Henyey and Greenstein, *Diffuse radiation in the Galaxy*, 1941.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HenyeyGreenstein {
-    /// The mean cosine between the directions before and after: from -1 (back) over 0 (evenly) to 1
-    /// (onwards).
+    /// Mean cosine between the directions before and after scattering: from -1 (backward) over 0
+    /// (isotropic) to 1 (forward).
     pub anisotropy: f32,
 }
 
 impl HenyeyGreenstein {
-    /// The share of light that goes from one unit direction into another, per solid angle: its own
-    /// density as well.
+    /// Phase function for two unit directions, per solid angle; it is also the density of
+    /// [`HenyeyGreenstein::sample`].
     pub fn value(&self, before: Vec3, after: Vec3) -> f32 {
         let g = self.anisotropy;
         let below = 1.0 + g * g - 2.0 * g * before.dot(after);
         (1.0 - g * g) / (4.0 * PI * below * below.max(0.0).sqrt()).max(1e-12)
     }
 
-    /// The unit direction after scattering, by two numbers from 0 to 1.
+    /// Samples the unit direction after scattering by two numbers from 0 to 1.
     pub fn sample(&self, before: Vec3, u: Vec2) -> Vec3 {
         let g = self.anisotropy;
         let cosine = if g.abs() < 1e-3 {

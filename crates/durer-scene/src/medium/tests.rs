@@ -38,11 +38,11 @@ fn flights_lose_what_they_should() {
 
 #[test]
 fn a_grid_lets_through_what_its_integral_says() {
-    // Two cells, 1 and 3: linear between their middles, so that the mean along x is 2.
+    // Two cells, 1 and 3: linear between their centres, so that the mean along x is 2.
     let grid = DensityGrid::new([2, 1, 1], vec![1.0, 3.0]).unwrap();
     let bounds = Aabb { min: Vec3::new(1.0, -1.0, -1.0), max: Vec3::new(3.0, 1.0, 1.0) };
     let place = Place { bounds, placed: None, density: Some(Arc::new(grid)) };
-    // The same box from its other side, which lies as the unit cube's axes -x, z and y say.
+    // The same box from its opposite corner, with the unit cube's axes along -x, z and y.
     let edges = DMat3::from_cols(-2.0 * DVec3::X, 2.0 * DVec3::Z, 2.0 * DVec3::Y);
     let placed = Affine::new(DAffine3::from_mat3_translation(edges, DVec3::new(3.0, -1.0, -1.0)));
     let unit = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
@@ -52,7 +52,7 @@ fn a_grid_lets_through_what_its_integral_says() {
     assert!(DensityGrid::new([2, 2, 1], vec![0.0; 3]).is_none() && DensityGrid::new([1, 1, 1], vec![-1.0]).is_none());
 }
 
-/// Looks at what gets through a box with a mean of 2 on a way of length 2.
+/// Tests the transmittance through a box with a mean density of 2 on a length of 2.
 fn lets_through(smoke: &Medium) {
     let mut random = Random(9);
     let (mut ratio, mut passed) = (Spectrum::ZERO, Spectrum::ZERO);
@@ -67,7 +67,7 @@ fn lets_through(smoke: &Medium) {
     let wanted = (-smoke.extinction * 4.0).map(fp::exp);
     assert!((ratio.truncate() - wanted).abs().max_element() < 6e-3, "{ratio} {wanted}");
     assert!((passed.truncate() - wanted).abs().max_element() < 8e-3, "{passed} {wanted}");
-    // Beside the box there is nothing.
+    // The space outside the box is clear.
     let beside = Way { origin: DVec3::new(0.0, 5.0, 0.0), ..way(10.0) };
     assert_eq!(smoke.transmittance(&beside, &Lanes::Rgb, &mut || 0.5), Spectrum::ONE);
 }
@@ -83,14 +83,14 @@ fn phase_functions_integrate_to_one_and_are_sampled_by_their_value() {
         let sums =
             cosines.fold([0.0; 2], |sum, c| [sum[0] + value(c) * step * TAU, sum[1] + c * value(c) * step * TAU]);
         assert!((sums[0] - 1.0).abs() < 2e-3 && (sums[1] - g).abs() < 2e-3, "{g}: {sums:?}");
-        // Chi-square over 20 bins of equal probability by the cosine.
+        // Chi-squared test over 20 bins of the cosine with equal probability.
         let (mut bins, samples) = ([0_u32; 20], 100_000);
         let mut random = Random(3);
         let before = Vec3::new(0.6, 0.0, 0.8);
         for _ in 0..samples {
             let after = phase.sample(before, Vec2::new(random.between(0.0, 1.0), random.between(0.0, 1.0)));
             assert!((after.length() - 1.0).abs() < 1e-5);
-            // The distribution function of the cosine.
+            // Cumulative distribution function of the cosine.
             let c = before.dot(after).clamp(-1.0, 1.0);
             let root = (1.0 + g * g - 2.0 * g * c).sqrt();
             let below =

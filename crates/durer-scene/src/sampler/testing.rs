@@ -1,4 +1,4 @@
-//! The chi-squared test, for tests here and in crates above.
+//! The chi-squared test, for tests here and in dependent crates.
 
 /// Statistic of the chi-squared test: sum of (observed - expected)^2 / expected.
 pub fn chi_squared(observed: &[u32], expected: &[f64]) -> f64 {

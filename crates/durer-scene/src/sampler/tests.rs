@@ -31,7 +31,7 @@ fn positions_are_uniform() {
         }
     }
     assert_uniform("dimensions", (0..N).map(|d| sample_2d(1, 2, 3, 4, d)));
-    // On a grid: uniform within each cell, which the next test finds in its place.
+    // On a grid: uniform within each cell; the next test checks the cells.
     let cells = (0..N).map(|i| (Sampler::Jittered.pixel_position(1, i, 5, i % 9, 9) * 3.0).fract());
     assert_uniform("jittered", cells);
 }
@@ -41,8 +41,8 @@ fn pairs_of_one_pixel_are_independent_of_pairs_of_its_neighbour_and_of_other_dim
     let first = |i| sample_2d(3, i, 0, 2, 0);
     assert_uniform("neighbours", (0..N).map(|i| Vec2::new(first(i).x, first(i + 1).x)));
     assert_uniform("dimensions", (0..N).map(|i| Vec2::new(first(i).y, sample_2d(3, i, 0, 2, 1).y)));
-    // Within one pixel the shuffle breaks the tie between dimensions: correlation, not only
-    // evenness.
+    // Within one pixel the shuffle decorrelates the dimensions: check correlation, not only
+    // uniformity.
     let n = 1024_u32;
     let mut sum = 0.0;
     for s in 0..n {
@@ -92,7 +92,7 @@ fn every_prefix_of_a_power_of_two_is_stratified_in_every_elementary_interval() {
     }
 }
 
-/// Greatest difference between area and share of points over all boxes at the origin.
+/// Greatest difference between area and fraction of points over all boxes at the origin.
 fn star_discrepancy(points: &[Vec2]) -> f64 {
     let n = points.len() as f64;
     let ends = |axis: usize| points.iter().map(move |p| p[axis]).chain([1.0]);

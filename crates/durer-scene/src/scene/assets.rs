@@ -1,5 +1,4 @@
-//! What a scene brings along instead of naming files: meshes, pictures, measured lamps and densities
-//! in memory.
+//! Assets of a scene in memory, instead of files: meshes, pictures, light profiles and densities.
 
 use crate::describe::{FileName, Rule};
 use crate::dialect::set;
@@ -15,26 +14,26 @@ use serde::{Serialize, Serializer};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Meshes, pictures, measured lamps and densities by name. A [`FileName`] of the scene means the
-/// asset of that name, if there is one, and else a file.
+/// Meshes, pictures, light profiles and densities by name. A [`FileName`] of the scene refers to
+/// the asset of that name if it exists, else to a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assets {
     /// Meshes.
     pub meshes: BTreeMap<String, Arc<MeshData>>,
-    /// Pictures and how they lie on surfaces.
+    /// Pictures and their mappings.
     pub pictures: BTreeMap<String, Picture>,
-    /// Measured lamps.
+    /// Light profiles.
     pub profiles: BTreeMap<String, Arc<Profile>>,
-    /// Densities, and the boxes that they fill.
+    /// Densities and their bounds.
     pub densities: BTreeMap<String, (Aabb, Arc<DensityGrid>)>,
 }
 
 /// A picture that a material names.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// Where its bytes are.
+    /// Location of its bytes.
     pub bytes: PictureBytes,
-    /// How it lies on a surface.
+    /// Mapping onto surfaces.
     pub mapping: Mapping,
 }
 
@@ -87,13 +86,13 @@ described! {
 }
 
 impl NamedTexture {
-    /// What it is by a name; `None` where its bytes are in no file.
+    /// Statement of a named picture; `None` if its bytes are not in a file.
     pub fn of(name: &str, picture: &Picture) -> Option<Self> {
         let PictureBytes::File(file) = &picture.bytes else { return None };
         Some(NamedTexture::with_mapping(name, file, picture.mapping))
     }
 
-    /// The texture of a name and a picture's file, mapped in some way.
+    /// Statement of a picture's name, file and mapping.
     pub(super) fn with_mapping(name: &str, file: &str, mapping: Mapping) -> Self {
         let named = |path: &str| FileName { path: path.to_string(), ..FileName::default() };
         let Mapping { wrap: [wrap_u, wrap_v], nearest, mipmaps, second, transform, cutoff, strength, channel, range } =
@@ -114,7 +113,7 @@ impl NamedTexture {
         }
     }
 
-    /// The picture.
+    /// The picture of the statement.
     pub fn picture(&self) -> Picture {
         let usual = Mapping::default();
         let mapping = Mapping {
@@ -132,17 +131,17 @@ impl NamedTexture {
     }
 }
 
-/// Where the bytes of a picture are.
+/// Location of a picture's bytes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PictureBytes {
-    /// In a file of this name, beside the scene.
+    /// File name relative to the scene.
     File(String),
-    /// Here: the bytes of a picture file, and its name for messages.
+    /// Name for messages, and the bytes of a picture file in memory.
     Here(String, Arc<[u8]>),
 }
 
 impl PictureBytes {
-    /// The name.
+    /// Name of the file, or the name for messages.
     pub fn path(&self) -> &str {
         let (PictureBytes::File(path) | PictureBytes::Here(path, _)) = self;
         path
@@ -150,26 +149,26 @@ impl PictureBytes {
 }
 
 impl Assets {
-    /// Whether there are none.
+    /// Returns true if all lists are empty.
     pub fn is_empty(&self) -> bool {
         let Assets { meshes, pictures, profiles, densities } = self;
         meshes.is_empty() && pictures.is_empty() && profiles.is_empty() && densities.is_empty()
     }
 
-    /// Whether some are in no files, so that a text cannot name them.
+    /// Returns true if some assets are not in files, so that a scene text cannot name them.
     pub fn has_loose(&self) -> bool {
         let loose = |picture: &Picture| matches!(picture.bytes, PictureBytes::Here(..));
         let Assets { meshes, pictures, profiles, densities } = self;
         !(meshes.is_empty() && profiles.is_empty() && densities.is_empty()) || pictures.values().any(loose)
     }
 
-    /// The pictures that are in files, which a scene's text can name.
+    /// Statements of the pictures that are in files.
     pub fn textures(&self) -> impl Iterator<Item = NamedTexture> {
         self.pictures.iter().filter_map(|(name, picture)| NamedTexture::of(name, picture))
     }
 }
 
-/// Assets are told by their hashes: a description with megabytes of numbers would be of no use.
+/// Serializes hashes of the assets, since megabytes of numbers would make the output useless.
 impl Serialize for Assets {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let count = self.meshes.len() + self.pictures.len() + self.profiles.len() + self.densities.len();

@@ -1,4 +1,4 @@
-//! Scenes built in code: things are named by handles, not by strings.
+//! Builder of scenes in code, which names things by handles instead of strings.
 
 use super::{Background, Group, Material, MatrixOp, Node, Object, Scene, Spanned};
 use crate::camera::Camera;
@@ -15,11 +15,12 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MaterialId(u32);
 
-/// A mesh of a [`SceneBuilder`]. It may be added to the scene any number of times, and is kept once.
+/// A mesh of a [`SceneBuilder`]. It can be added to the scene any number of times and is stored
+/// once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct MeshId(u32);
 
-/// Something that can be added to a scene: a primitive or a mesh.
+/// A primitive or a mesh that can be added to a scene.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Shape {
@@ -86,7 +87,7 @@ pub struct SceneBuilder {
     meshes: u32,
 }
 
-/// An object of a [`SceneBuilder`]: its material, and where it stands.
+/// An object of a [`SceneBuilder`], with its material and transforms.
 #[derive(Clone, Debug)]
 pub struct Placed {
     node: Node,
@@ -95,38 +96,38 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// Sets its material. Objects without one are plain grey.
+    /// Sets the material. Objects without one are plain grey.
     pub fn material(&mut self, material: MaterialId) -> &mut Self {
         self.material = Some(material);
         self
     }
 
-    /// Transforms it by a matrix, after the transforms that it has.
+    /// Appends a transform by a matrix.
     pub fn transform(&mut self, op: MatrixOp) -> &mut Self {
-        // The first of a product's factors is applied last.
+        // The first factor of a product is applied last.
         self.ops.insert(0, op);
         self
     }
 
-    /// Moves it, after the transforms that it has.
+    /// Appends a translation.
     pub fn translate(&mut self, by: Vec3) -> &mut Self {
         self.transform(MatrixOp::Translate(by))
     }
 
-    /// Scales it about the origin, after the transforms that it has.
+    /// Appends a scaling about the origin.
     pub fn scale(&mut self, factor: f32) -> &mut Self {
         self.transform(MatrixOp::UniformScale(factor))
     }
 
-    /// Rotates it about an axis through the origin, of any length: counter-clockwise by so many
-    /// degrees, seen from where the axis points. Applied after the transforms that it has.
+    /// Appends a rotation by degrees about an axis of any length through the origin:
+    /// counter-clockwise, seen from where the axis points.
     pub fn rotate(&mut self, axis: Vec3, degrees: f32) -> &mut Self {
         self.transform(MatrixOp::Rotate(axis, degrees))
     }
 }
 
 impl Scene {
-    /// A scene to be built in code.
+    /// Returns an empty builder.
     pub fn builder() -> SceneBuilder {
         SceneBuilder::default()
     }
@@ -139,19 +140,19 @@ impl SceneBuilder {
         self
     }
 
-    /// Sets what rays see that hit nothing, and the light that is everywhere.
+    /// Sets the background and the ambient light.
     pub fn background(&mut self, background: Background) -> &mut Self {
         self.scene.background = background;
         self
     }
 
-    /// Fills the air.
+    /// Sets the fog.
     pub fn fog(&mut self, fog: Fog) -> &mut Self {
         self.scene.fog = Some(Spanned { value: fog, span: Span::default() });
         self
     }
 
-    /// Adds a light without extent. Surfaces shine by their material.
+    /// Adds a light without extent. Emissive surfaces are defined by their material.
     pub fn light(&mut self, light: impl Into<Light>) -> &mut Self {
         self.scene.lights.get_or_insert_default().push(Spanned { value: light.into(), span: Span::default() });
         self
@@ -163,14 +164,14 @@ impl SceneBuilder {
         MaterialId(self.scene.materials.len() as u32 - 1)
     }
 
-    /// Takes a mesh: positions, and triangles by the numbers of their three positions,
-    /// counter-clockwise seen from outside. It is not in the scene before it is added.
+    /// Stores a mesh: positions, and triangles by three position indices each, counter-clockwise
+    /// seen from outside. It becomes visible when it is added.
     pub fn mesh(&mut self, positions: &[impl Into<Vec3> + Copy], triangles: &[[u32; 3]]) -> MeshId {
         let positions = positions.iter().map(|&position| position.into()).collect();
         self.mesh_data(MeshData { positions, triangles: triangles.to_vec(), ..MeshData::default() })
     }
 
-    /// Takes a mesh with all that it has: normals, texture coordinates, colours.
+    /// Stores a mesh with all its attributes: normals, texture coordinates, colours.
     pub fn mesh_data(&mut self, data: impl Into<Arc<MeshData>>) -> MeshId {
         let mesh = MeshId(self.meshes);
         self.scene.assets.meshes.insert(mesh.name(), data.into());
@@ -178,7 +179,7 @@ impl SceneBuilder {
         mesh
     }
 
-    /// Adds a primitive or a mesh; the result sets its material and place.
+    /// Adds a primitive or a mesh; set material and transforms on the result.
     pub fn add(&mut self, shape: impl Into<Shape>) -> &mut Placed {
         let node = match shape.into() {
             Shape::Primitive(primitive) => Node::Primitive(primitive),
@@ -191,11 +192,11 @@ impl SceneBuilder {
         &mut self.objects[at]
     }
 
-    /// The scene, if it has a camera and all values are valid.
+    /// Returns the scene if it has a camera and all values are valid.
     ///
     /// # Errors
     ///
-    /// What is wrong: see [`Scene::validate`].
+    /// All errors that were found: see [`Scene::validate`].
     pub fn build(&self) -> Result<Scene, Diagnostics> {
         let mut scene = self.scene.clone();
         let object = |placed: &Placed| {
@@ -227,7 +228,7 @@ impl SceneBuilder {
 }
 
 impl MeshId {
-    /// The name of its asset, which is no file's name.
+    /// Name of its asset, which cannot be a file name in a scene text.
     fn name(self) -> String {
         format!("<mesh {}>", self.0)
     }
@@ -250,7 +251,7 @@ mod tests {
         else {
             panic!("{built:?}");
         };
-        // (1, 0, 0) is doubled, moved to (3, 0, 0), and turned to (0, 0, -3).
+        // (1, 0, 0) is scaled by 2, moved to (3, 0, 0), and rotated to (0, 0, -3).
         let map = MatrixOp::product(ops, MatrixRules::default());
         assert!((map.transform_point3(glam::DVec3::X) - glam::DVec3::new(0.0, 0.0, -3.0)).length() < 1e-12);
     }

@@ -1,19 +1,19 @@
-//! The places that a scene reaches, before it is a world.
+//! Extent of a scene, computed from its description.
 
 use super::{MatrixOp, MatrixRules, Node, Object, Scene};
 use crate::math::Vec3;
 use crate::shape::Shape;
 use glam::{DAffine3, DVec3};
 
-/// Calls `found` with points whose convex hull holds all bounded objects. Files are not looked
-/// into.
+/// Calls `found` with points whose convex hull contains all bounded objects. Mesh files are not
+/// read.
 pub fn points(scene: &Scene, found: &mut dyn FnMut(DVec3)) {
     for object in scene.root.iter().flat_map(|root| &root.objects) {
         visit(scene, object, DAffine3::IDENTITY, found);
     }
 }
 
-/// The same of one object, in its own space.
+/// Calls `found` with points whose convex hull contains one object, in its own space.
 pub fn of(scene: &Scene, object: &Object, found: &mut dyn FnMut(DVec3)) {
     visit(scene, object, DAffine3::IDENTITY, found);
 }
@@ -28,7 +28,7 @@ fn visit(scene: &Scene, object: &Object, to_world: DAffine3, found: &mut dyn FnM
         Node::Solid(_, parts) => parts.iter().for_each(|part| visit(scene, part, to_world, found)),
         Node::Mesh(mesh) => {
             let Some(data) = scene.assets.meshes.get(&mesh.obj_file.path) else { return };
-            // What no triangle shows does not count.
+            // Unused vertices do not count.
             let mut used = vec![false; data.positions.len()];
             data.triangles.iter().flatten().for_each(|&index| used[index as usize] = true);
             data.positions.iter().zip(used).filter(|(_, used)| *used).for_each(|(p, _)| offer(*p));

@@ -86,16 +86,17 @@ described! {
 }
 
 impl Background {
-    /// How hazy the air is.
+    /// Turbidity of the air.
     pub fn turbidity(&self) -> f32 {
         self.turbidity.unwrap_or(3.0)
     }
 
-    /// The way to the sun, of any length, if one is asked for.
+    /// Direction to the sun, of any length; `None` if the background has no sun.
     ///
     /// # Errors
     ///
-    /// In words, where its place is said in more than one way, in part, or by a time that is none.
+    /// A sentence, if the position of the sun is given twice, incompletely, or by an invalid date
+    /// or time.
     pub fn way_to_sun(&self) -> Result<Option<Vec3>, String> {
         let angles = [("sunAltitude", self.sun_altitude.is_some()), ("sunAzimuth", self.sun_azimuth.is_some())];
         let clock = [
@@ -112,7 +113,7 @@ impl Background {
         {
             return Err(format!("the sun's place is said twice, by `{first}` and by `{second}`"));
         }
-        // A clock without a zone is that of Greenwich.
+        // A clock without a time zone is in UTC.
         let missing = |words: &[(&'static str, bool)]| match given(words) {
             Some(word) => match words.iter().find(|(word, given)| !given && *word != "timeZone") {
                 Some((lacking, _)) => {
@@ -146,39 +147,39 @@ impl Background {
         Ok(Some(almanac::way(almanac::sun([latitude, longitude].map(f64::from), &moment))))
     }
 
-    /// The same, if that is sound.
+    /// Direction to the sun, of any length; `None` if there is none or it is invalid.
     pub fn sun(&self) -> Option<Vec3> {
         self.way_to_sun().ok().flatten()
     }
 
-    /// Whether the sun is below the horizon: neither it nor its sky shines.
+    /// Returns true if the sun is below the horizon: then neither the sun nor its sky emits light.
     pub fn is_night(&self) -> bool {
         self.sun().is_some_and(|way| way.y < 0.0)
     }
 
-    /// The standard sky, if one is asked for.
+    /// The standard sky, if the background has one.
     pub fn cie_sky(&self) -> Option<CieSky> {
         let (zenith, ground) = (self.zenith_luminance.unwrap_or(10_000.0), self.ground_reflectance.unwrap_or(0.2));
         self.cie_sky.map(|number| CieSky::new(number, self.sun().unwrap_or(Vec3::Y), zenith, ground))
     }
 
-    /// How far the environment is turned about y, in degrees, and what multiplies it.
+    /// Rotation of the environment about y in degrees, and its scale.
     pub fn environment_placing(&self) -> (f32, Vec3) {
         (self.environment_rotation.unwrap_or(0.0), self.environment_scale.unwrap_or(Vec3::ONE))
     }
 }
 
-/// What a file asks of its picture; options say otherwise.
+/// Settings that a file requests for its picture; options override them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Wishes {
-    /// Its columns and rows.
+    /// Width and height in pixels.
     pub size: Option<(u32, u32)>,
-    /// The part of that which is made: its first column and row, its columns and rows.
+    /// Part of the picture to render: first column, first row, width and height.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: Option<u32>,
-    /// How often paths are scattered after the first time.
+    /// Maximum number of scatterings after the first.
     pub bounces: Option<u32>,
 }
 
@@ -191,48 +192,48 @@ impl Wishes {
 /// A whole scene.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// Whence it is seen.
+    /// The camera.
     pub camera: Option<Camera>,
-    /// What is behind everything.
+    /// The background and the light from it.
     pub background: Background,
-    /// What is in the air.
+    /// The fog.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub fog: Option<Spanned<Fog>>,
-    /// Lights; `None` where the file has no section for them.
+    /// Lights; `None` if the file has no section for them.
     pub lights: Option<Vec<Spanned<Light>>>,
     /// Materials, by number.
     pub materials: Vec<Spanned<Material>>,
-    /// All objects.
+    /// The objects.
     pub root: Option<Group>,
-    /// Meshes and pictures that are in no files of their own.
+    /// Assets in memory.
     #[serde(skip_serializing_if = "Assets::is_empty", skip_deserializing)]
     pub assets: Assets,
-    /// What the file asks of its picture.
+    /// Settings that the file requests for its picture.
     #[serde(default, skip_serializing_if = "Wishes::are_none")]
     pub wishes: Wishes,
-    /// Which way is up, where its format says so.
+    /// Up axis, if the format defines one.
     #[serde(skip)]
     pub up: Option<Axis>,
-    /// What makes lumens of its light, by colour, where that is in watts.
+    /// Lumens per watt of red, green and blue, if its light is in watts.
     #[serde(skip)]
     pub lumens: Option<Vec3>,
-    /// Where the camera is written.
+    /// Span of the camera.
     #[serde(skip)]
     pub camera_span: Span,
-    /// Where the background is written.
+    /// Span of the background.
     #[serde(skip)]
     pub background_span: Span,
 }
 
 impl Scene {
-    /// Adds a mesh in memory under a `name` that no other mesh has, and returns a node that shows it.
+    /// Adds a mesh in memory under a unique `name`, and returns a node that shows it.
     pub fn add_mesh(&mut self, name: &str, data: Arc<MeshData>, span: Span) -> Node {
         self.assets.meshes.insert(name.to_string(), data);
         Node::Mesh(TriangleMesh { obj_file: FileName { path: name.to_string(), span } })
     }
 
-    /// Whether it has light or materials that only a path tracer shows: layers, surfaces that
-    /// shine, an environment.
+    /// Returns true if it has light or materials that only a path tracer can render: principled or
+    /// hair materials, fog, an environment, a sun or a sky.
     pub fn is_physical(&self) -> bool {
         let layered = |m: &Spanned<Material>| matches!(m.value, Material::Principled(_) | Material::Hair(_));
         let background = &self.background;
@@ -245,7 +246,7 @@ impl Scene {
 }
 
 impl Scene {
-    /// Whether a surface or what is around it shines.
+    /// Returns true if a surface, an environment map or the sun emits light.
     pub fn shines(&self) -> bool {
         let shines = |material: &Spanned<Material>| match &material.value {
             Material::Principled(layers) => layers.emission_luminance > 0.0,
@@ -255,12 +256,12 @@ impl Scene {
     }
 }
 
-/// A thing and where it is written.
+/// A value and its position in a file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spanned<T> {
-    /// The thing.
+    /// The value.
     pub value: T,
-    /// Where.
+    /// Position of the value.
     #[serde(skip)]
     pub span: Span,
 }
@@ -278,27 +279,27 @@ pub enum Material {
     Solid(Solid, Vec<MatrixOp>),
 }
 
-/// Some objects.
+/// A list of objects.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Group {
-    /// In reading order.
+    /// In file order.
     pub objects: Vec<Object>,
 }
 
-/// An object and the material that was current where it is written.
+/// An object and the material that was current at its position in the file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Object {
-    /// What it is.
+    /// Kind of object.
     pub node: Node,
     /// Number of the current material; `None` before any.
     pub material: Option<u32>,
-    /// Its keyword in the file.
+    /// Span of its keyword in the file.
     #[serde(skip)]
     pub span: Span,
 }
 
 impl Object {
-    /// The object moved by a map; itself where the map changes nothing.
+    /// Returns the object under a transform; unchanged for the identity.
     pub fn placed(self, map: DAffine3) -> Object {
         if map == DAffine3::IDENTITY {
             return self;
@@ -309,12 +310,12 @@ impl Object {
     }
 }
 
-/// What an object is.
+/// Kinds of objects.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Node {
     /// Several objects.
     Group(Group),
-    /// An object moved by M = M1 M2 ...
+    /// An object transformed by M = M1 M2 ...
     Transform(Vec<MatrixOp>, Box<Object>),
     /// A shape.
     Primitive(Primitive),
@@ -322,30 +323,30 @@ pub enum Node {
     Mesh(TriangleMesh),
     /// Cells of a box, filled by balls.
     Voxels(VoxelGrid, Vec<Sphere>),
-    /// A landscape from a picture.
+    /// A terrain from a picture.
     HeightField(HeightField),
-    /// Closed objects combined to one solid.
+    /// Closed objects combined into one solid.
     Solid(Operation, Vec<Object>),
 }
 
-/// How closed objects are combined; each of them counts with all that it holds.
+/// Operation that combines closed objects. A group counts as the union of its objects.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Operation {
-    /// All that is in some part. Where no other operation is around it, the parts stay as they are,
-    /// with the surfaces that they have inside each other.
+    /// Union of the parts. Unless it is nested in another operation, the parts keep their surfaces
+    /// inside each other.
     Union,
-    /// All that is in some part, as one solid: surfaces inside other parts are gone.
+    /// Union of the parts as one solid, without the surfaces inside other parts.
     Merge,
-    /// What is in every part.
+    /// Intersection of all parts.
     Intersection,
-    /// What is in the first part and in no other.
+    /// The first part without the others.
     Difference,
-    /// What is in an odd number of parts: of two, in one alone.
+    /// Points inside an odd number of parts.
     Xor,
 }
 
 impl Operation {
-    /// All of them, by keyword.
+    /// The operations with their keywords.
     pub const ALL: [(&str, Operation); 5] = [
         ("Union", Operation::Union),
         ("Merge", Operation::Merge),
@@ -354,7 +355,7 @@ impl Operation {
         ("Xor", Operation::Xor),
     ];
 
-    /// What is inside the result.
+    /// Description of the points inside the result.
     pub fn doc(self) -> &'static str {
         match self {
             Operation::Union => {
@@ -368,12 +369,12 @@ impl Operation {
         }
     }
 
-    /// The one of a keyword.
+    /// Returns the operation of a keyword.
     pub fn from_keyword(word: &str) -> Option<Operation> {
         Operation::ALL.iter().find(|row| row.0 == word).map(|row| row.1)
     }
 
-    /// Its keyword.
+    /// Keyword of the operation.
     pub fn keyword(self) -> &'static str {
         Operation::ALL[self as usize].0
     }

@@ -1,4 +1,4 @@
-//! What a model lacks to be a scene: a camera that sees all of it, light, a ground, a material.
+//! Defaults for models: a camera that shows the whole model, light, a ground, and a material.
 
 use super::extent::points;
 use super::{Background, Group, Material, Node, Object, Scene, Spanned};
@@ -14,88 +14,87 @@ use std::path::PathBuf;
 /// An axis of space.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Axis {
-    /// The first.
+    /// The x axis.
     X,
-    /// The second.
+    /// The y axis.
     Y,
-    /// The third.
+    /// The z axis.
     Z,
 }
 
-/// Whence a model is seen that brings no camera.
+/// View of a model without a camera.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum View {
-    /// In perspective, from the front, a little from the right and from above.
+    /// Perspective, from the front, slightly from the right and from above.
     #[default]
     ThreeQuarter,
-    /// From the front, without perspective.
+    /// Parallel, from the front.
     Front,
-    /// From the right, without perspective.
+    /// Parallel, from the right.
     Side,
-    /// From above, without perspective.
+    /// Parallel, from above.
     Top,
-    /// Without perspective, such that edges along all three axes look equally long.
+    /// Parallel, such that edges along all three axes have equal lengths.
     Iso,
 }
 
-/// The light of a model that brings none.
+/// Light for a model without lights.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Studio {
-    /// None, and no ground.
+    /// No light and no ground.
     None,
-    /// A key light from the upper left, a weaker one from the right, a light ground.
+    /// A key light from the upper left, a weaker light from the right, a bright ground.
     #[default]
     Soft,
-    /// A low sun under a blue sky, a light ground.
+    /// A low sun under a blue sky, a bright ground.
     Sun,
 }
 
-/// How a model becomes a scene.
+/// Options for turning a model into a scene.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Staging {
-    /// What is up; `None`: what is up in most models of the format.
+    /// Up axis; `None`: the usual one of the format.
     pub up: Option<Axis>,
-    /// Whence it is seen; `None`: by its own camera, or else in a three-quarter view.
+    /// View; `None`: the model's own camera, else a three-quarter view.
     pub view: Option<View>,
-    /// The light; `None`: its own, or else a soft studio.
+    /// Light; `None`: the model's own, else [`Studio::Soft`].
     pub studio: Option<Studio>,
-    /// The name of the camera of the file that is wanted; `None`: the first.
+    /// Name of the camera to use; `None`: the first.
     pub camera: Option<String>,
-    /// The name of the look that is wanted of a glTF file with several (KHR_materials_variants);
-    /// `None`: its own materials.
+    /// Name of the glTF material variant to use (KHR_materials_variants); `None`: the default
+    /// materials.
     pub variant: Option<String>,
-    /// The moment of its animation, in seconds; `None`: as it stands without.
+    /// Time of the animation in seconds; `None`: without animation.
     pub at: Option<f32>,
-    /// A file of Radiance's views, whose last is the camera.
+    /// File of Radiance views, of which the last is the camera.
     pub view_file: Option<PathBuf>,
-    /// A picture of all directions that lights the model instead of a studio.
+    /// Environment map that lights the model instead of the default lights.
     pub environment: Option<PathBuf>,
-    /// Whether its own camera is moved to where it sees all of the model.
+    /// True to move the model's own camera to where it shows the whole model.
     pub fit: bool,
-    /// Degrees by which the camera goes around the model, counter-clockwise from above, as far away
-    /// as all of it is seen from everywhere; `None`: no picture of many.
+    /// Degrees by which the camera orbits the model, counter-clockwise seen from above, at a
+    /// distance from which the whole model is visible from all angles; `None` for a single picture.
     pub turned: Option<f32>,
-    /// Whether nothing is added, and nothing replaced: the scene is to be written in another
-    /// format.
+    /// True to add and replace nothing, since the scene is written in another format.
     pub bare: bool,
-    /// Whether only its own light counts: where it has none it is dark.
+    /// True to use the model's own light only, even if there is none.
     pub own_light: bool,
-    /// The picture's width over its height, for a camera that sees just the whole; `None`: 1.
+    /// Width over height of the picture that the camera should fill; `None`: 1.
     pub aspect: Option<f32>,
 }
 
-/// Three axes of a model as people see it: what is to its right, up, and in front of it.
+/// Axes of a model as a viewer in front of it sees them.
 pub struct Sides {
-    /// To the right of somebody who stands before it.
+    /// To the viewer's right.
     pub right: DVec3,
     /// Upwards.
     pub up: DVec3,
-    /// To where it looks.
+    /// From the model towards the viewer.
     pub front: DVec3,
 }
 
 impl Sides {
-    /// For an axis that is up.
+    /// Axes for a model with this up axis.
     pub fn new(up: Axis) -> Self {
         let (right, up) = match up {
             Axis::X => (DVec3::NEG_Y, DVec3::X),
@@ -108,15 +107,14 @@ impl Sides {
 
 /// Field of view across the larger side of the picture, in degrees.
 const ANGLE: f32 = 30.0;
-/// Places of a turning model that are looked at.
+/// Number of angles of an orbiting camera at which the model must be visible.
 const PLACES: u32 = 48;
-/// Share of the picture's width or height that a model fills.
+/// Fraction of the picture's width or height that a model fills.
 const FILLED: f64 = 0.86;
 
 impl Staging {
-    /// Adds what a scene lacks. `up` is the axis that is up in most models of its format; `dark`
-    /// says that what has a camera and no lights is meant so, and that what shines needs no
-    /// other light.
+    /// Adds what a scene lacks. `up` is the usual up axis of its format. With `dark`, a scene with
+    /// a camera or emitters but without lights is complete.
     pub fn complete(&self, scene: &mut Scene, up: Axis, dark: bool) {
         let sides = Sides::new(self.up.unwrap_or(up));
         let framed = scene.camera.is_none() || self.view.is_some() || self.turned.is_some();
@@ -135,14 +133,14 @@ impl Staging {
         if let Some(studio) = studio {
             self.light(scene, &sides, studio, framed);
         }
-        // Around what has its own light it is dark, unless the file says otherwise.
+        // The background of a scene with its own light is black, unless the file sets it.
         let shines = scene.shines() || scene.lights.as_ref().is_some_and(|lights| !lights.is_empty());
         if (shines || self.own_light) && scene.background == Background::default() {
             scene.background.color = Vec3::ZERO;
         }
     }
 
-    /// A camera that sees all of a scene, in the middle of the picture.
+    /// A camera that shows the whole scene, centred.
     fn camera(&self, scene: &Scene, sides: &Sides, view: View) -> Camera {
         let &Sides { right, up, front } = sides;
         let (back, above) = match view {
@@ -156,20 +154,20 @@ impl Staging {
         self.framed(scene, sides, (back, above), view == View::ThreeQuarter)
     }
 
-    /// The same that looks from some side.
+    /// A camera that shows the whole scene from a direction.
     fn framed(&self, scene: &Scene, sides: &Sides, (back, above): (DVec3, DVec3), perspective: bool) -> Camera {
         let forward = -back.normalize();
         let across = forward.cross(above).try_normalize().unwrap_or_else(|| forward.any_orthonormal_vector());
         let upwards = across.cross(forward);
         let aspect = f64::from(self.aspect.unwrap_or(1.0)).clamp(1e-3, 1e3);
-        // Half the width and height of the picture, the larger side from -1 to 1.
+        // Half the width and height of the picture, whose larger side is from -1 to 1.
         let (wide, high) = (aspect.min(1.0), (1.0 / aspect).min(1.0));
         let mut seen = Seen::new(half_angle() * FILLED * wide, half_angle() * FILLED * high);
         let mut add = |p: DVec3| seen.add(p.dot(across), p.dot(upwards), p.dot(forward));
         let axis = self.turned.map(|_| axis(scene, sides));
         match axis {
             None => points(scene, &mut add),
-            // What it is in all its places.
+            // The points at all angles of the orbit.
             Some(axis) => points(scene, &mut |p| {
                 (0..PLACES)
                     .for_each(|i| add(axis + turn(sides.up, 360.0 * f64::from(i) / f64::from(PLACES)) * (p - axis)));
@@ -190,7 +188,7 @@ impl Staging {
         OrthographicCamera { center, direction, up, size, ..Default::default() }.into()
     }
 
-    /// Adds light, and with a camera of ours a ground.
+    /// Adds light and, with a default camera, a ground.
     fn light(&self, scene: &mut Scene, sides: &Sides, studio: Studio, framed: bool) {
         if studio == Studio::None {
             scene.lights.get_or_insert_default();
@@ -198,7 +196,7 @@ impl Staging {
         }
         let pose = scene.camera.as_ref().map(crate::camera::Projection::pose);
         let forward = pose.map_or(-sides.front, |pose| pose.direction.as_dvec3().normalize_or(-sides.front));
-        // Level, so that light comes from above also where the camera looks down.
+        // Horizontal, so that light comes from above even if the camera looks down.
         let forward = forward.reject_from(sides.up).try_normalize().unwrap_or(-sides.front);
         let right = forward.cross(sides.up);
         let from = |x: f64, y: f64, z: f64| -(x * right + y * sides.up - z * forward).normalize().as_vec3();
@@ -213,8 +211,8 @@ impl Staging {
                 Vec3::new(0.3, 0.5, 0.85),
                 Vec3::new(0.55, 0.5, 0.42),
             ),
-            // Such that a white thing is brighter than what is behind it, under paths as under
-            // Whitted's light.
+            // Chosen so that a white object is brighter than the background, for path tracing and
+            // for Whitted's method.
             _ => (
                 vec![
                     light(from(-0.6, 1.0, 0.7), Vec3::splat(0.75)),
@@ -249,14 +247,14 @@ impl Staging {
 }
 
 impl Scene {
-    /// Adds a material and gives its number.
+    /// Adds a material and returns its number.
     pub fn add_material(&mut self, material: Material) -> u32 {
         self.materials.push(Spanned { value: material, span: Span::default() });
         (self.materials.len() - 1) as u32
     }
 }
 
-/// A point of the axis about which a model turns: in the middle of its box.
+/// A point of the axis about which the camera orbits: the centre of the bounds.
 fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
     let (mut least, mut most) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
     points(scene, &mut |p| (least, most) = (least.min(p), most.max(p)));
@@ -264,7 +262,7 @@ fn axis(scene: &Scene, sides: &Sides) -> DVec3 {
     if middle.is_finite() { middle.reject_from(sides.up) } else { DVec3::ZERO }
 }
 
-/// A turn of some degrees about an axis.
+/// Rotation about an axis by degrees.
 fn turn(axis: DVec3, degrees: f64) -> DMat3 {
     let (sin, cos) = fp::sin_cos_degrees(degrees);
     let (x, y, z) = (axis.x, axis.y, axis.z);
@@ -272,12 +270,12 @@ fn turn(axis: DVec3, degrees: f64) -> DMat3 {
     DMat3::IDENTITY + cross * sin + cross * cross * (1.0 - cos)
 }
 
-/// Half the field of view at distance 1.
+/// Tangent of half the field of view.
 fn half_angle() -> f64 {
     crate::math::fp::tan_f64(f64::from(ANGLE).to_radians() / 2.0)
 }
 
-/// Gives a neutral material to what has none.
+/// Assigns a neutral material to objects without one.
 fn give_material(scene: &mut Scene) {
     fn visit(object: &mut Object, material: u32, used: &mut bool) {
         match &mut object.node {
@@ -305,11 +303,12 @@ fn give_material(scene: &mut Scene) {
     }
 }
 
-/// What is seen, in the camera's axes: the least camera in front of it all.
+/// Extent of the visible points in the camera's axes, from which the closest camera that shows them
+/// follows.
 struct Seen {
     /// Half the picture's width and height at distance 1.
     slopes: [f64; 2],
-    /// For across and upwards: the greatest of p - slope z, and the least of p + slope z.
+    /// For both picture axes: the maximum of p - slope z and the minimum of p + slope z.
     reach: [[f64; 2]; 2],
     low: [f64; 3],
     high: [f64; 3],
@@ -336,8 +335,8 @@ impl Seen {
         self.low[0] > self.high[0]
     }
 
-    /// The eye in perspective. Each side plane of the view touches a point: x = A + s z and x = B -
-    /// s z meet in the eye.
+    /// Position of a perspective camera. Each side plane of the frustum touches a point: x = A + s
+    /// z and x = B - s z meet in the eye.
     fn eye(&self) -> [f64; 3] {
         if self.is_empty() {
             return [0.0, 0.0, -4.0];
@@ -345,7 +344,7 @@ impl Seen {
         let [x, y] = self.reach.map(|[a, b]| 0.5 * (a + b));
         let far = |i: usize| (self.reach[i][1] - self.reach[i][0]) / (2.0 * self.slopes[i]);
         let z = far(0).min(far(1));
-        // A single point has a picture too.
+        // A single point needs a distance too.
         let size = (0..3).map(|i| self.high[i] - self.low[i]).fold(0.0, f64::max);
         let near = self.low[2] - z;
         [x, y, if near > 1e-6 * size && size > 0.0 { z } else { self.low[2] - size.max(1.0) }]
@@ -355,7 +354,7 @@ impl Seen {
         if self.is_empty() { [1.0; 2] } else { std::array::from_fn(|i| 0.5 * (self.high[i] - self.low[i])) }
     }
 
-    /// The middle of the picture without perspective, at a distance before it all.
+    /// Position of a parallel camera at a distance in front of all points.
     fn before(&self, distance: f64) -> [f64; 3] {
         if self.is_empty() {
             return [0.0; 3];

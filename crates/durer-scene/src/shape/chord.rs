@@ -1,8 +1,8 @@
-//! The piece of a line inside a convex solid, cut down by one face after the other.
+//! The part of a line inside a convex solid, clipped by one face after the other.
 
 use crate::math::Vec2;
 
-/// A piece of a line, and the numbers of the faces that it enters and leaves by.
+/// An interval of a line, with the numbers of the faces where the line enters and leaves.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Chord {
     enter: (f64, f32),
@@ -13,7 +13,7 @@ impl Chord {
     /// The whole line.
     pub(super) const LINE: Chord = Chord { enter: (f64::NEG_INFINITY, 0.0), leave: (f64::INFINITY, 0.0) };
 
-    /// What is left between two places, whose faces have these numbers.
+    /// Clips to an interval whose ends have these faces.
     #[inline(always)]
     pub(super) fn between(mut self, enter: f64, leave: f64, faces: [u32; 2]) -> Chord {
         if enter > self.enter.0 {
@@ -25,12 +25,12 @@ impl Chord {
         self
     }
 
-    /// What is left where a coordinate, `o + t d`, lies between two bounds; each has the number of
-    /// its face.
+    /// Clips to the interval where a coordinate, `o + t d`, is between two bounds; each bound has
+    /// the number of its face.
     #[inline(always)]
     pub(super) fn slab(mut self, o: f64, d: f64, [low, high]: [f64; 2], faces: [u32; 2]) -> Chord {
         if d == 0.0 {
-            // Number by number: what is chosen as a whole is chosen in memory.
+            // Select single numbers: selecting whole structs would go through memory.
             self.leave.0 = if o < low || o > high { f64::NEG_INFINITY } else { self.leave.0 };
             return self;
         }
@@ -38,7 +38,7 @@ impl Chord {
         if d > 0.0 { self.between(a, b, faces) } else { self.between(b, a, [faces[1], faces[0]]) }
     }
 
-    /// Where a quadratic a t^2 + 2 b t + c is not positive, for a > 0; or where a = b = 0.
+    /// Clips to the interval where a t^2 + 2 b t + c is not positive, for a > 0 or a = b = 0.
     #[inline(always)]
     pub(super) fn quadratic(mut self, a: f64, b: f64, c: f64, face: u32) -> Chord {
         if a > 0.0
@@ -50,7 +50,7 @@ impl Chord {
         self
     }
 
-    /// The two ends, if something is left between them.
+    /// Both ends, unless the interval is empty.
     #[inline(always)]
     pub(super) fn ends(self) -> Option<(f64, f64)> {
         (self.enter.0 < self.leave.0).then_some((self.enter.0, self.leave.0))

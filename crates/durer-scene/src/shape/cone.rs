@@ -32,7 +32,7 @@ impl Cone {
         [f64::from(self.base_radius), f64::from(self.top_radius)]
     }
 
-    /// How fast the radius grows with height.
+    /// Derivative of the radius by the height.
     fn growth(&self, axis: &Axis) -> f64 {
         let [base, top] = self.radii();
         (top - base) / axis.height
@@ -44,10 +44,10 @@ impl Cone {
         base * (1.0 - share) + top * share
     }
 
-    /// |q - (q·a) a|^2 = r(q·a)^2 for q seen from the base, a the axis and r the radius, linear in
-    /// the height.
+    /// Solves |q - (q·a) a|^2 = r(q·a)^2 for q relative to the base, a the axis and r the radius,
+    /// linear in the height.
     ///
-    /// Steep lines run inside both nappes of the double cone: the one where r > 0 is kept.
+    /// Steep lines are inside both nappes of the double cone; only the nappe where r > 0 is kept.
     fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
@@ -58,7 +58,7 @@ impl Cone {
             Some((first, second)) if a > 0.0 => slabbed.between(first, second, [SIDE; 2]),
             Some((_, second)) if dr > 0.0 => slabbed.between(second, f64::INFINITY, [SIDE; 2]),
             Some((first, _)) => slabbed.between(f64::NEG_INFINITY, first, [SIDE; 2]),
-            // Parallel to the side: one place only.
+            // Parallel to the side: a single crossing.
             None if a == 0.0 && b > 0.0 => slabbed.between(f64::NEG_INFINITY, -0.5 * c / b, [SIDE; 2]),
             None if a == 0.0 && b < 0.0 => slabbed.between(-0.5 * c / b, f64::INFINITY, [SIDE; 2]),
             None if a < 0.0 || a == 0.0 && c < 0.0 => slabbed,
@@ -106,7 +106,7 @@ impl Shape for Cone {
         let r = self.radius_at(&axis, y);
         let normal = around - self.growth(&axis) * axis.dir;
         let largest = base.max(top);
-        // At a tip the curvature has no bound; the point's error is far larger than this.
+        // The curvature is unbounded at a tip; the point's error is far larger than this limit.
         let curvature = 1.0 / r.max(1e-6 * largest);
         let position = axis.base + y * axis.dir + r * around;
         let floor = gamma(2) * (largest + axis.height) as f32;

@@ -1,4 +1,4 @@
-//! The box whose faces are parallel to the coordinate planes.
+//! The axis-aligned box.
 
 use super::chord::Chord;
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
@@ -23,8 +23,8 @@ impl Shape for Cuboid {
         Some(padded(self.min.as_dvec3(), self.max.as_dvec3()))
     }
 
-    /// Cuts the line by three slabs. Source: Kay and Kajiya, *Ray Tracing Complex Scenes*, SIGGRAPH
-    /// 1986.
+    /// Clips the line by three slabs. Source: Kay and Kajiya, *Ray Tracing Complex Scenes*,
+    /// SIGGRAPH 1986.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (min, max) = (self.min.as_dvec3(), self.max.as_dvec3());
         let cut = |chord: Chord, axis: usize| {

@@ -23,7 +23,7 @@ described! {
     }
 }
 
-/// A piece of a line from which heights are counted.
+/// Axis of a solid of revolution, along which heights are measured.
 #[derive(Clone, Copy, Debug)]
 pub struct Axis {
     /// Start of the axis, where the height is 0.
@@ -34,7 +34,7 @@ pub struct Axis {
     pub height: f64,
 }
 
-/// The faces of what is round about an axis.
+/// Numbers of the faces of a solid of revolution.
 pub(super) const BASE: u32 = 0;
 pub(super) const TOP: u32 = 1;
 pub(super) const SIDE: u32 = 2;
@@ -45,25 +45,25 @@ impl Axis {
         Axis { base, dir: along.normalize_or(DVec3::Y), height: along.length() }
     }
 
-    /// A vector's part along the axis, and the rest.
+    /// Splits a vector into its component along the axis and the rest.
     pub(super) fn split(&self, v: DVec3) -> (f64, DVec3) {
         let along = v.dot(self.dir);
         (along, v - along * self.dir)
     }
 
-    /// A line as seen from the base, with its origin moved to where it is nearest to the middle of
-    /// the axis, and the `t` of that place: so, no digits are lost to distance.
+    /// Returns a line relative to the base whose origin is the point nearest to the middle of the
+    /// axis, and the `t` of that point. This avoids cancellation for distant lines.
     pub(super) fn near(&self, line: &Line) -> (f64, Line) {
         let shift = line.nearest(self.base + 0.5 * self.height * self.dir);
         (shift, Line { origin: line.at(shift) - self.base, dir: line.dir })
     }
 
-    /// Bound on the error of a point no farther than a radius from the axis.
+    /// Bound on the error of a point at most `radius` away from the axis.
     pub(super) fn error(&self, radius: f64) -> f32 {
         gamma(4) * (self.base.abs().max_element() + self.height + radius) as f32
     }
 
-    /// The box around discs at both ends.
+    /// Bounds of discs at both ends.
     pub(super) fn bounds(&self, [base_radius, top_radius]: [f64; 2]) -> Aabb {
         let reach = disc_reach(self.dir);
         let top = self.base + self.height * self.dir;
@@ -77,13 +77,13 @@ impl Axis {
         Uv::Turned(DVec2::new(around.dot(x), around.dot(z)).as_vec2(), v.clamp(0.0, 1.0) as f32)
     }
 
-    /// The surface of a cap of a radius: a plane across the axis.
+    /// Surface of a cap, a plane perpendicular to the axis.
     pub(super) fn cap(&self, point: DVec3, face: u32, radius: f64) -> Surface {
         let (height, normal) = if face == TOP { (self.height, self.dir) } else { (0.0, -self.dir) };
         let (_, around) = self.split(point - self.base);
         let within = radius - f64::from(INSET * self.error(radius)).min(0.25 * radius);
         let position = self.base + height * self.dir + around.clamp_length_max(within);
-        // Planes across tilted axes are known to double precision.
+        // Points on planes perpendicular to a tilted axis are accurate to double precision.
         let floor = 1e-14 * (self.base.abs().max_element() + self.height + radius);
         Surface::new(position, normal, floor as f32, self.uv(around, around.length() / radius))
     }
@@ -94,13 +94,13 @@ impl Cylinder {
         Axis::new(self.base, self.top)
     }
 
-    /// |q - (q·a) a|^2 = radius^2 for q seen from the base, a the axis, between two planes across
-    /// it.
+    /// Solves |q - (q·a) a|^2 = radius^2 for q relative to the base, a the axis, between two planes
+    /// perpendicular to it.
     fn cut(&self, axis: &Axis, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let (shift, near) = axis.near(line);
         let ((y, o), (slope, d)) = (axis.split(near.origin), axis.split(near.dir));
         let r = f64::from(self.radius);
-        // A line along the axis has no direction around it, but for rounding.
+        // Treat a line as parallel to the axis if its perpendicular component is mere rounding.
         let across = d.length_squared();
         let across = if across > 1e-30 * near.dir.length_squared() { across } else { 0.0 };
         let chord = Chord::LINE.quadratic(across, o.dot(d), o.length_squared() - r * r, SIDE);
@@ -185,7 +185,8 @@ impl Shape for Cylinder {
         let frame = Frame::around(along.normalize_or(Vec3::Y));
         let [x, y] = [frame.tangent, frame.bitangent].map(|axis| place.vector(self.radius * axis));
         let (along, radius) = (place.vector(along), x.length());
-        // A transform may leave neither a circle nor a right angle, which cannot be sampled.
+        // A transform may destroy the circle or the right angle, and then the surface cannot be
+        // sampled.
         let off = x.dot(y).abs()
             + along.normalize_or(Vec3::Y).dot(x).abs() * radius
             + along.normalize_or(Vec3::Y).dot(y).abs() * radius

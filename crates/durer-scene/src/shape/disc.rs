@@ -1,4 +1,4 @@
-//! The disc, whole or with a hole.
+//! The disc, optionally with a hole.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, padded, tessellate};
 use crate::bsdf::Frame;
@@ -39,7 +39,7 @@ impl Shape for Disc {
         let (n, center) = (self.unit_normal(), self.center.as_dvec3());
         let t = n.dot(center - line.origin) / n.dot(line.dir);
         let distance = (line.at(t) - center).length();
-        // A parallel line divides by zero, and is nowhere within the radius.
+        // For a parallel line t is infinite or NaN, and the comparison fails.
         if distance <= f64::from(self.radius) && distance >= f64::from(self.inner_radius) {
             offer(t, Vec2::ZERO);
         }

@@ -23,8 +23,8 @@ impl Shape for Ellipsoid {
         Some(padded(center - radii, center + radii))
     }
 
-    /// |(p - center) / radii|^2 = 1, from the place of the line that is nearest to the centre of
-    /// the unit sphere.
+    /// Solves |(p - center) / radii|^2 = 1, measured from the point of the line nearest to the
+    /// centre of the unit sphere.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let radii = self.radii.as_dvec3();
         let unit = Line { origin: (line.origin - self.center.as_dvec3()) / radii, dir: line.dir / radii };

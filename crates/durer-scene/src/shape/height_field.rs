@@ -1,4 +1,4 @@
-//! The height field: a picture as a landscape, in a closed mesh.
+//! The height field: a picture as a terrain, in a closed mesh.
 
 use super::MeshData;
 use super::mesh_data::Triangles;
@@ -26,10 +26,10 @@ described! {
 }
 
 impl HeightField {
-    /// At most this many pixels.
+    /// Maximum number of pixels.
     pub const MAX_PIXELS: usize = 1 << 24;
 
-    /// Checks its fields together.
+    /// Checks the fields together.
     ///
     /// # Errors
     ///
@@ -42,11 +42,11 @@ impl HeightField {
         }
     }
 
-    /// The landscape: two triangles between each four neighbouring pixels, with walls around them
+    /// Builds the terrain: two triangles between each four neighbouring pixels, walls around them
     /// and a floor below.
     ///
-    /// `heights` are rows from the top, `columns` wide; both sides must be at least 2. `None` where
-    /// coordinates leave the range of single precision.
+    /// `heights` are rows from the top, `columns` wide; both sides must be at least 2. `None` if
+    /// coordinates exceed the range of `f32`.
     pub fn terrain(&self, columns: usize, mut heights: Vec<f32>) -> Option<Terrain> {
         let rows = heights.len() / columns;
         let size = self.max - self.min;
@@ -59,32 +59,32 @@ impl HeightField {
     }
 }
 
-/// A place among so many, from 0 for the first to 1 for the last.
+/// Position of item `i` of `count`, from 0 for the first to 1 for the last.
 fn share(i: usize, count: usize) -> f32 {
     i as f32 / (count - 1) as f32
 }
 
-/// A landscape, walls down from its border, and a floor: a closed mesh whose triangles are not in
-/// memory.
+/// A terrain with walls down from its border and a floor: a closed mesh whose triangles are
+/// computed on demand.
 ///
-/// Its vertices are those of the landscape, one at the floor below each of the border's, and the
-/// middle of the floor. Its triangles are those of the landscape, then two of the walls for each
-/// step along the border, then one of the floor for each.
+/// Its vertices are those of the terrain, one at the floor below each border vertex, and the centre
+/// of the floor. Its triangles are those of the terrain, then two wall triangles for each step
+/// along the border, then one floor triangle for each.
 #[derive(Clone, Debug)]
 pub struct Terrain {
-    /// The landscape.
+    /// The terrain.
     grid: Arc<HeightGrid>,
-    /// The middle of the floor.
+    /// Centre of the floor.
     middle: Vec3,
 }
 
 impl Terrain {
-    /// The landscape without walls and floor.
+    /// The terrain without walls and floor.
     pub fn grid(&self) -> &HeightGrid {
         &self.grid
     }
 
-    /// A tree over its triangles.
+    /// Builds a BVH over the triangles.
     pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
         let others = self.grid.triangle_count()..self.len();
         let others: Vec<[Vec3; 3]> = others.map(|i| self.corners(i)).collect();
@@ -94,19 +94,19 @@ impl Terrain {
         }
     }
 
-    /// The box around it.
+    /// Bounds of terrain, walls and floor.
     pub fn bounds(&self) -> Aabb {
         let bounds = self.grid.bounds();
         Aabb { min: bounds.min.min(self.middle), ..bounds }
     }
 
-    /// By axis, whether something holds for all coordinates along it.
+    /// For each axis, true if `holds` is true for all coordinates along it.
     pub fn all_along(&self, holds: impl Fn(usize, f32) -> bool) -> [bool; 3] {
         let lists = [self.grid.xs(), self.grid.heights(), self.grid.zs()];
         [0, 1, 2].map(|axis| holds(axis, self.middle[axis]) && lists[axis].iter().all(|x| holds(axis, *x)))
     }
 
-    /// The same about another origin.
+    /// Returns the terrain translated by `-by`.
     pub fn moved(&self, by: Vec3) -> Self {
         Terrain { grid: Arc::new(self.grid.map(|axis, x| x - by[axis])), middle: self.middle - by }
     }
@@ -115,13 +115,13 @@ impl Terrain {
         [self.grid.xs().len(), self.grid.zs().len()]
     }
 
-    /// How many vertices the border has.
+    /// Number of vertices of the border.
     fn around(&self) -> usize {
         let [columns, rows] = self.sides();
         2 * (columns + rows) - 4
     }
 
-    /// The number of a vertex of the border, counted counter-clockwise as seen from above.
+    /// Index of the i-th border vertex, counter-clockwise seen from above.
     fn border(&self, i: usize) -> u32 {
         let [columns, rows] = self.sides();
         let [wide, deep] = [columns - 1, rows - 1];
@@ -134,7 +134,7 @@ impl Terrain {
         (row * columns + column) as u32
     }
 
-    /// The crossing that a vertex is, or that it lies below; `None` of the middle of the floor.
+    /// Index of the grid point at or above a vertex; `None` for the centre of the floor.
     fn crossing_at(&self, vertex: u32) -> Option<usize> {
         match (vertex as usize).checked_sub(self.grid.heights().len()) {
             None => Some(vertex as usize),
@@ -142,14 +142,15 @@ impl Terrain {
         }
     }
 
-    /// Its texture coordinates at a vertex: from 0 to 1 over the picture, of walls as above them.
+    /// Texture coordinates at a vertex: from 0 to 1 over the picture; walls continue those above
+    /// them.
     pub fn uv(&self, vertex: u32) -> Vec2 {
         let [columns, rows] = self.sides();
         let Some(vertex) = self.crossing_at(vertex) else { return Vec2::splat(0.5) };
         Vec2::new(share(vertex % columns, columns), 1.0 - share(vertex / columns, rows))
     }
 
-    /// The same in lists.
+    /// Returns the mesh as lists.
     pub fn to_data(&self) -> MeshData {
         let triangles: Vec<[u32; 3]> = (0..self.len()).map(|i| self.triangle(i)).collect();
         let vertices = 0..self.vertices() as u32;
@@ -162,7 +163,7 @@ impl Terrain {
         }
     }
 
-    /// The hash of all that it holds.
+    /// Hash of the whole terrain.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         for list in [self.grid.xs(), self.grid.zs(), self.grid.heights(), &self.middle.to_array()] {
@@ -186,7 +187,7 @@ impl Triangles for Terrain {
     fn triangle(&self, number: usize) -> [u32; 3] {
         let (crossings, around) = (self.grid.heights().len(), self.around());
         let Some(other) = number.checked_sub(self.grid.triangle_count()) else { return self.grid.triangle(number) };
-        // One step along the border, and the vertices below its ends.
+        // A step along the border, and the vertices below its ends.
         let step = if other < 2 * around { other / 2 } else { other - 2 * around };
         let ends = [step, (step + 1) % around];
         let ([p, q], [below_p, below_q]) = (ends.map(|i| self.border(i)), ends.map(|i| (crossings + i) as u32));
@@ -221,8 +222,8 @@ impl Triangles for Terrain {
     fn ordered_around(&self, vertex: u32, mut offer: impl FnMut(u32)) {
         let ([columns, rows], vertex) = (self.sides(), vertex as usize);
         let (column, row) = (vertex % columns, vertex / columns);
-        // By the cell, how far before the vertex it lies, and the corner that the vertex is of each
-        // of its triangles.
+        // For each cell at the vertex: its offset from the vertex, and the corner that the vertex
+        // is in each of its two triangles.
         for (across, down, corners) in
             [(1, 1, [Some(2), Some(1)]), (0, 1, [Some(1), None]), (1, 0, [None, Some(2)]), (0, 0, [Some(0); 2])]
         {

@@ -21,19 +21,19 @@ described! {
     }
 }
 
-/// A mesh ready to be hit: every triangle has its corners, and normals if it is smooth.
+/// A mesh ready for intersection: every triangle has its corners, and normals if it is smooth.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
     form: Form,
-    /// In place of those of the form.
+    /// Computed normals, which replace those of `form`.
     made: Option<Normals>,
     center: Vec3,
 }
 
-/// What triangles are taken from.
+/// Storage of the triangles.
 #[derive(Clone, Debug)]
 enum Form {
-    /// Shared with the description that it is of, unless that had to be changed.
+    /// Lists, shared with the scene description unless they were changed.
     Lists(Arc<MeshData>),
     Terrain(Terrain),
 }
@@ -45,22 +45,22 @@ impl Default for Form {
 }
 
 impl Mesh {
-    /// Takes a mesh file's data; normals are made by `rule` for triangles that bring none, or for
-    /// all unless `file_normals`.
+    /// Creates a mesh from a mesh file's data. `rule` computes normals for triangles without any,
+    /// or for all triangles unless `file_normals`.
     pub fn new(data: impl Into<Arc<MeshData>>, rule: MeshNormals, file_normals: bool) -> Self {
         let data = data.into();
         let made = made(&data, rule, file_normals);
         Mesh { form: Form::Lists(data), made, center: Vec3::ZERO }
     }
 
-    /// Takes a landscape, with normals made by `rule`.
+    /// Creates a mesh from a height field, with normals computed by `rule`.
     pub fn of_terrain(terrain: Terrain, rule: MeshNormals) -> Self {
         let made = of_terrain(&terrain, rule);
         Mesh { form: Form::Terrain(terrain), made, center: Vec3::ZERO }
     }
 
-    /// The same about the origin, along the axes where single precision holds that exactly, if it
-    /// lies [far](Aabb::is_far).
+    /// Moves a mesh that is [far](Aabb::is_far) from the origin to the origin, along those axes
+    /// where `f32` represents the result exactly.
     pub fn centered(mut self) -> Self {
         let bounds = match &self.form {
             Form::Lists(data) => Aabb::around(data.positions.iter().copied()),
@@ -84,12 +84,12 @@ impl Mesh {
         self
     }
 
-    /// Whether it has one normal a triangle.
+    /// Returns true if no triangle has vertex normals.
     pub fn is_flat(&self) -> bool {
         (0..self.len() as u32).all(|part| self.corner_normals(part).is_none())
     }
 
-    /// Normals of its corners, and three of them for each triangle; both may be empty.
+    /// Vertex normals, and three indices for each triangle; both may be empty.
     pub fn normals(&self) -> (&[Vec3], Cow<'_, [[u32; 3]]>) {
         match (&self.made, &self.form) {
             (Some(made), Form::Lists(data)) => (&made.values, made.listed(&**data)),
@@ -99,7 +99,7 @@ impl Mesh {
         }
     }
 
-    /// The same with normals that a rule makes, whatever normals it had.
+    /// Returns the mesh with normals computed by `rule`, whatever its normals are.
     pub fn with_normals(&self, rule: MeshNormals) -> Mesh {
         let mesh = match &self.form {
             Form::Lists(data) => Mesh::new(data.clone(), rule, false),
@@ -108,8 +108,8 @@ impl Mesh {
         Mesh { center: self.center, ..mesh }
     }
 
-    /// The same with the other half of every triangle's parallelogram, whose normals go on as those
-    /// of the triangle do.
+    /// Returns the mesh with the other half of every triangle's parallelogram added; the normals
+    /// are extrapolated.
     pub fn parallelograms(&self) -> Mesh {
         let mut data = self.to_data().into_owned();
         let (normals, triangle_normals) = self.normals();
@@ -130,7 +130,7 @@ impl Mesh {
         Mesh { form: Form::Lists(data.into()), made: None, center: self.center }
     }
 
-    /// The hash of all that it holds.
+    /// Hash of the whole mesh.
     pub fn digest(&self) -> Digest {
         let (normals, triangles) = self.normals();
         let (normals, triangles) = (normals.to_vec(), triangles.into_owned());
@@ -142,7 +142,7 @@ impl Mesh {
         Digest::of(format!("{of_form} {} {:?}", own.digest(), self.center).as_bytes())
     }
 
-    /// What it is made of, in lists; its normals may be [others](Mesh::normals).
+    /// The mesh as lists, whose normals may differ from [`Mesh::normals`].
     pub fn to_data(&self) -> Cow<'_, MeshData> {
         match &self.form {
             Form::Lists(data) => Cow::Borrowed(data),
@@ -150,7 +150,7 @@ impl Mesh {
         }
     }
 
-    /// A tree over its triangles.
+    /// Builds a BVH over the triangles.
     pub fn tree(&self, quality: BuildQuality) -> TriangleBvh {
         match &self.form {
             Form::Lists(data) => TriangleBvh::build(&data.positions, &data.triangles, quality),
@@ -158,19 +158,19 @@ impl Mesh {
         }
     }
 
-    /// The vertices' colours and opacity, by the number of the position; may be empty.
+    /// Linear colours and opacities by vertex; may be empty.
     pub fn colors(&self) -> &[[f32; 4]] {
         self.lists().map_or(&[], |data| &data.colors)
     }
 
-    /// The texture coordinates of all corners, if they are one.
+    /// The texture coordinates if they are equal at all corners.
     pub fn only_uv(&self) -> Option<Vec2> {
         let uvs = &self.lists()?.uvs;
         let first = *uvs.first()?;
         uvs.iter().all(|uv| (*uv - first).abs().max_element() < 1e-6).then_some(first)
     }
 
-    /// Whether it is a landscape.
+    /// Returns true if the mesh is a height field.
     pub fn is_terrain(&self) -> bool {
         matches!(self.form, Form::Terrain(_))
     }
@@ -182,12 +182,12 @@ impl Mesh {
         }
     }
 
-    /// How far it was moved by [`Mesh::centered`].
+    /// Point that [`Mesh::centered`] moved to the origin; zero if it did not.
     pub fn center(&self) -> Vec3 {
         self.center
     }
 
-    /// How many triangles it has.
+    /// Number of triangles.
     pub fn len(&self) -> usize {
         match &self.form {
             Form::Lists(data) => data.triangles.len(),
@@ -195,12 +195,12 @@ impl Mesh {
         }
     }
 
-    /// Whether it has no triangle.
+    /// Returns true if the mesh has no triangle.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Bytes that it takes in memory, its acceleration structure not counted.
+    /// Size in memory in bytes, without the acceleration structure.
     pub fn bytes(&self) -> usize {
         let made = self.made.as_ref();
         let own = match &self.form {
@@ -210,11 +210,10 @@ impl Mesh {
         own + made.map_or(0, Normals::bytes)
     }
 
-    /// Whether every edge borders on an even number of triangles, so that a line crosses the mesh
-    /// an even number of times; else the ends of one that does not. Corners at the same place
-    /// are one.
+    /// An edge with an odd number of adjacent triangles; `None` if there is none, so that a line
+    /// crosses the mesh an even number of times. Corners at equal positions are identified.
     pub fn open_edge(&self) -> Option<[Vec3; 2]> {
-        // A landscape with walls and floor is closed.
+        // A height field with walls and floor is closed.
         self.lists()?;
         let mut edges: Vec<([[u32; 3]; 2], [Vec3; 2])> = Vec::with_capacity(3 * self.len());
         for part in 0..self.len() as u32 {
@@ -239,14 +238,14 @@ impl Mesh {
         }
     }
 
-    /// The mean of the normals at a triangle's corners at a crossing, of the length that mixing
-    /// gives it; `None` on what is flat.
+    /// Interpolated normal of a triangle at a crossing, not normalized; `None` if the triangle is
+    /// flat.
     pub fn mixed_normal(&self, part: u32, uv: Vec2) -> Option<Vec3> {
         let [a, b, c] = self.corner_normals(part)?.map(Vec3::normalize_or_zero);
         Some((1.0 - uv.x - uv.y) * a + uv.x * b + uv.y * c)
     }
 
-    /// Whether triangles may have normals at their corners.
+    /// Returns true if triangles may have vertex normals.
     pub fn has_normals(&self) -> bool {
         self.made.is_some() || self.lists().is_some_and(|data| !data.normals.is_empty())
     }
@@ -262,7 +261,7 @@ impl Mesh {
         }
     }
 
-    /// The texture coordinates of a triangle's corners, if it has any.
+    /// The texture coordinates at a triangle's corners, if it has any.
     #[inline]
     fn corner_uvs(&self, part: u32) -> Option<[Vec2; 3]> {
         match &self.form {
@@ -271,7 +270,7 @@ impl Mesh {
         }
     }
 
-    /// The vertices' colours and opacity, mixed at a point of a triangle.
+    /// Interpolated vertex colour and opacity at a point of a triangle.
     fn color(&self, part: u32, barycentric: Vec3) -> Option<[f32; 4]> {
         let data = self.lists()?;
         let [a, b, c] = attribute(&data.triangles, &data.colors, part)?;
@@ -279,15 +278,15 @@ impl Mesh {
         Some(std::array::from_fn(|i| x * a[i] + y * b[i] + z * c[i]))
     }
 
-    /// The second texture coordinates at a point of a triangle.
+    /// Interpolated second texture coordinates at a point of a triangle.
     pub fn second_uv(&self, part: u32, barycentric: Vec3) -> Option<Vec2> {
         let data = self.lists()?;
         let [a, b, c] = attribute(&data.triangles, &data.second_uvs, part)?;
         Some(barycentric.x * a + barycentric.y * b + barycentric.z * c)
     }
 
-    /// The directions in which u and v grow at a point of a triangle: those of the file, or those
-    /// of the triangle.
+    /// Directions in which u and v grow at a point of a triangle: from the file's tangents, else
+    /// from the triangle's texture coordinates.
     pub fn tangents(&self, part: u32, barycentric: Vec3, normal: Vec3, second: bool) -> Option<[Vec3; 2]> {
         let tangents = self.lists().and_then(|data| attribute(&data.triangles, &data.tangents, part));
         if let Some(corners) = tangents.filter(|_| !second) {
@@ -300,7 +299,7 @@ impl Mesh {
         self.derivatives(part, second)
     }
 
-    /// How a point of a triangle moves as its texture coordinates grow by 1.
+    /// Partial derivatives of the position by u and v on a triangle.
     pub fn derivatives(&self, part: u32, second: bool) -> Option<[Vec3; 2]> {
         let [a, b, c] = match second {
             true => self.lists().and_then(|data| attribute(&data.triangles, &data.second_uvs, part))?,
@@ -314,10 +313,10 @@ impl Mesh {
         (u.is_finite() && v.is_finite() && u != Vec3::ZERO && v != Vec3::ZERO).then_some([u, v])
     }
 
-    /// The surface of a triangle at a crossing.
+    /// Surface of a triangle at a crossing.
     #[inline]
     pub fn surface(&self, part: u32, crossing: &ShapeHit) -> Surface {
-        // All that lies far away in memory is asked for before anything waits for it.
+        // Load everything that may miss the cache before any computation waits for it.
         let (corners, normals) = (self.corners(part), self.corner_normals(part));
         let uvs = self.corner_uvs(part);
         let mut surface = triangle_surface(corners, normals, crossing.uv);
@@ -328,7 +327,7 @@ impl Mesh {
     }
 }
 
-/// An attribute's values at the corners of a triangle, if it has them all.
+/// Values of an attribute at the corners of a triangle, if it has all of them.
 fn attribute<T: Copy>(indices: &[[u32; 3]], values: &[T], part: u32) -> Option<[T; 3]> {
     let [a, b, c] = *indices.get(part as usize)?;
     Some([*values.get(a as usize)?, *values.get(b as usize)?, *values.get(c as usize)?])

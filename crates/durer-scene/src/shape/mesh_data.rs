@@ -1,80 +1,79 @@
-//! What a mesh file holds.
+//! Mesh data as read from a file.
 
 use crate::math::{Vec2, Vec3};
 use crate::source::Digest;
 
-/// An index that is not given.
+/// Index of a missing attribute.
 pub const NO_INDEX: u32 = u32::MAX;
 
-/// What corners at the same place have in common: zeroes of either sign are alike.
+/// Key of a position: equal for corners at the same position, and for zeros of either sign.
 pub fn place_key(p: Vec3) -> [u32; 3] {
     (p + 0.0).to_array().map(f32::to_bits)
 }
 
-/// What a mesh file holds: plain data, as written, n-gons cut into triangles.
+/// Mesh data as written in a file, with polygons cut into triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MeshData {
-    /// Corners' positions.
+    /// Positions of the vertices.
     pub positions: Vec<Vec3>,
     /// Texture coordinates; may be empty.
     pub uvs: Vec<Vec2>,
-    /// Normals, not necessarily of length 1; may be empty.
+    /// Normals, not necessarily of unit length; may be empty.
     pub normals: Vec<Vec3>,
-    /// Three positions a triangle, counter-clockwise seen from outside.
+    /// Three position indices for each triangle, counter-clockwise seen from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Three texture coordinates a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    /// Three texture coordinate indices for each triangle, or [`NO_INDEX`]; empty if no triangle
+    /// has any.
     pub triangle_uvs: Vec<[u32; 3]>,
-    /// Three normals a triangle, or [`NO_INDEX`]; empty where no triangle has any.
+    /// Three normal indices for each triangle, or [`NO_INDEX`]; empty if no triangle has any.
     pub triangle_normals: Vec<[u32; 3]>,
-    /// Three vertices a triangle, where [`MeshData::loosen`] took the corners apart; else empty.
+    /// Three original vertices for each triangle after [`MeshData::loosen`]; else empty.
     pub vertices: Vec<[u32; 3]>,
-    /// Linear red, green, blue and opacity, by the number of the position; empty where no vertex
-    /// has a colour.
+    /// Linear red, green, blue and opacity by position index; empty if no vertex has a colour.
     pub colors: Vec<[f32; 4]>,
-    /// A second set of texture coordinates, by the number of the position; may be empty.
+    /// Second texture coordinates by position index; may be empty.
     pub second_uvs: Vec<Vec2>,
-    /// By the number of the position, the direction in which u grows, and 1 or -1 for the side,
-    /// seen along the normal's cross product with it, to which v grows; may be empty.
+    /// Tangents by position index: the direction in which u grows, and the sign of the bitangent
+    /// relative to the cross product of normal and tangent; may be empty.
     pub tangents: Vec<[f32; 4]>,
-    /// Whether triangles without normals are flat, whatever the rule is that makes normals
-    /// elsewhere.
+    /// True if triangles without normals are flat, whatever the rule for missing normals.
     pub flat: bool,
 }
 
-/// Triangles by number, however they are kept.
+/// Indexed triangles, independent of their storage.
 pub trait Triangles: Sync {
-    /// How many triangles there are.
+    /// Number of triangles.
     fn len(&self) -> usize;
 
-    /// Whether there are none.
+    /// Returns true if the list is empty.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many vertices there are.
+    /// Number of vertices.
     fn vertices(&self) -> usize;
 
-    /// The vertices at the corners of a triangle, counter-clockwise seen from outside.
+    /// Vertices at the corners of a triangle, counter-clockwise seen from outside.
     fn triangle(&self, number: usize) -> [u32; 3];
 
-    /// Where a vertex is.
+    /// Position of a vertex.
     fn position(&self, vertex: u32) -> Vec3;
 
-    /// Where the corners of a triangle are.
+    /// Positions of the corners of a triangle.
     #[inline]
     fn corners(&self, number: usize) -> [Vec3; 3] {
-        // Not by `map`, which is called like any function.
+        // The closure of `map` would not be inlined here.
         let [a, b, c] = self.triangle(number);
         [self.position(a), self.position(b), self.position(c)]
     }
 
-    /// How many of the first triangles are found around a vertex without lists.
+    /// Number of leading triangles that [`Triangles::ordered_around`] finds without lists.
     fn ordered(&self) -> usize {
         0
     }
 
-    /// Offers the corners of those triangles at a vertex, in their order: corner k of triangle i
-    /// as 3 i + k.
+    /// Offers the corners of those triangles at a vertex in order: corner k of triangle i as 3 i +
+    /// k.
     fn ordered_around(&self, _vertex: u32, _offer: impl FnMut(u32)) {}
 }
 
@@ -101,8 +100,8 @@ impl Triangles for MeshData {
 }
 
 impl MeshData {
-    /// Winds each triangle to face the side of its normals. With `reversed` the normals are
-    /// negated first, and triangles without normals change their side. Marks the mesh flat.
+    /// Winds each triangle to face the side of its normals. With `reversed` the normals are negated
+    /// first, and triangles without normals are flipped. Marks the mesh flat.
     pub fn oriented(mut self, reversed: bool) -> MeshData {
         if reversed {
             self.normals.iter_mut().for_each(|n| *n = -*n);
@@ -126,12 +125,12 @@ impl MeshData {
         self
     }
 
-    /// Checks lists against each other.
+    /// Checks the lists against each other.
     ///
     /// # Errors
     ///
-    /// A sentence, if an index has nothing that it stands for, a position is not finite, or lists
-    /// that go by triangle or by position differ in length.
+    /// A sentence, if an index is out of range, a position is not finite, or the lengths of lists
+    /// by triangle or by position differ.
     pub fn validate(&self) -> Result<(), String> {
         let below = |triangles: &[[u32; 3]], count: usize| {
             triangles.iter().flatten().all(|&i| (i as usize) < count || i == NO_INDEX)
@@ -164,7 +163,7 @@ impl MeshData {
         }
     }
 
-    /// Bytes that it takes in memory.
+    /// Size in memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.positions)
             + size_of_val(&*self.uvs)
@@ -178,7 +177,7 @@ impl MeshData {
             + size_of_val(&*self.tangents)
     }
 
-    /// The hash of all that it holds.
+    /// Hash of the whole mesh.
     pub fn digest(&self) -> Digest {
         let mut hasher = Digest::hasher();
         let floats: [(usize, &mut dyn Iterator<Item = f32>); 6] = [
@@ -201,8 +200,8 @@ impl MeshData {
         hasher.finish()
     }
 
-    /// Gives every corner the normal of its position's number; false where there are fewer normals
-    /// than positions.
+    /// Gives every corner the normal of its position index; returns false if there are fewer
+    /// normals than positions.
     pub fn give_normals_by_vertex(&mut self) -> bool {
         let enough = self.normals.len() >= self.positions.len();
         if enough {
@@ -211,7 +210,7 @@ impl MeshData {
         enough
     }
 
-    /// Gives every triangle corners of its own, moved out a little; see [`loosened`].
+    /// Separates all triangles and enlarges each of them slightly; see [`loosened`].
     pub fn loosen(&mut self) {
         let corners = |t: &[u32; 3]| loosened(t.map(|i| self.positions[i as usize]));
         self.positions = self.triangles.iter().flat_map(corners).collect();
@@ -229,7 +228,7 @@ impl MeshData {
 }
 
 /// The triangle of all points whose barycentric coordinates in a triangle are at least -0.00001:
-/// the same, enlarged about its centroid by thrice that.
+/// the triangle enlarged about its centroid by three times that.
 pub fn loosened([a, b, c]: [Vec3; 3]) -> [Vec3; 3] {
     const SLACK: f64 = 1e-5;
     let corners = [a.as_dvec3(), b.as_dvec3(), c.as_dvec3()];

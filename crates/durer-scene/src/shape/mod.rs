@@ -50,7 +50,7 @@ pub use voxels::VoxelGrid;
 
 macro_rules! delegate {
     ($($variant:ident),+) => {
-        // A method left out here would have its default for every shape.
+        // A method omitted here would silently use its default for every shape.
         #[deny(clippy::missing_trait_methods)]
         impl Shape for Primitive {
             fn bounds(&self) -> Option<Aabb> {
@@ -129,38 +129,37 @@ described_list! {
     }
 }
 
-/// Edit of a scene file that makes the back of a surface its front.
+/// Edit of a scene file that swaps the front and the back of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flip {
-    /// Exchange any two of its corners: these two, say.
+    /// Swap any two of its corners, such as these.
     Corners([&'static str; 2]),
-    /// Exchange its two edges.
+    /// Swap its two edges.
     Edges([&'static str; 2]),
-    /// Change the sign of these fields, of which the first is the normal.
+    /// Negate these fields, of which the first is the normal.
     Negate(&'static [&'static str]),
 }
 
-/// Where a ray meets a shape.
+/// Hit of a ray with a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ShapeHit {
-    /// Position along the ray.
+    /// Ray parameter.
     pub t: f32,
-    /// Coordinates on the shape, from which [`Shape::surface`] knows the place: the second and
-    /// third barycentric coordinate on triangles; on shapes of several faces the number of the
-    /// face, first.
+    /// Coordinates that [`Shape::surface`] needs: on triangles the second and third barycentric
+    /// coordinate; on shapes with several faces, x is the number of the face.
     pub uv: Vec2,
 }
 
-/// What a shape is like at a crossing, in object space.
+/// Surface of a shape at a crossing, in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Surface {
     /// The point, rounded to single precision.
     pub position: Vec3,
-    /// What rounding left of the point: see [`Surface::point`].
+    /// Rounding error of `position`: see [`Surface::point`].
     pub rest: Vec3,
     /// Bound on the absolute error of the point, by axis.
     pub error: Vec3,
-    /// Bound on the curvature, in object space: one over the least radius. Zero on what is flat.
+    /// Bound on the curvature in object space: 1 / the least radius. Zero if flat.
     pub curvature: f32,
     /// Unit normal of the true surface.
     pub n_geo: Vec3,
@@ -168,22 +167,21 @@ pub struct Surface {
     pub n_shade: Vec3,
     /// Texture coordinates.
     pub uv: Uv,
-    /// Barycentric coordinates; of use on triangles.
+    /// Barycentric coordinates; for triangles only.
     pub barycentric: Vec3,
-    /// From the point to the bent surface that a flat triangle stands for: where it is seen from
-    /// the side of `n_shade`, and from the other. Zero on what is as it looks. A shadow ray
-    /// starts there; after Hanika, *Hacking the Shadow Terminator*.
+    /// Offsets from the point to the curved surface that a flat triangle approximates, for the side
+    /// of `n_shade` and for the other side. Zero on other shapes. Shadow rays start there; after
+    /// Hanika, *Hacking the Shadow Terminator*.
     pub shadow_offsets: [Vec3; 2],
-    /// Linear red, green, blue and opacity that the vertices of a mesh bring; all 1 where they
-    /// bring none.
+    /// Linear red, green, blue and opacity of the mesh's vertices; all 1 without vertex colours.
     pub color: [f32; 4],
-    /// The number of the solid that it bounds, if that has several parts: what leaves it knows on
-    /// which side of it it starts.
+    /// Number of the solid whose boundary this is, if that has several parts; a ray that leaves it
+    /// uses the number to determine the side where it starts.
     pub solid: Option<u32>,
 }
 
 impl Surface {
-    /// Nothing yet: zeros, which are written fastest.
+    /// Placeholder of zeros, which are the fastest to write.
     pub const NOWHERE: Surface = Surface {
         position: Vec3::ZERO,
         rest: Vec3::ZERO,
@@ -198,8 +196,8 @@ impl Surface {
         solid: None,
     };
 
-    /// The surface at a point that is placed on it in double precision, so that it is known to its
-    /// rounding and to `floor`; flat unless a curvature is set.
+    /// Creates the surface at a point that was projected onto it in double precision. Its error is
+    /// its rounding plus `floor`; it is flat unless a curvature is set.
     pub fn new(point: DVec3, normal: DVec3, floor: f32, uv: impl Into<Uv>) -> Self {
         let position = point.as_vec3();
         let n = normal.normalize_or(DVec3::Y).as_vec3();
@@ -219,14 +217,13 @@ impl Surface {
         }
     }
 
-    /// A flat surface at a point of space, known to a few roundings.
+    /// Flat surface at a point in space, accurate to a few roundings.
     pub fn around(point: DVec3, normal: Vec3) -> Self {
         let floor = gamma(4) * point.abs().max_element() as f32;
         Surface::new(point, normal.as_dvec3(), floor.max(f32::MIN_POSITIVE), Vec2::ZERO)
     }
 
-    /// The point as it is known. Far from the origin of coordinates that is finer than single
-    /// precision.
+    /// The point in full precision, which is higher than `f32` far from the origin.
     #[inline]
     pub fn point(&self) -> DVec3 {
         self.position.as_dvec3() + self.rest.as_dvec3()
@@ -236,37 +233,37 @@ impl Surface {
         Surface { curvature: curvature as f32, ..self }
     }
 
-    /// How far the surface may fall away from its tangent plane within an error of the point.
+    /// Bound on the distance of the surface from its tangent plane within an error of the point.
     #[inline]
     pub fn bulge(&self, error: Vec3) -> Vec3 {
         0.5 * self.curvature * error.length_squared() * self.n_geo.abs()
     }
 }
 
-/// The points of a shape keep off its edges by so many errors of theirs, so that secondary rays
-/// start in front of the neighbouring face too: of faces that meet at more than some 10 degrees,
-/// for the start moves by two errors along the normal.
+/// Distance in errors that points keep from the edges of a shape, so that secondary rays start in
+/// front of the neighbouring face too. This holds for faces that meet at more than about 10
+/// degrees, since the start moves by two errors along the normal.
 const INSET: f32 = 16.0;
 
-/// A coordinate on a face from 0 to `end`, [`INSET`] errors off both ends.
+/// Clamps a coordinate on a face from 0 to `end` to [`INSET`] errors off both ends.
 fn inset(x: f64, end: f64, error: f32) -> f64 {
     let margin = f64::from(INSET * error).min(0.25 * end);
     x.clamp(margin, end - margin)
 }
 
-/// Points as seen from a center, where single precision holds that exactly.
+/// Points relative to a centre, if `f32` represents them exactly.
 fn exactly<const N: usize>(points: [Vec3; N], center: Vec3) -> Option<[Vec3; N]> {
     let exact = |p: &Vec3| (*p - center).as_dvec3() == p.as_dvec3() - center.as_dvec3();
     points.iter().all(exact).then(|| points.map(|p| p - center))
 }
 
-/// What every shape can do. A method has a default only if the default is right for every shape,
-/// and another body merely faster.
+/// Operations of every shape. A method has a default only if the default is correct for every
+/// shape, and overrides are merely faster.
 pub trait Shape {
-    /// Bounds in object space; `None` for a shape without end.
+    /// Bounds in object space; `None` for an infinite shape.
     fn bounds(&self) -> Option<Aabb>;
 
-    /// Whether some of it may lie in a box that overlaps its bounds.
+    /// Returns true if the shape may intersect a box that overlaps its bounds.
     fn overlaps(&self, _cell: &Aabb) -> bool {
         true
     }
@@ -274,11 +271,11 @@ pub trait Shape {
     /// Offers every crossing of a line with the surface, as `t` and coordinates on the shape, in
     /// any order.
     ///
-    /// A closed shape is crossed where the line goes in or out, and nowhere else: a line that
-    /// touches it does not count, so that crossings along the line alternate between the two.
+    /// A closed shape is crossed only where the line enters or leaves. A line that touches it does
+    /// not count, so that entries and exits alternate along the line.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2));
 
-    /// The crossing of least `t` inside the ray's open interval.
+    /// Crossing with the least `t` inside the ray's open interval.
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let line = ray.line();
         let mut first: Option<ShapeHit> = None;
@@ -293,79 +290,78 @@ pub trait Shape {
         first
     }
 
-    /// Axis of a solid of revolution, to be computed once for many rays: see
-    /// [`Shape::crossings_about`].
+    /// Axis of a solid of revolution, computed once for many rays: see [`Shape::crossings_about`].
     fn axis(&self) -> Option<Axis> {
         None
     }
 
-    /// [`Shape::crossings`], given what [`Shape::axis`] returned.
+    /// Offers crossings as [`Shape::crossings`] does, given the result of [`Shape::axis`].
     #[inline(always)]
     fn crossings_about(&self, _axis: Option<&Axis>, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         self.crossings(line, offer);
     }
 
-    /// The surface at a crossing, next to a point that is on it but for rounding.
+    /// Surface at a crossing; `point` is on it up to rounding.
     fn surface(&self, point: DVec3, crossing: &ShapeHit) -> Surface;
 
-    /// Whether a point is inside; `None` for shapes that are surfaces only.
+    /// Returns true if a point is inside; `None` for shapes that are surfaces only.
     fn inside(&self, point: DVec3) -> Option<bool>;
 
-    /// Whether a line comes from inside the shape; `false` for every shape with bounds.
+    /// Returns true if a line is inside the shape at t = -infinity; `false` for every bounded
+    /// shape.
     fn starts_inside(&self, line: &Line) -> bool;
 
-    /// The shape near the origin of coordinates, and how far it was moved; `None` if it has no
-    /// position, or single precision does not hold the result exactly.
+    /// The shape translated to the origin, and the translation; `None` if it has no position, or
+    /// `f32` does not represent the result exactly.
     fn centered(&self) -> Option<(Self, Vec3)>
     where
         Self: Sized;
 
-    /// Checks its fields together. Each by itself has its rule in the statement.
+    /// Checks the fields together. The statement has the constraint of each field.
     ///
     /// # Errors
     ///
     /// A sentence that names the fields.
     fn validate(&self) -> Result<(), String>;
 
-    /// Edit that turns a flat shape round; `None` for shapes that are not flat.
+    /// Edit that flips a flat shape; `None` for shapes that are not flat.
     fn flip(&self) -> Option<Flip>;
 
-    /// The shape itself, if it is a plane without end, with all else on one side or the other.
+    /// The shape itself if it is an infinite plane, which divides space into two half spaces.
     fn plane(&self) -> Option<&Plane>;
 
-    /// Its flat convex faces, each by its corners in order, in object space. Empty for shapes that
-    /// have a curved face or edge, or no end.
+    /// Flat convex faces, each by its corners in order, in object space. Empty for shapes that are
+    /// infinite or have a curved face or edge.
     fn polygons(&self) -> Vec<Vec<Vec3>>;
 
-    /// Surface to sample as a light, in world space, and its outward unit normal there; the normal is
-    /// zero where it varies. `None`: its light is found by rays that hit it alone, which is noisy.
+    /// Surface to sample as a light, in world space, and its outward unit normal; the normal is
+    /// zero if it varies. `None`: only rays that hit the shape find its light, which is noisy.
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)>;
 
-    /// Direction of the texture coordinate u at a point, in object space, of any length. Highlights
-    /// are brushed along it. `None`: horizontally across the normal.
+    /// Direction of the texture coordinate u at a point, in object space, of any length; the
+    /// direction of anisotropic highlights. `None`: horizontal and perpendicular to the normal.
     fn tangent(&self, point: Vec3) -> Option<Vec3>;
 
-    /// Triangles that approximate it, in object space. `None` for a shape without end.
+    /// Triangles that approximate the shape, in object space. `None` for an infinite shape.
     fn to_mesh(&self) -> Option<MeshData>;
 
-    /// Lines that show it in a drawing, each a row of points, in object space. A shape without end
-    /// draws its part near `around`. `None`: the box of its bounds is drawn.
+    /// Polylines that depict the shape in a drawing, in object space. An infinite shape draws its
+    /// part near `around`. `None`: draw the box of its bounds.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>>;
 }
 
-/// Where a direction points around an axis, from 0 to 1: the angle of (x, y) in turns, counted from
-/// -x.
+/// Fraction of a turn of the angle of (x, y) about an axis, in [0, 1], measured from -x.
 fn turn(x: f64, y: f64) -> f32 {
     (fp::atan2(y as f32, x as f32) / std::f32::consts::TAU + 0.5).clamp(0.0, 1.0)
 }
 
-/// A box from points in double precision, enlarged by their rounding.
+/// Box of points in double precision, enlarged by their rounding to `f32`.
 fn padded(min: DVec3, max: DVec3) -> Aabb {
     let pad = gamma(6) * min.abs().max(max.abs()).max_element() as f32;
     Aabb { min: min.as_vec3() - pad, max: max.as_vec3() + pad }
 }
 
-/// Half the size of the box around a disc of radius 1.
+/// Half the size of the bounds of a unit disc.
 fn disc_reach(normal: DVec3) -> DVec3 {
     (DVec3::ONE - normal * normal).max(DVec3::ZERO).map(f64::sqrt)
 }

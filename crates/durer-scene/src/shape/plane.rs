@@ -1,4 +1,4 @@
-//! The plane normal · p = offset, without end.
+//! The infinite plane normal · p = offset.
 
 use super::{Flip, MeshData, Shape, ShapeHit, Surface, Uv};
 use crate::describe::{Rule, described};
@@ -26,7 +26,7 @@ impl Shape for Plane {
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
         let n = self.normal.as_dvec3();
         let slope = n.dot(ray.dir.as_dvec3());
-        // A parallel ray divides by zero, and an infinite one by infinity: neither hits.
+        // A parallel ray divides by zero, an infinite one by infinity: neither hits.
         let t = ((f64::from(self.offset) - n.dot(ray.origin.as_dvec3())) / slope) as f32;
         (slope.is_finite() && t.is_finite() && ray.contains(t)).then_some(ShapeHit { t, uv: Vec2::ZERO })
     }
@@ -52,7 +52,7 @@ impl Shape for Plane {
     #[inline(always)]
     fn surface(&self, p: DVec3, _crossing: &ShapeHit) -> Surface {
         let n = self.normal.as_dvec3();
-        // Placed back onto the plane: what is left is the rounding of the coordinates.
+        // Projected back onto the plane: the error is the rounding of the coordinates.
         let on = p - n * ((n.dot(p) - f64::from(self.offset)) / n.dot(n));
         let position = on.as_vec3();
         let normal = n.normalize_or(DVec3::Y).as_vec3();
@@ -103,7 +103,7 @@ impl Shape for Plane {
         None
     }
 
-    /// A grid around the foot of the perpendicular from the middle of `around`.
+    /// A grid around the projection of the centre of `around` onto the plane.
     fn outline(&self, around: &Aabb) -> Option<Vec<Vec<Vec3>>> {
         let n = self.normal.normalize_or(Vec3::Y);
         let (u, v) = n.any_orthonormal_pair();

@@ -1,4 +1,4 @@
-//! The general quadric: where a polynomial of degree two in x, y and z is zero.
+//! The general quadric: the zeros of a polynomial of degree two in x, y and z.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, turn};
 use crate::describe::{Rule, described};
@@ -37,8 +37,8 @@ impl Quadric {
         2.0 * (self.matrix() * p) + self.linear.as_dvec3()
     }
 
-    /// Its polynomial a t^2 + 2 b t + c along a line, from the place nearest to the origin on, and
-    /// the `t` of that.
+    /// The polynomial a t^2 + 2 b t + c along a line, measured from its point nearest to the
+    /// origin, and the `t` of that point.
     fn along(&self, line: &Line) -> (f64, [f64; 3]) {
         let shift = line.nearest(DVec3::ZERO);
         let (o, d) = (line.at(shift), line.dir);
@@ -47,7 +47,7 @@ impl Quadric {
 }
 
 impl Shape for Quadric {
-    /// Only an ellipsoid has bounds: where M is positive definite, |p_i - center_i|^2 <= -q(center)
+    /// Only an ellipsoid has bounds: if M is positive definite, |p_i - center_i|^2 <= -q(center)
     /// (M^-1)_ii.
     fn bounds(&self) -> Option<Aabb> {
         let m = self.matrix();
@@ -75,7 +75,7 @@ impl Shape for Quadric {
     }
 
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
-        // Newton's steps along the gradient lead back onto the surface.
+        // Newton steps along the gradient lead back onto the surface.
         let mut p = point;
         let mut gradient = self.gradient(p);
         for _ in 0..3 {
@@ -88,9 +88,10 @@ impl Shape for Quadric {
         let steepness = gradient.length();
         let bend = 2.0 * self.matrix().to_cols_array().iter().fold(0.0, |sum: f64, x| sum + x.abs());
         let size = p.abs().max_element();
-        // Where all terms cancel, as at the tip of a cone, there is no normal, and any curvature.
+        // Where all terms cancel, as at the tip of a cone, the normal is undefined and the
+        // curvature unbounded.
         let curvature = (bend / steepness.max(1e-6 * bend * size)).min(1e30);
-        // Texture coordinates: longitude and latitude as seen from the origin.
+        // Texture coordinates: longitude and latitude seen from the origin.
         let seen = p.normalize_or(DVec3::Z);
         let v = fp::asin((seen.y as f32).clamp(-1.0, 1.0)) / std::f32::consts::PI + 0.5;
         let floor = gamma(2) * size as f32;

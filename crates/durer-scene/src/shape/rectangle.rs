@@ -1,4 +1,4 @@
-//! The rectangle, or any parallelogram.
+//! The rectangle or parallelogram.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, inset, padded, tessellate};
 use crate::describe::{Rule, described};
@@ -25,22 +25,22 @@ impl Rectangle {
         [self.edge0.as_dvec3(), self.edge1.as_dvec3()]
     }
 
-    /// Where a line meets the plane; infinite or no number where it is parallel.
+    /// Ray parameter of the plane; infinite or NaN for a parallel line.
     fn plane_at(&self, line: &Line) -> f64 {
         let [e, f] = self.edges();
         let n = e.cross(f);
         n.dot(self.corner.as_dvec3() - line.origin) / n.dot(line.dir)
     }
 
-    /// The place of a point of the plane, if it is on the rectangle. The shares of what is no point
-    /// are no numbers.
+    /// Edge coordinates of a point of the plane if it is on the rectangle. NaN coordinates fail the
+    /// test.
     fn place(&self, point: DVec3) -> Option<Vec2> {
         let [u, v] = self.shares(point);
         let inside = (0.0..=1.0).contains(&u) && (0.0..=1.0).contains(&v);
         inside.then(|| Vec2::new(u as f32, v as f32))
     }
 
-    /// The shares of both edges that lead to a point of the plane: Cramer's rule.
+    /// Coordinates of a point of the plane along both edges, by Cramer's rule.
     fn shares(&self, point: DVec3) -> [f64; 2] {
         let [e, f] = self.edges();
         let (n, q) = (e.cross(f), point - self.corner.as_dvec3());
@@ -63,7 +63,8 @@ impl Shape for Rectangle {
     }
 
     fn intersect(&self, ray: &Ray) -> Option<ShapeHit> {
-        // Most rays do not meet the plane in their interval: where in it is asked of few.
+        // Most rays miss the plane in their interval, so compute the edge coordinates only for the
+        // rest.
         let line = ray.line();
         let t = self.plane_at(&line);
         let hit = ray.contains(t as f32) && line.is_sound();

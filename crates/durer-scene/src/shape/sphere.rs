@@ -20,8 +20,8 @@ described! {
 impl Sphere {
     /// Solves |origin + t dir - center|^2 = radius^2 in double precision.
     ///
-    /// The discriminant is taken from the point of the ray nearest to the centre, which keeps
-    /// small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
+    /// The discriminant is computed from the point of the ray nearest to the centre, which keeps it
+    /// exact for small, far spheres. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
     /// (2019), chapter 7.
     fn roots(&self, line: &Line) -> Option<[f64; 2]> {
         let o = line.origin - self.center.as_dvec3();
@@ -35,7 +35,7 @@ impl Sphere {
         if discriminant.is_nan() || discriminant < 0.0 {
             return None;
         }
-        // q has the sign of b, so that neither root loses digits to cancellation.
+        // q has the sign of b, so that neither root suffers from cancellation.
         let c = o.dot(o) - r * r;
         let q = b + (dd * discriminant).sqrt().copysign(b);
         let (t0, t1) = if q == 0.0 { (0.0, 0.0) } else { (c / q, q / dd) };
@@ -49,8 +49,8 @@ impl Shape for Sphere {
         Some(Aabb { min: self.center - self.radius - pad, max: self.center + self.radius + pad })
     }
 
-    /// Whether the sphere around the box meets this one: the course's test, which also takes some
-    /// boxes that it misses.
+    /// Returns true if the box's bounding sphere intersects this sphere: the course's test, which
+    /// has false positives.
     fn overlaps(&self, cell: &Aabb) -> bool {
         let reach = self.radius + 0.5 * cell.size().length();
         (cell.center() - self.center).length() <= reach * (1.0 + gamma(8))
@@ -81,7 +81,7 @@ impl Shape for Sphere {
     fn surface(&self, point: DVec3, _crossing: &ShapeHit) -> Surface {
         let offset = point - self.center.as_dvec3();
         let normal = offset.normalize_or(DVec3::Z).as_vec3();
-        // Placed back onto the sphere, the point is as exact as its coordinates can be.
+        // Project the point back onto the sphere, which makes it as exact as its coordinates.
         let position = self.center + self.radius * normal;
         let error = gamma(3) * (self.center.abs() + self.radius * normal.abs());
         Surface {
@@ -122,7 +122,7 @@ impl Shape for Sphere {
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let axes = [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| place.vector(self.radius * axis));
         let radius = axes[0].length();
-        // A transform may leave an ellipsoid, which cannot be sampled.
+        // A transform may make it an ellipsoid, which cannot be sampled.
         let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
             && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
                 < 1e-5 * radius * radius;
@@ -138,7 +138,7 @@ impl Shape for Sphere {
     }
 
     fn outline(&self, _: &Aabb) -> Option<Vec<Vec<Vec3>>> {
-        /// Points of a circle.
+        /// Number of segments of a circle.
         const STEPS: u32 = 32;
         let circle = |u: Vec3, v: Vec3| {
             let point = |i: u32| {

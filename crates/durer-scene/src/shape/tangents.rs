@@ -1,10 +1,9 @@
-//! Tangents of vertices for pictures of normals: what MikkTSpace makes, for pictures are baked for
-//! it.
+//! Vertex tangents for normal maps, compatible with MikkTSpace, which normal maps are baked for.
 //!
 //! Source: Morten Mikkelsen, *Simulation of Wrinkled Surfaces Revisited*, University of Copenhagen,
-//! 2008, and his program. Corners of triangles that agree in position, normal and coordinates, that
-//! are connected by edges, and whose coordinates run the same way round, share one tangent: the
-//! mean of the triangles', by their angles.
+//! 2008, and his program. Triangle corners share one tangent if they agree in position, normal and
+//! texture coordinates, are connected by edges, and have texture coordinates of the same
+//! orientation. It is the mean of the triangles' tangents, weighted by their angles.
 
 use super::MeshData;
 use super::mesh::NO_INDEX;
@@ -13,9 +12,9 @@ use rayon::prelude::*;
 use std::collections::HashMap;
 
 impl MeshData {
-    /// Gives vertices with normals and texture coordinates their tangents. A vertex whose corners
-    /// differ becomes several: returns which vertices those at the end are copies of. Does
-    /// nothing where a corner lacks either.
+    /// Computes tangents for vertices with normals and texture coordinates. A vertex whose corners
+    /// have different tangents is split: returns the originals of the vertices appended at the end.
+    /// Does nothing if a corner lacks either attribute.
     pub fn make_tangents(&mut self) -> Vec<u32> {
         let complete = |list: &[[u32; 3]]| {
             list.len() == self.triangles.len() && list.iter().flatten().all(|&index| index != NO_INDEX)
@@ -27,8 +26,7 @@ impl MeshData {
         self.split(&tangents)
     }
 
-    /// Gives each vertex the tangent of its corners, and copies of it to those that have another
-    /// one.
+    /// Gives each vertex the tangent of its corners, and appends a copy for each further tangent.
     fn split(&mut self, tangents: &[[f32; 4]]) -> Vec<u32> {
         self.tangents = vec![[0.0; 4]; self.positions.len()];
         let mut taken = vec![false; self.positions.len()];
@@ -62,10 +60,10 @@ impl MeshData {
 struct Corners {
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
-    /// How each triangle's surface moves as u grows, of length 1 or 0, and which way round its
-    /// coordinates run.
+    /// Direction of growing u on each triangle, of length 1 or 0; true if the texture coordinates
+    /// have the triangle's orientation.
     triangles: Vec<(Vec3, bool)>,
-    /// The same number for corners that agree in all.
+    /// Equal numbers for corners that agree in all attributes.
     vertices: Vec<u32>,
 }
 
@@ -75,7 +73,7 @@ impl Corners {
         let positions: Vec<Vec3> = of(&data.triangles).into_iter().map(|i| data.positions[i]).collect();
         let normals: Vec<Vec3> = of(&data.triangle_normals).into_iter().map(|i| data.normals[i]).collect();
         let uvs: Vec<Vec2> = of(&data.triangle_uvs).into_iter().map(|i| data.uvs[i]).collect();
-        // Zero is zero, whatever its sign.
+        // Treat zeros of both signs as equal.
         let bits = |x: f32| (x + 0.0).to_bits();
         let key = |&corner: &u32| {
             let (p, n, uv) = (positions[corner as usize], normals[corner as usize], uvs[corner as usize]);
@@ -91,19 +89,19 @@ impl Corners {
         Corners { positions, normals, triangles, vertices }
     }
 
-    /// Whether a triangle says anything: it has an area, and so have its coordinates.
+    /// Returns true if the triangle and its texture coordinates have an area.
     fn counts(&self, triangle: usize) -> bool {
         self.triangles[triangle].0 != Vec3::ZERO
     }
 
-    /// Pairs of corners that share a tangent, found at the edges that their triangles share.
+    /// Pairs of corners that share a tangent, found at common edges of triangles.
     fn pairs(&self) -> Vec<[u32; 2]> {
         let mut edges: Vec<([u32; 2], bool, [u32; 2])> = (0..self.positions.len())
             .filter(|corner| self.counts(corner / 3))
             .map(|corner| {
                 let next = corner - corner % 3 + (corner + 1) % 3;
                 let (a, b) = (self.vertices[corner], self.vertices[next]);
-                // The corners in the order of their vertices, whichever way the triangle runs.
+                // The corners in the order of their vertices, whatever the triangle's direction.
                 match a <= b {
                     true => ([a, b], true, [corner as u32, next as u32]),
                     false => ([b, a], false, [next as u32, corner as u32]),
@@ -113,7 +111,7 @@ impl Corners {
         edges.par_sort_unstable();
         let mut pairs = Vec::new();
         for edge in edges.chunk_by(|a, b| a.0 == b.0) {
-            // Neighbours run along their edge in opposite directions.
+            // Neighbours traverse their common edge in opposite directions.
             let (back, forth) = edge.split_at(edge.partition_point(|e| !e.1));
             for (a, b) in back.iter().zip(forth) {
                 if self.triangles[a.2[0] as usize / 3].1 == self.triangles[b.2[0] as usize / 3].1 {
@@ -124,7 +122,7 @@ impl Corners {
         pairs
     }
 
-    /// What a corner adds to the tangent that it shares.
+    /// Contribution of a corner to its shared tangent.
     fn share(&self, corner: usize) -> Vec3 {
         let n = self.normals[corner];
         let flat = |v: Vec3| (v - n.dot(v) * n).normalize_or_zero();
@@ -134,7 +132,7 @@ impl Corners {
         angle * flat(self.triangles[corner / 3].0)
     }
 
-    /// The tangent of each corner, and 1 or -1 for its side; zero where nothing is known.
+    /// Tangent of each corner, and 1 or -1 for the bitangent's sign; zero if undefined.
     fn tangents(&self) -> Vec<[f32; 4]> {
         let mut groups = Groups((0..self.positions.len() as u32).collect());
         self.pairs().into_iter().for_each(|[a, b]| groups.join(a, b));
@@ -142,7 +140,7 @@ impl Corners {
         for corner in (0..self.positions.len()).filter(|corner| self.counts(corner / 3)) {
             sums[groups.of(corner as u32) as usize] += self.share(corner);
         }
-        // What says nothing takes the tangent of a neighbour at the vertex.
+        // Corners of degenerate triangles use the tangent of a neighbour at the vertex.
         let mut any = vec![[0.0; 4]; self.positions.len()];
         let mut tangents: Vec<[f32; 4]> = Vec::with_capacity(self.positions.len());
         for corner in 0..self.positions.len() {
@@ -160,8 +158,8 @@ impl Corners {
     }
 }
 
-/// How the surface of a triangle moves as u grows, of length 1, and whether u and v run the same
-/// way round as its corners. Zero if that cannot be said.
+/// Unit direction of growing u on a triangle, zero if undefined; true if u and v have the
+/// orientation of its corners.
 fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     let (along, across) = (*b - *a, *c - *a);
     let area = along.perp_dot(across);
@@ -170,13 +168,13 @@ fn growth([p, q, r]: &[Vec3; 3], [a, b, c]: &[Vec2; 3]) -> (Vec3, bool) {
     (if solid { u.normalize_or_zero() } else { Vec3::ZERO }, area > 0.0)
 }
 
-/// Groups of corners: each names one of its group, the first itself.
+/// Union-find structure over corners: each refers to one of its group, the root to itself.
 struct Groups(Vec<u32>);
 
 impl Groups {
     fn of(&mut self, mut corner: u32) -> u32 {
         while self.0[corner as usize] != corner {
-            // Ways are halved as they are gone.
+            // Path halving.
             let next = self.0[corner as usize];
             self.0[corner as usize] = self.0[next as usize];
             corner = next;
@@ -186,7 +184,7 @@ impl Groups {
 
     fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.of(a), self.of(b));
-        // The lower number stands for both, whatever the order.
+        // The lower index becomes the root, so the order of joins has no effect.
         self.0[a.max(b) as usize] = a.min(b);
     }
 }

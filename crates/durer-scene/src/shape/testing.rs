@@ -1,12 +1,12 @@
-//! Reference statements of the shapes, for tests here and in crates above: samples of each shape,
-//! and distances from their surfaces in double precision.
+//! Reference definitions of the shapes, for tests here and in dependent crates: samples of each
+//! shape, and distances from their surfaces in double precision.
 
 use super::*;
 use crate::describe::DescribedList;
 use crate::math::random::Random;
 
-/// One of each shape, of about `size`, about `distance` from the origin. Add a new shape here and in
-/// [`faces`].
+/// One shape of each kind, about `size` large and about `distance` from the origin. Add a new shape
+/// here and in [`faces`].
 pub fn samples(random: &mut Random, size: f32, distance: f32) -> Vec<Primitive> {
     let center = distance * random.direction();
     let mut corner = || center + size * random.point();
@@ -58,11 +58,11 @@ fn quadric(random: &mut Random, center: Vec3, size: f32) -> Quadric {
     }
 }
 
-/// How far a point is from each face, or from its continuation, counted along the normal; all but
-/// the greatest do not matter where that is zero.
+/// Signed distance of a point from each face or its continuation, along the normal. Only the
+/// largest must be exact where it is zero.
 pub fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     let flat = |n: DVec3, at: Vec3| vec![n.normalize().dot(p - at.as_dvec3())];
-    // Height and distance from the line between two points, and the height of the other end.
+    // Height and distance from the axis between two points, and the height of the other end.
     let round = |base: Vec3, top: Vec3| {
         let (base, along) = (base.as_dvec3(), top.as_dvec3() - base.as_dvec3());
         let y = (p - base).dot(along.normalize());
@@ -116,23 +116,23 @@ pub fn faces(shape: &Primitive, p: DVec3) -> Vec<f64> {
     }
 }
 
-/// How far a point is from the surface, or from its continuation, counted along the normal.
+/// Signed distance of a point from the surface or its continuation, along the normal.
 pub fn distance(shape: &Primitive, p: DVec3) -> f64 {
     faces(shape, p).into_iter().fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Whether a point of a quadric is so far from the origin that its terms leave only rounding.
+/// Returns true for a point on a quadric so far from the origin that rounding dominates its terms.
 pub fn too_far(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     matches!(shape, Primitive::Quadric(_)) && p.length() > 20.0 * reach
 }
 
-/// Whether another face is as near to a point as this.
+/// Returns true if more than one face is within `reach` of a point.
 pub fn near_edge(shape: &Primitive, p: DVec3, reach: f64) -> bool {
     let all = faces(shape, p);
     all.iter().filter(|f| f.abs() < reach).count() > 1
 }
 
-/// A point of the shape and its surface there, found by a ray from outside.
+/// A ray from outside, its hit on the shape, and the surface there.
 pub fn surface_point(shape: &Primitive, random: &mut Random, size: f32, distance: f32) -> Option<(Ray, ShapeHit)> {
     let middle = shape.bounds().map_or(distance * random.direction(), |b| b.center());
     let target = middle + size * random.point();

@@ -1,5 +1,4 @@
-//! What holds for every shape of the list: each against an independent statement of itself in
-//! double precision.
+//! Tests of all shapes, each against an independent definition in double precision.
 
 mod inside;
 mod mesh_rules;
@@ -10,8 +9,8 @@ use super::testing::{distance, near_edge, samples, surface_point, too_far};
 use super::*;
 use crate::math::random::Random;
 
-/// All places where a line meets the shape, or may meet it for all that single precision can tell
-/// (`false`).
+/// Every intersection of a line with the shape; `false` marks those that single precision cannot
+/// decide.
 fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
     match shape {
         Primitive::Sphere(s) => {
@@ -34,7 +33,7 @@ fn crossings(shape: &Primitive, o: DVec3, d: DVec3) -> Vec<(f64, bool)> {
             let t = n.dot(a - o) / n.dot(d);
             let p = o + t * d;
             // Heights over the three edges. The ray is sheared in single precision: 8 roundings of
-            // the distance, which count for more where the triangle is seen from its side.
+            // the distance, which have more effect if the triangle is seen edge-on.
             let heights = [(a, b), (b, c), (c, a)].map(|(e, f)| n.cross(f - e).normalize().dot(p - e));
             let least = heights.into_iter().fold(f64::INFINITY, f64::min);
             let reach = [a, b, c].map(|x| (x - o).length()).into_iter().fold(0.0, f64::max);
@@ -55,7 +54,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
     let mut random = Random(1);
     let mut found = [0; 11];
     for round in 0..40_000 {
-        // Sizes from 1e-6 to 1e6, and far beyond what a scene has.
+        // Sizes from 1e-6 to 1e6, and far beyond those in scenes.
         let size = match round % 16 {
             14 => 1e-16,
             15 => 1e16,
@@ -66,7 +65,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
             let target = shape.bounds().map_or(size * random.point(), |b| b.center() + 0.7 * size * random.point());
             let ray = Ray::new(origin, random.between(0.01, 100.0) * (target - origin));
             let all = crossings(shape, origin.as_dvec3(), ray.dir.as_dvec3());
-            // Windows: a half line, a line, and pieces that begin or end between crossings.
+            // Intervals: a half line, a line, and pieces that begin or end between crossings.
             let middle = all.iter().map(|c| c.0).sum::<f64>() as f32 / all.len().max(1) as f32;
             let (t_min, t_max) = [
                 (0.0, f32::INFINITY),
@@ -77,7 +76,8 @@ fn the_first_crossing_in_the_open_interval_is_found() {
             ][random.below(5)];
             let ray = Ray { t_min, t_max, ..ray };
             let crossing = shape.intersect(&ray);
-            // Roots are known to a rounding of the largest of them; a bent shape's to its own size.
+            // Roots are accurate to a rounding of the largest of them; on curved shapes, of the
+            // shape's size.
             let own = if kind == 0 || kind > 2 { f64::from(size) / ray.dir.as_dvec3().length() } else { 0.0 };
             let near = |a: f64, b: f64| (a - b).abs() <= 2e-7 * (a.abs() + own);
             if let Some(crossing) = crossing {
@@ -87,7 +87,7 @@ fn the_first_crossing_in_the_open_interval_is_found() {
                 assert!(grazing || all.iter().any(|c| near(c.0, t)), "{shape:?} {ray:?} {crossing:?} {all:?}");
                 found[kind] += 1;
             }
-            // What is surely there and surely in the window is not missed, nor passed over.
+            // A certain crossing inside the interval must neither be missed nor passed over.
             for &(t, _) in all.iter().filter(|c| c.1) {
                 let clear = |end: f32| !near(t, f64::from(end));
                 if clear(t_min) && clear(t_max) && ray.contains(t as f32) {
@@ -133,7 +133,7 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let sag = 0.5 * f64::from(surface.curvature) * surface.error.as_dvec3().length_squared();
             let off = distance(&shape, p);
             assert!(off.abs() <= bound + sag + 1e-15 * p.length(), "{shape:?} {surface:?} {off}");
-            // The error is one of rounding, not more.
+            // The error is of the order of rounding.
             let reach = p.length() + f64::from(size + away);
             assert!(surface.error.as_dvec3().max_element() <= 1e-5 * reach, "{surface:?}");
             assert!((n.length() - 1.0).abs() < 2e-7 && (surface.n_shade.length() - 1.0).abs() < 2e-7);
@@ -150,13 +150,13 @@ fn the_surface_is_on_the_shape_within_its_error_and_in_its_bounds() {
             let difference =
                 |v: DVec3| (distance(&shape, p + step * v) - distance(&shape, p - step * v)) / (2.0 * step);
             let gradient = DVec3::new(difference(DVec3::X), difference(DVec3::Y), difference(DVec3::Z));
-            // Bending by 1e-5 of the size gives third-order terms of its square against the least
-            // radius; the point itself is off by its rounding against that radius.
+            // A step of 1e-5 of the size has third-order terms of its square relative to the least
+            // radius; the rounding of the point adds an error relative to that radius.
             let bend = f64::from(surface.curvature * size);
             let slack = 1e-6 + (1e-5 * bend) * (1e-5 * bend) + 2e-7 * (1.0 + bend) * f64::from(1.0 + away / size);
             assert!((gradient - n).length() < slack, "{shape:?} {surface:?} {gradient}");
             let uv = surface.uv.get().unwrap();
-            // Only planes and triangles have coordinates of another range.
+            // Only planes and triangles have coordinates outside [0,1].
             let range = matches!(shape, Primitive::Plane(_)) || (uv.cmpge(Vec2::ZERO) & uv.cmple(Vec2::ONE)).all();
             assert!(uv.is_finite() && range, "{shape:?} {uv}");
         }
@@ -182,7 +182,7 @@ fn a_ray_that_is_no_ray_hits_nothing() {
                         let mut broken = ray;
                         broken.dir[axis] = value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
-                        // Also where the rest of the direction is nothing.
+                        // Also with all other components zero.
                         broken.dir = Vec3::AXES[axis] * value;
                         assert_eq!(shape.intersect(&broken), None, "{shape:?} {broken:?}");
                         broken = ray;

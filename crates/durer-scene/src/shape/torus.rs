@@ -30,7 +30,7 @@ impl Torus {
         (f64::from(self.major_radius), f64::from(self.minor_radius))
     }
 
-    /// The nearest point of the circle, seen from the centre.
+    /// Nearest point of the circle, relative to the centre.
     fn nearest(&self, q: DVec3) -> DVec3 {
         let a = self.axis();
         self.radii().0 * (q - q.dot(a) * a).normalize_or(a.any_orthonormal_vector())
@@ -45,12 +45,12 @@ impl Shape for Torus {
         Some(padded(center - reach, center + reach))
     }
 
-    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p seen from the centre, a the
+    /// Solves (|p|^2 + R^2 - r^2)^2 = 4 R^2 (|p|^2 - (p·a)^2) for p relative to the centre, a the
     /// axis.
     ///
-    /// Lengths are counted in R from the place nearest to the centre, along a direction of length
-    /// 1, so that all coefficients are of one size. Source of the equation: Hanrahan in
-    /// Glassner, *An Introduction to Ray Tracing* (1989), chapter 3.
+    /// Lengths are in units of R, measured from the point of the line nearest to the centre along a
+    /// unit direction, so that all coefficients have the same order of magnitude. Source of the
+    /// equation: Hanrahan in Glassner, *An Introduction to Ray Tracing* (1989), chapter 3.
     fn crossings(&self, line: &Line, offer: &mut impl FnMut(f64, Vec2)) {
         let ((major, minor), a) = (self.radii(), self.axis());
         let shift = line.nearest(self.center.as_dvec3());
@@ -58,7 +58,7 @@ impl Shape for Torus {
         let (o, d) = ((line.at(shift) - self.center.as_dvec3()) / major, line.dir.normalize_or_zero());
         let ratio = minor / major;
         let oo = o.length_squared();
-        // A little beyond the sphere around it, both ends of the line are outside.
+        // Slightly beyond the bounding sphere, both ends of the line are outside.
         let reach = 1.001 * (1.0 + ratio);
         let beside = reach * reach - oo;
         let thickness = 1.001 * ratio;
@@ -67,7 +67,7 @@ impl Shape for Torus {
             return;
         }
         let half = beside.sqrt();
-        // |p|^2 = s^2 + 2 e s + oo, with e = o·d zero but for rounding.
+        // |p|^2 = s^2 + 2 e s + oo; e = o·d is zero up to rounding.
         let e = o.dot(d);
         let k = oo + 1.0 - ratio * ratio;
         let coefficients = [

@@ -21,7 +21,7 @@ described! {
 }
 
 impl Triangle {
-    /// Its corners in order.
+    /// The corners in order.
     pub fn corners(&self) -> [Vec3; 3] {
         [self.vertex0, self.vertex1, self.vertex2]
     }
@@ -48,8 +48,8 @@ impl Shape for Triangle {
         found.into_iter().for_each(|crossing| offer(f64::from(crossing.t), crossing.uv));
     }
 
-    /// Moved by a multiple of a power of two above its size: so neighbours are mostly moved alike,
-    /// and still meet in an edge.
+    /// Moves by a multiple of a power of two above its size, so that neighbours mostly move by the
+    /// same vector and still share edges.
     fn centered(&self) -> Option<(Self, Vec3)> {
         let corners = self.corners();
         let size = Aabb::around(corners).size().max_element().max(f32::MIN_POSITIVE);
@@ -104,8 +104,8 @@ impl Shape for Triangle {
     }
 }
 
-/// The point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three of
-/// them. The point keeps off the edges: see [`inset`].
+/// Point with barycentric coordinates (1 - u - v, u, v), a bound on its error, and all three
+/// coordinates. The point keeps away from the edges: see [`inset`].
 ///
 /// Source of the bound: *Physically Based Rendering*, 4th edition, section 6.8.3.
 #[inline(always)]
@@ -124,12 +124,12 @@ fn weighted([a, b, c]: [Vec3; 3], weights: Vec3) -> (Vec3, Vec3) {
     (wa + ub + vc, gamma(7) * (wa.abs() + ub.abs() + vc.abs()))
 }
 
-/// Barycentric coordinates of a point that lies at least [`INSET`] errors away from all edges,
-/// where the given one does not.
+/// Barycentric coordinates of a point at least [`INSET`] errors away from all edges; `None` if the
+/// given point is.
 #[inline(always)]
 fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     // The distance from an edge is the barycentric coordinate times twice the area over the edge's
-    // length. All squared.
+    // length; compared as squares.
     let areas = (b - a).cross(c - a).length_squared();
     let lengths = Vec3::new((c - b).length_squared(), (a - c).length_squared(), (b - a).length_squared());
     let least = lengths * (INSET * INSET * error.length_squared());
@@ -141,27 +141,27 @@ fn inset([a, b, c]: [Vec3; 3], barycentric: Vec3, error: Vec3) -> Option<Vec3> {
     Some(moved / moved.element_sum())
 }
 
-/// The unit normal (b - a) x (c - a); that of a triangle without area points up.
+/// Unit normal of (b - a) x (c - a); +y for a triangle without area.
 #[inline(always)]
 pub fn face_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
     let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
     (b - a).cross(c - a).normalize_or(DVec3::Y).as_vec3()
 }
 
-/// The surface of a triangle at a crossing, without texture and colour. Normals of no length are
-/// none.
+/// Surface of a triangle at a crossing, without texture coordinates and colour. A zero shading
+/// normal is replaced by the geometric one.
 #[inline(always)]
 pub fn triangle_surface(corners: [Vec3; 3], normals: Option<[Vec3; 3]>, uv: Vec2) -> Surface {
     let (position, error, barycentric) = interpolate(corners, uv);
     let n_geo = face_normal(corners);
     let (mut n_shade, mut shadow_offsets) = (n_geo, [Vec3::ZERO; 2]);
-    // Not by closures given to `map_or`, which are called like any function.
+    // Closures passed to `map_or` would not be inlined here.
     if let Some(normals) = normals {
         n_shade = mixed(normals, barycentric).normalize_or(n_geo);
         let [front, back] = offsets_of_corners(position, corners, normals);
         shadow_offsets = [mixed(front, barycentric), mixed(back, barycentric)];
     }
-    // Normals in the file say which side is out, whatever way the corners go round.
+    // The stored normals define the outside, whatever the winding of the corners.
     let n_geo = if n_geo.dot(n_shade) < 0.0 { -n_geo } else { n_geo };
     Surface {
         position,
@@ -183,13 +183,13 @@ fn mixed([a, b, c]: [Vec3; 3], barycentric: Vec3) -> Vec3 {
     barycentric.x * a + barycentric.y * b + barycentric.z * c
 }
 
-/// For each corner, the way from a point of the triangle up to the plane through the corner across
-/// its normal; none where the point lies above that plane. And the same from the other side.
+/// For each corner, the offset from a point of the triangle up to the corner's tangent plane, zero
+/// if the point is above that plane; then the same for the other side.
 ///
-/// Their mean by barycentric coordinates leads to the bent surface that the normals speak of. A
-/// shadow ray that starts there does not meet the flat neighbours, which would make a coarse mesh
-/// dark by whole triangles along the border of light. Source: Johannes Hanika, *Hacking the Shadow
-/// Terminator*, Ray Tracing Gems II (2021), chapter 4.
+/// Their barycentric mean leads to the curved surface that the normals imply. A shadow ray that
+/// starts there does not hit the flat neighbours, which would darken whole triangles of a coarse
+/// mesh along the terminator. Source: Johannes Hanika, *Hacking the Shadow Terminator*, Ray Tracing
+/// Gems II (2021), chapter 4.
 #[inline(always)]
 fn offsets_of_corners(point: Vec3, corners: [Vec3; 3], normals: [Vec3; 3]) -> [[Vec3; 3]; 2] {
     let mut shadow_offsets = [[Vec3::ZERO; 3]; 2];

@@ -1,26 +1,26 @@
-//! Texture coordinates that are worked out when somebody asks: most surfaces have no picture.
+//! Texture coordinates, computed lazily: most surfaces have no texture.
 
 use super::turn;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Where a point lies in a picture on the surface.
+/// Texture coordinates of a point on a surface.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Uv {
-    /// The shape has no such coordinates.
+    /// The shape has no texture coordinates.
     #[default]
     None,
-    /// Known.
+    /// Already computed.
     At(Vec2),
-    /// The angle of a point of a plane, counted from -x, and what goes along the axis.
+    /// Angle of a point in a plane, from -x, and the coordinate along the axis.
     Turned(Vec2, f32),
     /// Longitude from -z over +x, and latitude from the south pole up, of a unit vector.
     Globe(Vec3),
-    /// Along two axes of a plane, by its unit normal and the point.
+    /// Coordinates along two axes of a plane, from its unit normal and the point.
     Sheet(Vec3, Vec3),
 }
 
 impl Uv {
-    /// The coordinates, if there are any.
+    /// Computes the coordinates, if there are any.
     pub fn get(self) -> Option<Vec2> {
         use std::f32::consts::{PI, TAU};
         Some(match self {

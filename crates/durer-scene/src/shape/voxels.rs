@@ -1,5 +1,5 @@
-//! A box cut into equal cells, some of which are filled: how 2003 drew what its grid knows of a
-//! sphere.
+//! A box of equal cells, some of them filled, as the course of 2003 displays its grid's
+//! rasterization of a sphere.
 
 use super::{MeshData, Sphere};
 use crate::describe::{Rule, described};
@@ -20,7 +20,7 @@ described! {
 }
 
 impl VoxelGrid {
-    /// Checks its fields together.
+    /// Checks the fields together.
     ///
     /// # Errors
     ///
@@ -52,7 +52,7 @@ impl VoxelGrid {
                         if beside[axis] < cells[axis] && filled(beside) {
                             continue;
                         }
-                        // Around the face: along the next axis first where it is the far one.
+                        // The corners of the face; a far face follows the next axis first.
                         let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
                         let first = data.positions.len() as u32;
                         for (a, b) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
@@ -82,7 +82,7 @@ mod tests {
         let balls =
             [Sphere { center: Vec3::ZERO, radius: 1.4 }, Sphere { center: Vec3::new(0.3, 0.0, 2.0), radius: 0.9 }];
         let data = grid.mesh(&balls);
-        // By the divergence theorem; turned faces would count negative.
+        // By the divergence theorem; inverted faces would have negative volumes.
         let volume: f32 = data
             .triangles
             .iter()
@@ -96,7 +96,7 @@ mod tests {
             cells += u32::from(balls.iter().any(|b| middle.distance(b.center) <= b.radius));
         }
         assert!(cells > 30 && (volume - 0.25 * cells as f32).abs() < 1e-4, "{cells} {volume}");
-        // Every edge is gone along once in each direction.
+        // Every edge is used once in each direction.
         let key = |i: u32| data.positions[i as usize].to_array().map(f32::to_bits);
         let mut edges = std::collections::HashMap::new();
         for t in &data.triangles {

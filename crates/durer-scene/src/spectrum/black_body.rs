@@ -1,23 +1,22 @@
-//! The light of black bodies.
+//! Black-body radiation.
 
 use crate::math::fp;
 
-/// The first radiation constant for radiance, 2 h c², such that a wavelength in micrometres gives
-/// W/(m² sr nm). Source: CODATA 2018 (exact h and c).
+/// First radiation constant for radiance, 2 h c², such that a wavelength in micrometres gives W/(m²
+/// sr nm). Source: CODATA 2018 (exact h and c).
 const C1: f32 = 1.191_043e5;
 
-/// The second radiation constant, h c / k, in nm K. Source: CODATA 2018, 1.438776877e-2 m K (exact).
+/// Second radiation constant, h c / k, in nm K. Source: CODATA 2018, 1.438776877e-2 m K (exact).
 pub const C2: f32 = 1.438_776_9e7;
 
-/// The radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's
-/// law.
+/// Radiance of a black body at a wavelength in nanometres, in W/(m² sr nm). Source: Planck's law.
 pub fn planck(nm: f32, kelvin: f32) -> f32 {
     let um = nm * 1e-3;
     let value = C1 / (um * um * um * um * um * (fp::exp(C2 / (nm * kelvin)) - 1.0));
     if value.is_finite() { value } else { 0.0 }
 }
 
-/// The radiance of a black body over its radiance at 560 nm; 0 where that is too small for a ratio.
+/// Radiance of a black body relative to that at 560 nm; 0 if that is too small for a ratio.
 pub fn planck_ratio(nm: f32, kelvin: f32) -> f32 {
     let ratio = planck(nm, kelvin) / planck(560.0, kelvin);
     if ratio.is_finite() { ratio } else { 0.0 }

@@ -1,28 +1,28 @@
-//! Spectra that were measured: values at wavelengths.
+//! Measured spectra: values at wavelengths.
 
 use super::{Lanes, OBSERVER, Spectrum, integral};
 use crate::math::Color;
 
-/// What a thing gives back of light, or the light of a lamp, by wavelength.
+/// Measured reflectance of a surface, or emission of a light, by wavelength.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// Wavelengths in nanometres, ascending, and values.
+    /// Ascending wavelengths in nanometres, and values.
     rows: Vec<[f32; 2]>,
-    /// What red, green and blue it amounts to; none below 0.
+    /// Colour of the curve in linear sRGB, without negative values.
     color: Color,
 }
 
 impl Curve {
-    /// Shares of light that a thing gives back, by ascending wavelength; its colour is that under
-    /// daylight. `None` without rows.
+    /// Creates a reflectance by ascending wavelength; its colour is that under daylight. `None`
+    /// without rows.
     pub fn reflectance(rows: Vec<[f32; 2]>) -> Option<Self> {
         rows.first()?;
         let color = seen(&rows, |[_, _, _, light]| f64::from(OBSERVER.daylight) * light);
         Some(Curve { rows, color })
     }
 
-    /// The light of a lamp, of any strength: it is made as bright as 1. `None` without light, or with
-    /// so little beside what is not seen that this leaves the range of numbers.
+    /// Creates the emission of a light of any strength, scaled to brightness 1. `None` without
+    /// visible light, or if so little is visible that scaling leaves the range of `f32`.
     pub fn light(mut rows: Vec<[f32; 2]>) -> Option<Self> {
         let bright = integral(|nm, [_, y, _, _]| y * f64::from(at(&rows, nm))) as f32;
         rows.iter_mut().for_each(|row| row[1] /= bright);
@@ -31,28 +31,27 @@ impl Curve {
         (bright > 0.0 && bright.is_finite() && in_range).then_some(Curve { rows, color })
     }
 
-    /// Its colour: of a thing that under daylight, of a lamp that of its light when it is as bright
-    /// as 1.
+    /// Colour of the curve: of a reflectance under daylight, of an emission at brightness 1.
     pub fn color(&self) -> Color {
         self.color
     }
 
-    /// The value at a wavelength in nanometres; beyond the first and last row that of the row.
+    /// Value at a wavelength in nanometres; constant beyond the first and last row.
     pub fn at(&self, nm: f32) -> f32 {
         at(&self.rows, nm)
     }
 }
 
 impl Lanes {
-    /// What a measured thing gives back, or a lamp sends, whose colour came to `color`: the curve,
-    /// times what made that colour of the curve's own.
+    /// Spectrum of a measured reflectance or emission whose colour became `color`: the curve times
+    /// the factor from the curve's own colour to `color`.
     pub fn measured(&self, color: Color, curve: &Curve) -> Spectrum {
         let Lanes::Waves(waves) = self else { return color.extend(color.y) };
         let known = curve.color.cmpgt(Color::splat(1e-6));
         let ratio = Color::select(known, color / curve.color, Color::ZERO);
-        // Of a channel that the curve lacks nothing can be told.
+        // A channel that the curve lacks takes the greatest factor of the others.
         let ratio = Color::select(known, ratio, Color::splat(ratio.max_element()));
-        // Rounding must not make grey coloured.
+        // Prevents rounding from tinting grey.
         let even = ratio.max_element() - ratio.min_element() <= 1e-5 * ratio.max_element();
         let tint = if even { Spectrum::splat(ratio.max_element()) } else { self.coefficient(ratio) };
         tint * waves.nm.map(|nm| curve.at(nm))
@@ -69,7 +68,7 @@ fn at(rows: &[[f32; 2]], nm: f32) -> f32 {
     }
 }
 
-/// The colour of rows times a light, as the observer sees it.
+/// Colour of the curve times a light, for the standard observer.
 fn seen(rows: &[[f32; 2]], light: impl Fn([f64; 4]) -> f64) -> Color {
     let channel = |[a, b, c]: [f32; 3]| {
         let [a, b, c] = [a, b, c].map(f64::from);

@@ -1,20 +1,20 @@
-//! Lamps and daylight whose spectra are agreed on, by name.
+//! Standard illuminants by name.
 //!
-//! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (the parts of daylight), table
-//! 10 (fluorescent lamps).
+//! Sources: CIE 015:2018, *Colorimetry*: section 4.1 (A, D), table 6 (components of daylight),
+//! table 10 (fluorescent illuminants).
 
 use super::black_body::{C2, planck_ratio};
 use super::curve::Curve;
 
-/// The temperature of illuminant A, about 2855.5 K: 2848 K by the value of the second radiation
-/// constant that CIE 015 fixes for it, 1.435e7 nm K.
+/// Temperature of illuminant A, about 2855.5 K: 2848 K with the second radiation constant that CIE
+/// 015 fixes for it, 1.435e7 nm K.
 const A_KELVIN: f32 = 2_848.0 * (C2 / 1.435e7);
 
-/// Names of illuminants, for messages. Besides, `2700K` and the like are black bodies.
+/// Names of illuminants, for messages. `2700K` and the like are black bodies.
 pub const NAMES: &str = "A, D50, D55, D65, D75, E, F2, F7, F11";
 
-/// The light of an illuminant: A (bulb), D and temperature (daylight), E (the same everywhere), F
-/// (tubes), or of a black body of a temperature, 1000K to 20000K. Its brightness is 1.
+/// Spectrum of an illuminant: A (bulb), D and temperature (daylight), E (equal energy), F
+/// (fluorescent tubes), or a black body of 1000K to 20000K. Its brightness is 1.
 pub fn illuminant(name: &str) -> Option<Curve> {
     let rows = match name {
         "A" => formula(|nm| planck_ratio(nm, A_KELVIN)),
@@ -45,8 +45,8 @@ fn tube(values: &[f32; 81]) -> Vec<[f32; 2]> {
     values.iter().enumerate().map(|(i, value)| [380.0 + 5.0 * i as f32, *value]).collect()
 }
 
-/// Daylight of a correlated colour temperature, 4000 to 25000 K: a mean and two parts by its
-/// chromaticity.
+/// Daylight of a correlated colour temperature from 4000 to 25000 K: a mean and two components
+/// weighted by the chromaticity.
 fn daylight(kelvin: f32) -> Vec<[f32; 2]> {
     let t = 1_000.0 / f64::from(kelvin);
     let x = match kelvin <= 7_000.0 {
@@ -64,7 +64,7 @@ fn daylight(kelvin: f32) -> Vec<[f32; 2]> {
     PARTS_OF_DAYLIGHT.iter().enumerate().map(row).collect()
 }
 
-/// The mean of daylight and its two parts, every 10 nm from 360.
+/// Mean and two components of daylight, every 10 nm from 360.
 #[rustfmt::skip]
 const PARTS_OF_DAYLIGHT: [[f32; 3]; 48] = [
     [61.5, 38.0, 5.3], [68.8, 42.4, 6.1], [63.4, 38.5, 3.0], [65.8, 35.0, 1.2],
@@ -93,7 +93,7 @@ const F2: [f32; 81] = [
     0.51, 0.47, 0.47, 0.43, 0.46, 0.47, 0.4, 0.33, 0.27,
 ];
 
-/// A tube of broad bands, like daylight, every 5 nm from 380.
+/// A broad-band tube similar to daylight, every 5 nm from 380.
 #[rustfmt::skip]
 const F7: [f32; 81] = [
     2.56, 3.18, 3.84, 4.53, 6.15, 19.37, 7.37, 7.05, 7.71, 8.41, 9.15, 44.14,

@@ -1,4 +1,4 @@
-//! What colour light is whose waves were shifted against each other.
+//! Colour of light whose waves interfere after a shift.
 
 use super::tables::{FIRST, LAST};
 use super::{OBSERVER, integral};
@@ -6,18 +6,18 @@ use crate::math::{Vec2, fp};
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-/// Nanometres from entry to entry of the table.
+/// Step of the table in nanometres.
 const STEP: f32 = 5.0;
 
-/// Entries: beyond 16 micrometres nothing is left of the colours.
+/// Number of entries: beyond 16 micrometres the colours vanish.
 const ENTRIES: usize = 3_200;
 
-/// For red, green and blue the mean of exp(2 pi i s / wavelength) over daylight as the observer
-/// sees it, for a shift `s` in nanometres: 1 where there is none, and near 0 where it is long.
+/// Mean of exp(2 pi i s / wavelength) over daylight for the standard observer, for red, green and
+/// blue and a shift `s` in nanometres: 1 for no shift, near 0 for long ones.
 ///
-/// Source of the idea to sum interference by orders like this: Belcour and Barla, *A Practical
-/// Extension to Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017; they fit
-/// the observer by Gaussians, and here it is a table.
+/// Source of summing interference by orders like this: Belcour and Barla, *A Practical Extension to
+/// Microfacet Theory for the Modeling of Varying Iridescence*, SIGGRAPH 2017; they fit the observer
+/// by Gaussians, and this is a table.
 pub fn interference(shift: f32) -> [Vec2; 3] {
     static TABLE: LazyLock<Vec<[Vec2; 3]>> = LazyLock::new(|| (0..ENTRIES).map(|i| mean(STEP * i as f32)).collect());
     let place = shift.max(0.0) / STEP;

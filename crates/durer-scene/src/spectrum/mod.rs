@@ -1,8 +1,8 @@
-//! What light is while it is transported: four numbers at once.
+//! Spectra in light transport: four values at once.
 //!
-//! Along one path they are red, green, blue (and green again, so that the fourth lane adds nothing
-//! of its own), or the light at four wavelengths. Colours enter through [`Lanes::reflectance`] and
-//! [`Lanes::light`], and leave through [`Lanes::color`].
+//! Along a path they are red, green, blue (and green again, so that the fourth lane adds no new
+//! value), or the radiance at four wavelengths. Colours are converted by [`Lanes::reflectance`] and
+//! [`Lanes::light`], and back by [`Lanes::color`].
 //!
 //! Source of four wavelengths on one path: Wilkie and others, *Hero Wavelength Spectral Sampling*,
 //! EGSR 2014.
@@ -28,10 +28,10 @@ use space::SRGB_FROM_XYZ;
 use std::sync::LazyLock;
 use tables::{FIRST, LAST, OBSERVER_AND_DAYLIGHT, STEP};
 
-/// Light, or what scatters it, in four lanes.
+/// Light, or a factor of it, in four lanes.
 pub type Spectrum = glam::Vec4;
 
-/// What colours are while light is transported.
+/// Representation of colours in light transport.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ColorMode {
@@ -46,12 +46,12 @@ impl ColorMode {
     /// Names on the command line.
     pub const NAMES: [&'static str; 2] = ["rgb", "spectral"];
 
-    /// The mode of a name.
+    /// Returns the mode of a name.
     pub fn from_name(name: &str) -> Option<Self> {
         [ColorMode::Rgb, ColorMode::Spectral].into_iter().find(|mode| mode.name() == name)
     }
 
-    /// Its name.
+    /// Name of the mode.
     pub fn name(self) -> &'static str {
         Self::NAMES[self as usize]
     }
@@ -70,7 +70,7 @@ impl FieldType for ColorMode {
     }
 }
 
-/// What the four lanes of one path mean.
+/// Meaning of the four lanes of a path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Lanes {
@@ -81,20 +81,20 @@ pub enum Lanes {
     Waves(Waves),
 }
 
-/// Four wavelengths, and what is known there.
+/// Four wavelengths, and tabulated values there.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Waves {
     /// The wavelengths in nanometres; the first is the hero.
     pub nm: Spectrum,
-    /// The light whose colour is white, 1 1 1: D65.
+    /// Spectrum of the light whose colour is 1 1 1: D65.
     #[serde(skip)]
     white: Spectrum,
-    /// What red, green and blue take of each wavelength, over 4 times its density.
+    /// Weights of red, green and blue at each wavelength, over 4 times its sampling density.
     observer: [Spectrum; 3],
 }
 
 impl Lanes {
-    /// For one path, by a number from 0 to 1.
+    /// Creates the lanes of a path from a random number in [0, 1).
     pub fn new(mode: ColorMode, u: f32) -> Self {
         match mode {
             ColorMode::Rgb => Lanes::Rgb,
@@ -102,7 +102,7 @@ impl Lanes {
         }
     }
 
-    /// The share of light that a thing of a colour gives back.
+    /// Reflectance of a colour.
     pub fn reflectance(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -114,21 +114,21 @@ impl Lanes {
         }
     }
 
-    /// Light of a colour, of any strength: a smooth spectrum times daylight's.
+    /// Emission of a colour, of any strength: a smooth spectrum times that of daylight.
     pub fn light(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
             Lanes::Waves(waves) if color.x == color.y && color.y == color.z => color.x * waves.white,
             Lanes::Waves(waves) => {
-                // At half of what can be reflected, spectra are smoother.
+                // At half the maximum reflectance, spectra are smoother.
                 let most = 2.0 * color.max_element();
                 most * waves.white * upsample::share(color / most, waves.nm)
             }
         }
     }
 
-    /// Light of a colour: with the spectrum that was measured, or a smooth one. The former is asked
-    /// for only by what has wavelengths.
+    /// Emission of a colour, with its measured spectrum or a smooth one. `measured` is only called
+    /// in spectral mode.
     pub fn light_of<'c>(&self, color: Color, measured: impl FnOnce() -> Option<&'c Curve>) -> Spectrum {
         match self {
             Lanes::Rgb => self.light(color),
@@ -136,8 +136,7 @@ impl Lanes {
         }
     }
 
-    /// What something without bounds is, such as how much a medium absorbs: smooth, and grey where
-    /// the colour is.
+    /// An unbounded value such as an absorption coefficient: smooth, and constant for grey.
     pub fn coefficient(&self, color: Color) -> Spectrum {
         match self {
             Lanes::Rgb => color.extend(color.y),
@@ -148,7 +147,7 @@ impl Lanes {
         }
     }
 
-    /// The colour of light: what the path adds to the pixel.
+    /// Colour of light, which the path adds to the pixel.
     pub fn color(&self, light: Spectrum) -> Color {
         match self {
             Lanes::Rgb => light.truncate(),
@@ -156,12 +155,12 @@ impl Lanes {
         }
     }
 
-    /// Whether they are colours.
+    /// Returns true if the lanes are colours.
     pub fn is_rgb(&self) -> bool {
         matches!(self, Lanes::Rgb)
     }
 
-    /// The wavelength of the first lane in nanometres; `None` for colours.
+    /// Wavelength of the first lane in nanometres; `None` for colours.
     pub fn hero(&self) -> Option<f32> {
         match self {
             Lanes::Rgb => None,
@@ -171,13 +170,12 @@ impl Lanes {
 }
 
 impl Waves {
-    /// What red, green and blue take of each wavelength.
+    /// Weights of red, green and blue at each wavelength.
     pub fn observer(&self) -> &[Spectrum; 3] {
         &self.observer
     }
 
-    /// Wavelengths chosen about as often as the eye needs them, at equal steps of the number they
-    /// are chosen by.
+    /// Samples four wavelengths by the sensitivity of the eye, from equidistant random numbers.
     fn new(u: f32) -> Self {
         let nm = Spectrum::from_array([0.0, 0.25, 0.5, 0.75].map(|step| wavelength((u + step).fract())));
         let at = |column: usize| nm.map(|nm| observer_and_daylight(nm)[column]);
@@ -188,7 +186,7 @@ impl Waves {
     }
 }
 
-/// A wavelength by a number from 0 to 1.
+/// Maps a random number in [0, 1) to a wavelength in nanometres.
 ///
 /// Source: *Physically Based Rendering*, 4th edition, section 4.5.4, as for the density.
 fn wavelength(u: f32) -> f32 {
@@ -198,15 +196,14 @@ fn wavelength(u: f32) -> f32 {
     (538.0 - 138.888_89 * atanh).clamp(FIRST, LAST)
 }
 
-/// The density with which wavelengths are chosen, per nanometre.
+/// Sampling density of a wavelength, per nanometre.
 fn density(nm: f32) -> f32 {
     let x = fp::exp(0.0072 * (nm - 538.0));
     let cosh = 0.5 * (x + 1.0 / x);
     0.003_939_804 / (cosh * cosh)
 }
 
-/// What the CIE's standard observer of 1931 sees at a wavelength in nanometres, x, y and z, and the
-/// illuminant D65 there.
+/// CIE 1931 standard observer (x, y, z) and illuminant D65 at a wavelength in nanometres.
 pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     let place = ((nm - FIRST) / STEP).clamp(0.0, (OBSERVER_AND_DAYLIGHT.len() - 1) as f32);
     let i = (place as usize).min(OBSERVER_AND_DAYLIGHT.len() - 2);
@@ -214,18 +211,18 @@ pub fn observer_and_daylight(nm: f32) -> [f32; 4] {
     std::array::from_fn(|c| a[c] + (b[c] - a[c]) * (place - i as f32))
 }
 
-/// How an observer's numbers become colours, such that daylight is white.
+/// Conversion of the observer's values to colours such that daylight is white.
 struct Observer {
     /// From x, y, z to red, green and blue.
     to_rgb: [[f32; 3]; 3],
-    /// What daylight's numbers are multiplied by.
+    /// Factor of the tabulated daylight.
     daylight: f32,
 }
 
 static OBSERVER: LazyLock<Observer> = LazyLock::new(Observer::new);
 
-/// The integral over wavelengths of a function of nanometres and of the observer's row, by
-/// Simpson's rule between rows: exact for products of two of its numbers.
+/// Integral over wavelengths of a function of nanometres and of the observer's row, by Simpson's
+/// rule between rows: exact for products of two tabulated values.
 fn integral(value: impl Fn(f32, [f64; 4]) -> f64) -> f64 {
     let at = |nm: f32| value(nm, observer_and_daylight(nm).map(f64::from));
     let starts = (0..OBSERVER_AND_DAYLIGHT.len() - 1).map(|i| FIRST + STEP * i as f32);

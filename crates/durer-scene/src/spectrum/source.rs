@@ -1,4 +1,4 @@
-//! Spectra from files, and their colours: of surfaces under daylight (D65), of lights, of
+//! Spectra from files and their colours: of surfaces under daylight (D65), of lights, and of
 //! coefficients.
 
 use super::black_body::planck_ratio;
@@ -10,18 +10,18 @@ use glam::DVec3;
 /// A colour or a spectrum.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SpectrumSource {
-    /// Red, green and blue of linear sRGB.
+    /// A linear sRGB colour.
     Rgb(Color),
-    /// Wavelengths in nanometres, rising, and values.
+    /// Ascending wavelengths in nanometres, and values.
     Curve(Vec<[f32; 2]>),
-    /// A black body, by its temperature in kelvin.
+    /// Black body by its temperature in kelvin.
     Blackbody(f32),
-    /// A light of luminance 1.
+    /// Colour of a light of luminance 1.
     Illuminant(Color),
 }
 
 impl SpectrumSource {
-    /// The colour of a reflectance under daylight, each channel from 0 to 1.
+    /// Colour of a reflectance under daylight, each channel from 0 to 1.
     pub fn albedo(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) => color.clamp(Vec3::ZERO, Vec3::ONE),
@@ -29,7 +29,7 @@ impl SpectrumSource {
         }
     }
 
-    /// Red, green and blue of a value without an upper bound, such as a coefficient of a medium.
+    /// Linear sRGB of an unbounded value, such as a coefficient of a medium.
     pub fn coefficient(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) => color.max(Vec3::ZERO),
@@ -37,8 +37,8 @@ impl SpectrumSource {
         }
     }
 
-    /// The colour of a light. Spectra are scaled to luminance 1, as pbrt-v4 does; colours are
-    /// returned unchanged.
+    /// Colour of a light. Spectra are scaled to luminance 1, as in pbrt-v4; colours are returned
+    /// unchanged.
     pub fn light(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
@@ -50,9 +50,8 @@ impl SpectrumSource {
         }
     }
 
-    /// Red, green and blue as pbrt-v3 computes them for lights, reflectances and indices alike: a
-    /// spectrum of 1 has luminance 1. A curve keeps its end values beyond its ends, and a black body
-    /// is 1 at its peak.
+    /// Linear sRGB as pbrt-v3 computes it for lights, reflectances and indices alike: a spectrum of
+    /// 1 has luminance 1. A curve is constant beyond its ends, and a black body is 1 at its peak.
     pub fn plain(&self) -> Color {
         match self {
             SpectrumSource::Rgb(color) | SpectrumSource::Illuminant(color) => *color,
@@ -68,7 +67,7 @@ impl SpectrumSource {
         }
     }
 
-    /// The value at a wavelength in nanometres. A colour is blue below 490 nm, red from 580 nm.
+    /// Value at a wavelength in nanometres. A colour is blue below 490 nm, red from 580 nm.
     pub fn at(&self, nm: f32) -> f32 {
         match self {
             SpectrumSource::Rgb(c) | SpectrumSource::Illuminant(c) => match nm {
@@ -89,20 +88,20 @@ impl SpectrumSource {
         }
     }
 
-    /// One index of refraction: the value at helium's yellow line, 587.6 nm.
+    /// Index of refraction: the value at helium's yellow line, 587.6 nm.
     pub fn index(&self) -> f32 {
         self.at(587.6)
     }
 }
 
-/// Wavelength of the first row, and from row to row, in nanometres.
+/// First wavelength and step in nanometres.
 const FIRST: f32 = 380.0;
 const STEP: f32 = 10.0;
 
-/// The number of rows.
+/// Number of wavelengths.
 const ROWS: u16 = 41;
 
-/// X, Y and Z of a spectrum, at an arbitrary scale.
+/// XYZ of a spectrum, at an arbitrary scale.
 pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     let row = |i| {
         let nm = FIRST + STEP * f32::from(i);
@@ -112,19 +111,19 @@ pub fn xyz_sum(light: impl Fn(f32) -> f64) -> DVec3 {
     (0..ROWS).map(row).sum()
 }
 
-/// D65 at a wavelength of a row, at an arbitrary scale.
+/// D65 at a wavelength, at an arbitrary scale.
 fn daylight(nm: f32) -> f32 {
     observer_and_daylight(nm)[3]
 }
 
-/// The colour of a reflectance under daylight; 1 at all wavelengths is 1 1 1.
+/// Colour of a reflectance under daylight; 1 at all wavelengths is 1 1 1.
 pub fn under_daylight(share: impl Fn(f32) -> f32) -> Color {
     let lit = |share: &dyn Fn(f32) -> f32| SRGB_FROM_XYZ * xyz_sum(|nm| f64::from(share(nm) * daylight(nm)));
     (lit(&share) / lit(&|_| 1.0)).as_vec3()
 }
 
-/// The colour of a light from its radiance at each wavelength in nanometres; 1 at all wavelengths
-/// has luminance 1.
+/// Colour of a light from its radiance at each wavelength in nanometres; 1 at all wavelengths has
+/// luminance 1.
 pub fn radiance(light: impl Fn(f32) -> f32) -> Color {
     let color = SRGB_FROM_XYZ * xyz_sum(|nm| f64::from(light(nm))) / xyz_sum(|_| 1.0).y;
     if color.is_finite() { color.as_vec3().max(Vec3::ZERO) } else { Vec3::ZERO }

@@ -1,9 +1,9 @@
-//! Spaces of red, green and blue, and their way to linear sRGB.
+//! RGB colour spaces and their conversion to linear sRGB.
 
 use crate::math::{Color, Vec3};
 use glam::{DMat3, DVec3};
 
-/// From X, Y and Z to linear sRGB, a column for each of the three. Source: IEC 61966-2-1.
+/// Matrix from XYZ to linear sRGB, in columns. Source: IEC 61966-2-1.
 pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     3.240_454_2,
     -0.969_266,
@@ -16,7 +16,7 @@ pub const SRGB_FROM_XYZ: DMat3 = DMat3::from_cols_array(&[
     1.057_225_2,
 ]);
 
-/// The primaries and the white of a space.
+/// An RGB colour space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RgbSpace {
     to_srgb: DMat3,
@@ -36,23 +36,23 @@ const SPACES: [(&str, [[f64; 2]; 4]); 4] = [
     ("aces2065-1", [[0.7347, 0.2653], [0.0, 1.0], [0.0001, -0.077], [0.32168, 0.33767]]),
 ];
 
-/// X, Y and Z of a chromaticity, at luminance 1.
+/// XYZ of a chromaticity, at luminance 1.
 fn xyz([x, y]: [f64; 2]) -> DVec3 {
     DVec3::new(x / y, 1.0, (1.0 - x - y) / y)
 }
 
-/// The linear sRGB colour of X, Y and Z.
+/// Linear sRGB colour of XYZ.
 pub fn color_of_xyz(xyz: DVec3) -> Color {
     (SRGB_FROM_XYZ * xyz).as_vec3()
 }
 
-/// The colour of a chromaticity, at luminance 1.
+/// Linear sRGB colour of a chromaticity at luminance 1, without negative values.
 pub fn color_of_chromaticity(xy: [f64; 2]) -> Color {
     color_of_xyz(xyz(xy)).max(Vec3::ZERO)
 }
 
 impl RgbSpace {
-    /// The space of a name; `None` for unknown names.
+    /// Returns the space of a name.
     pub fn named(name: &str) -> Option<RgbSpace> {
         let (name, [r, g, b, white]) = SPACES.iter().find(|row| row.0 == name)?;
         if *name == "srgb" {
@@ -63,12 +63,12 @@ impl RgbSpace {
         Some(RgbSpace { to_srgb: SRGB_FROM_XYZ * (columns * DMat3::from_diagonal(strengths)) })
     }
 
-    /// The names of all spaces.
+    /// Names of all spaces.
     pub fn names() -> impl Iterator<Item = &'static str> {
         SPACES.iter().map(|row| row.0)
     }
 
-    /// A colour of this space in linear sRGB; white stays white.
+    /// Converts a colour of this space to linear sRGB; white stays white.
     pub fn color(&self, rgb: Vec3) -> Color {
         if *self == RgbSpace::default() {
             return rgb;

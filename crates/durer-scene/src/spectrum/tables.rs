@@ -1,4 +1,4 @@
-//! What the eye and daylight are, by wavelength.
+//! Tables of the standard observer and of daylight, by wavelength.
 
 /// Wavelength of the first row, in nanometres.
 pub const FIRST: f32 = 360.0;
@@ -6,10 +6,10 @@ pub const FIRST: f32 = 360.0;
 /// Wavelength of the last row, in nanometres.
 pub const LAST: f32 = 830.0;
 
-/// Nanometres from row to row.
+/// Step between rows, in nanometres.
 pub const STEP: f32 = 5.0;
 
-/// The colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), and the
+/// Colour matching functions x, y, z of the CIE 1931 standard observer (2 degrees), and the
 /// illuminant D65.
 ///
 /// Source: CIE 015:2018, tables 1 and 6, every 5 nm.

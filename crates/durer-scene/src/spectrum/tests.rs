@@ -2,7 +2,7 @@ use super::space::RgbSpace;
 use super::*;
 use crate::math::Vec3;
 
-/// Colours of every kind, among them those near the edges.
+/// Colours of every kind, including those near the edges.
 fn colors() -> Vec<Color> {
     let steps = [0.0, 0.03, 0.2, 0.5, 0.8, 1.0];
     let rows = steps.into_iter().flat_map(|r| steps.into_iter().map(move |g| (r, g)));
@@ -32,7 +32,7 @@ fn daylight_is_white_whatever_wavelengths_are_chosen() {
 
 #[test]
 fn wavelengths_are_chosen_by_their_density() {
-    // The density's integral between quantiles is the step of the number.
+    // The density's integral between quantiles is the step of the random number.
     for i in 0..100 {
         let (a, b) = (wavelength((i as f32 + 1.0) / 100.0), wavelength(i as f32 / 100.0));
         let (low, high) = (a.min(b), a.max(b));
@@ -47,7 +47,7 @@ fn smooth_spectra_have_their_colours() {
     let mut worst = (0.0, Color::ZERO);
     for color in colors() {
         let off = (upsample::color_of(color) - color).abs().max_element();
-        // Pure colours at full strength are no reflectance of anything.
+        // Saturated colours at full strength have no physical reflectance.
         let saturated = color.max_element() > 0.99 && color.min_element() < 0.01;
         if !saturated && off > worst.0 {
             worst = (off, color);
@@ -67,7 +67,7 @@ fn grey_is_the_same_at_every_wavelength_and_lanes_of_colours_are_colours() {
     assert!(ColorMode::NAMES.iter().all(|name| ColorMode::from_name(name).unwrap().name() == *name));
 }
 
-/// Chromaticities by sums over every 5 nm, as the CIE has them.
+/// Chromaticities by sums over every 5 nm, as the CIE defines them.
 fn chromaticity(curve: &Curve) -> [f64; 2] {
     let rows = || (0..95).map(|i| FIRST + STEP * i as f32);
     let here = |nm: f32, i: usize| f64::from(observer_and_daylight(nm)[i] * curve.at(nm));
@@ -95,16 +95,16 @@ fn illuminants_have_their_published_chromaticities() {
         assert!((a - x).abs() < 3e-4 && (b - y).abs() < 3e-4, "{name}: {a} {b}, not {x} {y}");
         assert!((curve.color().dot(Color::new(0.2126, 0.7152, 0.0722)) - 1.0).abs() < 1e-3, "{name}");
     }
-    // Daylight by its parts is the table that is white here.
+    // D65 by the daylight formula agrees with the table that defines white here.
     let d65 = illuminants::illuminant("D65").unwrap();
     assert!((d65.color() - Color::ONE).abs().max_element() < 2e-3, "{}", d65.color());
-    // 2856 K with today's constant is what A was defined to be.
+    // 2856 K with today's constant matches the definition of A.
     let [a, b] = chromaticity(&illuminants::illuminant("2856K").unwrap());
     assert!((a - 0.44758).abs() < 3e-4 && (b - 0.40745).abs() < 3e-4, "{a} {b}");
     assert!(["D", "F99", "100K", "K", "warm"].iter().all(|name| illuminants::illuminant(name).is_none()));
 }
 
-/// What is seen is nothing beside the rest: made as bright as 1, the rest would be no number.
+/// The visible part is negligible: scaling it to brightness 1 would overflow the rest.
 #[test]
 fn a_lamp_of_next_to_no_visible_light_is_none() {
     assert_eq!(Curve::light(vec![[791.0, 0.0], [1e36, 2.0]]), None);
@@ -115,8 +115,8 @@ fn a_lamp_of_next_to_no_visible_light_is_none() {
 
 #[test]
 fn measured_things_have_the_colour_of_their_product() {
-    // Something that passes light beyond 560 nm only, under a bulb: what is seen is the integral of
-    // both, which no colours give.
+    // A filter that transmits above 560 nm only, under a bulb: the visible colour is the integral
+    // of the product, which colours alone cannot give.
     let steep = Curve::reflectance(vec![[400.0, 0.05], [550.0, 0.05], [570.0, 0.9], [700.0, 0.9]]).unwrap();
     let bulb = illuminants::illuminant("A").unwrap();
     let exact = Color::from(OBSERVER.to_rgb.map(|row| {
@@ -137,7 +137,8 @@ fn measured_things_have_the_colour_of_their_product() {
 
 #[test]
 fn spectra_from_files_become_colours() {
-    // The rows sum to the same for all three: the equal-energy white, to what steps of 10 nm allow.
+    // The rows sum to the same for all three: the equal-energy white, to the accuracy of 10 nm
+    // steps.
     let white = xyz_sum(|_| 1.0);
     assert!((white.x - white.y).abs() < 0.002 * white.y && (white.z - white.y).abs() < 0.002 * white.y, "{white}");
     let even = SpectrumSource::Curve(vec![[300.0, 0.4], [900.0, 0.4]]);
@@ -156,6 +157,6 @@ fn white_is_white_in_every_space() {
         assert!((space.color(Vec3::ONE) - Vec3::ONE).abs().max_element() < 1e-5, "{name}");
     }
     assert_eq!(RgbSpace::named("adobe"), None);
-    // The red of a wider space is beyond sRGB.
+    // The red of a wider space is outside sRGB.
     assert!(RgbSpace::named("rec2020").unwrap().color(Vec3::X).x > 1.5);
 }

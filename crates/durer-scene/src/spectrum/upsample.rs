@@ -1,8 +1,9 @@
-//! Smooth spectra for colours.
+//! Spectral upsampling: smooth spectra for colours.
 //!
 //! Source: Jakob and Hanika, *A Low-Dimensional Function Space for Efficient Spectral Upsampling*,
 //! Computer Graphics Forum 38(2), 2019: a spectrum is a sigmoid of a parabola of the wavelength.
-//! Its three numbers are found for the points of a grid of colours and interpolated between them.
+//! Its three coefficients are fitted at the points of a grid of colours and interpolated between
+//! them.
 
 #[cfg(test)]
 use super::integral;
@@ -11,17 +12,17 @@ use super::{OBSERVER, Spectrum};
 use crate::math::Color;
 use std::sync::LazyLock;
 
-/// A share of light by wavelength, from 0 to 1.
+/// A spectrum from 0 to 1, by its three coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Smooth([f32; 3]);
 
 impl Smooth {
-    /// At four wavelengths in nanometres.
+    /// Values at four wavelengths in nanometres.
     fn at(&self, nm: Spectrum) -> Spectrum {
         let [a, b, c] = self.0;
         let place = (nm - FIRST) / (LAST - FIRST);
         let x = (a * place + b) * place + c;
-        // 0.5 + x / (2 sqrt(1 + x^2)), in a form that loses no digits near 0.
+        // 0.5 + x / (2 sqrt(1 + x^2)), in a form without cancellation near 0.
         x.map(|x| {
             let root = (1.0 + x * x).sqrt();
             if x < 0.0 { 0.5 / (root * (root - x)) } else { 0.5 + 0.5 * x / root }
@@ -29,31 +30,31 @@ impl Smooth {
     }
 }
 
-/// Points of the grid along the axes of the two lesser channels.
+/// Grid points along the axes of the two lesser channels.
 const SIDE: usize = 24;
 
-/// Points along that of the greatest channel.
+/// Grid points along the axis of the greatest channel.
 const STRENGTHS: usize = 10;
 
-/// The three numbers, for each greatest channel, its strength, and the two others over it.
+/// Coefficients by greatest channel, its value, and the ratios of the two others to it.
 struct Table(Vec<[f32; 3]>);
 
 static TABLE: LazyLock<Table> = LazyLock::new(Table::new);
 
-/// The share of light by wavelength of a colour from 0 to 1. Darker ones than 0.5 are as a stronger
-/// one of their hue, times less.
+/// Reflectance spectrum of a colour in [0, 1]. A colour darker than 0.5 uses the spectrum of a
+/// brighter colour of its hue, scaled.
 pub(super) fn share(color: Color, nm: Spectrum) -> Spectrum {
     let scale = (2.0 * color.max_element()).clamp(1e-12, 1.0);
     scale * TABLE.find(color / scale).at(nm)
 }
 
-/// From 0.5 to 1, closer together near white, where the numbers change most.
+/// Grid values from 0.5 to 1, denser near white, where the coefficients change most.
 fn strength(k: usize) -> f64 {
     let rest = 1.0 - k as f64 / (STRENGTHS - 1) as f64;
     1.0 - 0.5 * rest * rest
 }
 
-/// At 1 numbers would have no bounds.
+/// At 1 the coefficients would be unbounded.
 const NEARLY_WHITE: f64 = 1.0 - 1e-4;
 
 impl Table {
@@ -62,12 +63,12 @@ impl Table {
         let mut all = vec![[0.0; 3]; 3 * STRENGTHS * SIDE * SIDE];
         for greatest in 0..3 {
             for (j, i) in (0..SIDE * SIDE).map(|n| (n / SIDE, n % SIDE)) {
-                // Closer together near pure colours.
+                // Denser near pure colours.
                 let share = |n: usize| {
                     let step = n as f64 / (SIDE - 1) as f64;
                     step * step
                 };
-                // Each fit begins where its neighbour ended.
+                // Each fit starts from its neighbour's result.
                 let mut numbers = [0.0; 3];
                 for k in 0..STRENGTHS {
                     let most = strength(k).min(NEARLY_WHITE);
@@ -102,7 +103,7 @@ impl Table {
         let (low, high) = (strength(k) as f32, strength(k + 1) as f32);
         let (x, y) = (share(1), share(2));
         let (i, j) = ((x as usize).min(SIDE - 2), (y as usize).min(SIDE - 2));
-        // Linear in the share itself, between neighbours.
+        // Interpolates linearly in the ratio itself.
         let part = |x: f32, i: usize| {
             let i = i as f32;
             ((x * x - i * i) / (2.0 * i + 1.0)).clamp(0.0, 1.0)
@@ -120,9 +121,9 @@ impl Table {
     }
 }
 
-/// What the colour of a spectrum under daylight is.
+/// Forward model of the fit: the colour of a spectrum under daylight.
 struct Fit {
-    /// Places from 0 to 1, and what each adds to red, green and blue.
+    /// Normalized wavelengths from 0 to 1, with their weights for red, green and blue.
     rows: Vec<(f64, [f64; 3])>,
 }
 
@@ -151,7 +152,7 @@ impl Fit {
         Fit { rows: rows.collect() }
     }
 
-    /// The colour of a spectrum, and how it changes with the three numbers.
+    /// Colour of a spectrum and its derivatives by the three coefficients.
     fn color(&self, [a, b, c]: [f64; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
         let (mut color, mut change) = ([0.0; 3], [[0.0; 3]; 3]);
         for &(place, rgb) in &self.rows {
@@ -170,8 +171,7 @@ impl Fit {
         (color, change)
     }
 
-    /// The three numbers of a colour, by Levenberg and Marquardt's method from others that are
-    /// near.
+    /// Fits the three coefficients of a colour by the Levenberg-Marquardt method, from nearby ones.
     fn find(&self, wanted: [f64; 3], start: [f64; 3]) -> [f64; 3] {
         let mut numbers = start;
         let (mut color, mut change) = self.color(numbers);
@@ -205,7 +205,7 @@ impl Fit {
     }
 }
 
-/// The colour of a share of light under daylight.
+/// Colour of an upsampled reflectance under daylight.
 #[cfg(test)]
 pub(super) fn color_of(color: Color) -> Color {
     let weight = f64::from(OBSERVER.daylight);

@@ -1,37 +1,37 @@
-//! Where the sun stands at a place and a time.
+//! Position of the sun at a place and time.
 //!
-//! Source: *The Astronomical Almanac*, section C, *Low precision formulas for the Sun*, which hold
-//! to 0.01 degrees from 1950 to 2050; sidereal time and the way to the horizon's angles as
-//! Michalsky, *The Astronomical Almanac's algorithm for approximate solar position*, Solar Energy
-//! 40, 1988. The air's refraction, up to half a degree at the horizon, is left out.
+//! Source: *The Astronomical Almanac*, section C, *Low precision formulas for the Sun*, accurate to
+//! 0.01 degrees from 1950 to 2050; sidereal time and horizontal coordinates as in Michalsky, *The
+//! Astronomical Almanac's algorithm for approximate solar position*, Solar Energy 40, 1988.
+//! Atmospheric refraction, up to half a degree at the horizon, is ignored.
 
 use crate::math::{Vec3, fp};
 
-/// A moment of the Gregorian calendar, by the clock of a place.
+/// A moment in the Gregorian calendar, in local time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Moment {
     /// Year, month and day.
     pub date: [i32; 3],
     /// Hours since midnight.
     pub hours: f64,
-    /// Hours that the clock is before that of Greenwich.
+    /// Hours that the clock is ahead of UTC.
     pub zone: f64,
 }
 
 impl Moment {
-    /// Whether there is such a day.
+    /// Returns true if the date exists.
     pub fn exists(&self) -> bool {
         let [year, month, day] = self.date;
         (1..=12).contains(&month) && (1..=days_of(year, month)).contains(&day)
     }
 
-    /// Days since noon of the first of January 2000 in Greenwich.
+    /// Days since noon of 1 January 2000 in UTC.
     fn days(&self) -> f64 {
         let [year, month, day] = self.date;
-        // The year begins in March, so that the odd day is its last.
+        // The year begins in March, so that the leap day is its last.
         let (y, m) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
         let before = 365 * y + y.div_euclid(4) - y.div_euclid(100) + y.div_euclid(400) + (153 * m + 2) / 5 + day;
-        // That of the first of January 2000 is 730426.
+        // The day number of 1 January 2000 is 730426.
         f64::from(before - 730_426) - 0.5 + (self.hours - self.zone) / 24.0
     }
 }
@@ -45,17 +45,17 @@ fn days_of(year: i32, month: i32) -> i32 {
     }
 }
 
-/// Altitude above the horizon and azimuth from north over east, in degrees, seen from a place by
-/// its degrees north and east.
+/// Altitude above the horizon and azimuth from north over east, in degrees, for a place by its
+/// degrees north and east.
 pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     let n = moment.days();
     let sin = |degrees: f64| fp::sin_cos_degrees(degrees).0;
     let mean = (280.460 + 0.985_647_4 * n).rem_euclid(360.0);
     let anomaly = (357.528 + 0.985_600_3 * n).rem_euclid(360.0);
-    // Along the ecliptic, and how much that leans.
+    // Ecliptic longitude, and the obliquity of the ecliptic.
     let (along_sin, along_cos) = fp::sin_cos_degrees(mean + 1.915 * sin(anomaly) + 0.020 * sin(2.0 * anomaly));
     let (lean_sin, lean_cos) = fp::sin_cos_degrees(23.439 - 0.000_000_4 * n);
-    // A unit vector along the equator: x to the spring point, z north.
+    // Unit vector in equatorial coordinates: x to the vernal equinox, z north.
     let (x, y, z) = (along_cos, lean_cos * along_sin, lean_sin * along_sin);
     let sidereal = 15.0 * (6.697_375 + 0.065_709_824_2 * n + (moment.hours - moment.zone)).rem_euclid(24.0) + longitude;
     let (turn_sin, turn_cos) = fp::sin_cos_degrees(sidereal.rem_euclid(360.0));
@@ -66,7 +66,7 @@ pub fn sun([latitude, longitude]: [f64; 2], moment: &Moment) -> [f64; 2] {
     [degrees(up, (north * north + east * east).sqrt()), degrees(east, north).rem_euclid(360.0)]
 }
 
-/// The unit vector to an altitude and an azimuth, in degrees: y is up, -z north, x east.
+/// Unit vector to an altitude and an azimuth in degrees: y is up, -z north, x east.
 pub fn way([altitude, azimuth]: [f64; 2]) -> Vec3 {
     let ((sin, cos), (s, c)) = (fp::sin_cos_degrees(altitude), fp::sin_cos_degrees(azimuth));
     Vec3::new((cos * s) as f32, sin as f32, (-cos * c) as f32)
@@ -84,15 +84,16 @@ mod tests {
 
     #[test]
     fn it_stands_where_others_say() {
-        // Reda and Andreas, *Solar position algorithm*, NREL, 2003, table A5.1: zenith 50.111 with,
-        // 50.128 without refraction; azimuth 194.340.
+        // Reda and Andreas, *Solar position algorithm*, NREL, 2003, table A5.1: zenith angle 50.111
+        // with and 50.128 without refraction; azimuth 194.340.
         let [altitude, azimuth] = at([39.742476, -105.1786], [2003, 10, 17], [12.0, 30.0, 30.0], -7.0);
         assert!((altitude - 39.872).abs() < 0.01 && (azimuth - 194.340).abs() < 0.01, "{altitude} {azimuth}");
-        // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13;
-        // from the pole that is the altitude.
+        // Meeus, *Astronomical Algorithms*, example 25.a: declination -7.78507 on 1992 October 13,
+        // which is the altitude seen from the pole.
         let [altitude, _] = at([90.0, 0.0], [1992, 10, 13], [0.0; 3], 0.0);
         assert!((altitude + 7.785).abs() < 0.01, "{altitude}");
-        // The almanacs' solstice of June 2026, 21, 8:25, and the equinox of March, 20, 14:46.
+        // Almanac data: the solstice of 21 June 2026, 8:25, and the equinox of 20 March 2026,
+        // 14:46.
         let [altitude, _] = at([90.0, 0.0], [2026, 6, 21], [8.0, 25.0, 0.0], 0.0);
         assert!((altitude - 23.436).abs() < 0.01, "{altitude}");
         let [altitude, _] = at([90.0, 0.0], [2026, 3, 20], [14.0, 46.0, 0.0], 0.0);
@@ -101,14 +102,14 @@ mod tests {
 
     #[test]
     fn clocks_and_places_agree() {
-        // The same moment by another clock, and a day later by so many hours.
+        // The same moment on another clock, and on the next day in another time zone.
         let [date, next] = [[2024, 2, 28], [2024, 2, 29]];
         let place = [-33.9, 151.2];
         let here = at(place, date, [20.0, 0.0, 0.0], 0.0);
         for other in [at(place, next, [7.0, 0.0, 0.0], 11.0), at(place, date, [15.0, 30.0, 0.0], -4.5)] {
             assert!((here[0] - other[0]).abs() < 1e-9 && (here[1] - other[1]).abs() < 1e-9, "{here:?} {other:?}");
         }
-        // In the south the sun stands in the north at noon, in the morning in the east.
+        // In the southern hemisphere the sun is in the north at noon, in the east in the morning.
         let [noon, morning] = [[13.0, 0.0, 0.0], [7.0, 0.0, 0.0]].map(|time| at(place, next, time, 11.0));
         assert!(noon[1] < 20.0 || noon[1] > 340.0, "{noon:?}");
         assert!((morning[1] - 90.0).abs() < 20.0, "{morning:?}");
@@ -132,7 +133,7 @@ mod tests {
         ] {
             assert_eq!(day(date).exists(), exists, "{date:?}");
         }
-        // Every day is one later than that before it.
+        // Every day follows the one before.
         let mut last = day([1999, 12, 31]).days();
         assert_eq!(last, -1.5);
         for year in 2000..2101 {

@@ -1,4 +1,4 @@
-//! The sixteen standard skies of the CIE, with which daylight in buildings is computed.
+//! The sixteen CIE standard skies, which are used for daylight calculations in architecture.
 //!
 //! Source: CIE S 011/E:2003 (ISO 15469:2004), *Spatial distribution of daylight: CIE standard
 //! general sky*.
@@ -6,8 +6,8 @@
 use crate::math::{Color, Vec3, fp};
 use std::f32::consts::PI;
 
-/// The numbers a, b (from the horizon to the zenith), c, d, e (around the sun) of the types 1 to
-/// 15.
+/// Coefficients a, b (gradation from horizon to zenith) and c, d, e (indicatrix around the sun) of
+/// the types 1 to 15.
 const TYPES: [[f32; 5]; 15] = [
     [4.0, -0.70, 0.0, -1.0, 0.0],
     [4.0, -0.70, 2.0, -1.5, 0.15],
@@ -26,25 +26,26 @@ const TYPES: [[f32; 5]; 15] = [
     [-1.0, -0.15, 24.0, -2.8, 0.15],
 ];
 
-/// The number of the traditional overcast sky, thrice as bright at the zenith as at the horizon.
+/// Number of the traditional overcast sky, three times as bright at the zenith as at the horizon.
 pub const OVERCAST: u32 = 16;
 
-/// A sky of the CIE. It is white.
+/// A CIE standard sky. It is white.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CieSky {
-    /// Of a type from 1 to 15.
+    /// Coefficients of a type from 1 to 15; `None` for type 16.
     numbers: Option<[f32; 5]>,
-    /// Unit vector to the sun, which does not shine itself.
+    /// Unit vector to the sun, which does not emit light itself.
     sun: Vec3,
-    /// What the numbers' value is multiplied by, so that the zenith is as bright as is wanted.
+    /// Factor of the relative luminance that gives the requested zenith luminance.
     scale: f32,
-    /// Brightness below the horizon.
+    /// Luminance below the horizon.
     ground: f32,
 }
 
 impl CieSky {
-    /// `number`: 1 to 16; `sun` leads to the sun, with y upwards; `zenith` is the brightness there
-    /// in cd/m^2. Of the light that falls on the ground that gives back a share.
+    /// Creates a sky of type `number`, 1 to 16. `sun` points to the sun, with y upwards; `zenith`
+    /// is the luminance at the zenith in cd/m^2. The ground reflects `ground_reflectance` of its
+    /// illuminance.
     pub fn new(number: u32, sun: Vec3, zenith: f32, ground_reflectance: f32) -> Self {
         let numbers = TYPES.get((number as usize).wrapping_sub(1)).copied();
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
@@ -53,7 +54,7 @@ impl CieSky {
         CieSky { ground: ground_reflectance * sky.illuminance() / PI, ..sky }
     }
 
-    /// Whether a sky of a type depends on where the sun is.
+    /// Returns true if a sky of this type depends on the position of the sun.
     pub fn wants_sun(number: u32) -> bool {
         TYPES.get((number as usize).wrapping_sub(1)).is_some_and(|numbers| numbers[2] != 0.0)
     }
@@ -67,21 +68,21 @@ impl CieSky {
         zenith * (1.0 + c * (fp::exp(d * to_sun) - fp::exp(d * 0.5 * PI)) + e * cosine * cosine)
     }
 
-    /// The brightness in a unit direction, in cd/m^2.
+    /// Luminance in a unit direction, in cd/m^2.
     pub fn luminance(&self, dir: Vec3) -> f32 {
         if dir.y < 0.0 { self.ground } else { self.scale * self.shape(dir) }
     }
 
-    /// The light from a unit direction.
+    /// Light from a unit direction.
     pub fn at(&self, dir: Vec3) -> Color {
         Vec3::splat(self.luminance(dir))
     }
 
-    /// The illuminance of open ground, in lux.
+    /// Illuminance of unobstructed ground, in lux.
     pub fn illuminance(&self) -> f32 {
         const STEPS: u32 = 256;
         let cell = |i: u32| {
-            // Equal shares of the ground's view: the disc below the sky, in rings.
+            // Equal areas of the projected hemisphere in each ring.
             let radius = ((i / STEPS) as f32 + 0.5) / STEPS as f32;
             let (sin, cos) = fp::sin_cos_degrees(360.0 * (f64::from(i % STEPS) + 0.5) / f64::from(STEPS));
             let dir = Vec3::new(radius * cos as f32, (1.0 - radius * radius).sqrt(), radius * sin as f32);
@@ -98,13 +99,13 @@ mod tests {
 
     #[test]
     fn illuminances_are_those_of_the_formulas() {
-        // The overcast sky lights open ground by 7 pi L / 9 (Moon and Spencer, 1942), the even one
-        // by pi L.
+        // The overcast sky has an illuminance of 7 pi L / 9 (Moon and Spencer, 1942), the uniform
+        // one of pi L.
         let overcast = CieSky::new(OVERCAST, Vec3::Y, 9_000.0, 0.0);
         assert!((overcast.illuminance() / (7_000.0 * PI) - 1.0).abs() < 1e-4, "{}", overcast.illuminance());
         let even = CieSky::new(5, Vec3::Y, 9_000.0, 0.2);
         assert!((even.illuminance() / (9_000.0 * PI) - 1.0).abs() < 1e-4);
-        // Under an even sky the ground shines as a matte thing of its reflectance.
+        // Under a uniform sky the ground is a matte surface with its reflectance.
         assert!((even.luminance(Vec3::NEG_Y) - 1_800.0).abs() < 1.0);
     }
 
@@ -117,10 +118,10 @@ mod tests {
             let (there, away) = (sky.luminance(sun), sky.luminance(Vec3::new(-sun.x, sun.y, 0.0)));
             assert_eq!(there > away, CieSky::wants_sun(number), "{number}: {there} {away}");
         }
-        // Type 12, the clear sky of old: at the horizon below the sun, by hand from the formula.
+        // Type 12, the standard clear sky: at the horizon below the sun, by hand from the formula.
         let sky = CieSky::new(12, sun, 1.0, 0.0);
         // exp(-3 pi / 4) - exp(-3 pi / 2) = 0.09478 - 0.00898; at the zenith the angle to the sun
-        // is the same 45 degrees.
+        // is also 45 degrees.
         let (ring, zenith) = (1.0 + 10.0 * (0.09478 - 0.00898) + 0.45 * 0.5, 1.0 - 0.72615);
         let at_horizon = ring / (ring * zenith);
         assert!((sky.luminance(Vec3::X) / at_horizon - 1.0).abs() < 1e-3, "{} {at_horizon}", sky.luminance(Vec3::X));

@@ -1,4 +1,4 @@
-//! Six pictures around the scene.
+//! Cube maps: six pictures around the scene.
 
 use super::Texture;
 use crate::math::{Color, Vec2, Vec3};
@@ -6,20 +6,19 @@ use crate::math::{Color, Vec2, Vec3};
 /// Surroundings at infinity, as the six faces of a cube.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CubeMap {
-    /// In the order of [`CubeMap::FACES`].
+    /// Pictures in the order of [`CubeMap::FACES`].
     pub faces: [Texture; 6],
-    /// Whether [`crate::dialect::Compat::MirroredBack`] holds.
+    /// True if [`crate::dialect::Compat::MirroredBack`] applies.
     pub mirrored_back: bool,
 }
 
 impl CubeMap {
-    /// Names of the faces' files, without extension: -x, +x, +y, -y, +z, -z.
+    /// File names of the faces, without extension: -x, +x, +y, -y, +z, -z.
     pub const FACES: [&'static str; 6] = ["left", "right", "up", "down", "front", "back"];
 
-    /// The colour that a direction sees. The largest component picks the face; ties go to x, then
-    /// y.
+    /// Colour in a direction. The largest component picks the face; ties go to x, then y.
     ///
-    /// Seen from inside, every face is upright and not mirrored: the four around with y upwards,
+    /// Seen from inside, every face is upright and not mirrored: the four sides with y upwards,
     /// `up` with z upwards and `down` with -z upwards, so that the six meet without a seam.
     pub fn at(&self, direction: Vec3) -> Color {
         let Vec3 { x, y, z } = direction;

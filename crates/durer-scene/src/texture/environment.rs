@@ -1,64 +1,65 @@
-//! A picture of all directions around the scene, from which directions are chosen by how much
-//! brighter they are than the mean: what is about even is found as well by directions in which
-//! surfaces scatter, and both are weighed (multiple importance sampling), so that points of lights
-//! are best spent on the rest. Source: Karlík, Šik, Vévoda, Skřivan, Křivánek, *MIS Compensation:
-//! Optimizing Sampling Techniques in Multiple Importance Sampling*, SIGGRAPH Asia 2019.
+//! Environment maps with importance sampling.
+//!
+//! Directions are sampled by how much they exceed the mean radiance: BSDF sampling finds nearly
+//! uniform parts as well, and multiple importance sampling combines both, so light samples are best
+//! spent on the rest. Source: Karlík, Šik, Vévoda, Skřivan, Křivánek, *MIS Compensation: Optimizing
+//! Sampling Techniques in Multiple Importance Sampling*, SIGGRAPH Asia 2019.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use glam::Vec4;
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// Where a direction lies in the picture, in texels.
+/// Position of a direction in the map, in texels.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     x: f32,
     y: f32,
-    /// The sine of the direction's angle to the axis.
+    /// Sine of the direction's angle to the y axis.
     sine: f32,
 }
 
-/// Light from all around: the picture's middle is where -z points, its upper edge is +y, as in
+/// An environment map: its centre is in direction -z, its upper edge at +y, as in
 /// `EquirectangularCamera`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     width: usize,
     height: usize,
-    /// Colours, and in the last lane for each row the sums of its texels' weights from the left: what
-    /// is asked for together lies together.
+    /// Colours; w is the cumulative weight of the row up to this texel. Values that are used
+    /// together are stored together.
     texels: Arc<[Vec4]>,
-    /// How far it is turned about y, as a share of a whole turn from 0 to 1.
+    /// Rotation about y, as a fraction of a turn from 0 to 1.
     turn: f32,
     scale: Color,
-    /// The mean brightness of all directions, before the scale.
+    /// Mean brightness of all directions, before scaling.
     mean: f32,
     rows: Arc<[Row]>,
-    /// Where to look in the sums of a row, by steps of what is wanted.
+    /// Start indices for the search in a row's cumulative weights, by steps of the wanted fraction.
     hints: Arc<[u32]>,
-    /// The sums of the rows from above, and where to look in them.
+    /// Cumulative weights of the rows from above, and start indices for the search in them.
     columns: Arc<[f32]>,
     column_hints: Arc<[u32]>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Row {
-    /// The sum of its texels' weights.
+    /// Sum of the weights of its texels.
     sum: f32,
-    /// The share of that in the sum of all.
+    /// Fraction of the sum of all rows.
     share: f32,
 }
 
-/// The least share of its brightness that a direction is chosen by: some light is found by points
-/// alone, as that behind panes where paths end.
+/// Minimum fraction of a direction's brightness in its weight. Some light is found by light
+/// sampling only, such as that behind panes where paths end.
 const LEAST: f32 = 0.05;
 
-/// Entries that have a hint in common.
+/// Number of entries that share a start index.
 const STEP: usize = 4;
 
-/// Entries that are looked at together.
+/// Number of entries that the search compares at once.
 const AHEAD: usize = 8;
 
-/// For each step of a share from 0 to 1 the entry at which it is reached.
+/// For each step of the fraction from 0 to 1, the entry at which it is reached.
 fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
     let steps = sums.len().div_ceil(STEP);
     let mut i = 0;
@@ -71,8 +72,8 @@ fn hints(sums: &[f32]) -> impl Iterator<Item = u32> {
 }
 
 impl Environment {
-    /// From linear colours, the upper row first. `None` unless there are width times height of
-    /// them, and some light.
+    /// Creates a map from linear colours, the upper row first. `None` unless there are width times
+    /// height colours, and some light.
     pub fn new(width: u32, height: u32, texels: Vec<Color>, degrees: f32, scale: Color) -> Option<Self> {
         let (width, height) = (width as usize, height as usize);
         if width == 0 || height == 0 || texels.len() != width * height {
@@ -81,14 +82,15 @@ impl Environment {
         let texels: Vec<Color> =
             texels.into_iter().map(|c| if c.is_finite() { c.max(Vec3::ZERO) } else { Vec3::ZERO }).collect();
         let brightness = |x: usize, y: usize| texels[y * width + x].dot(Vec3::splat(1.0 / 3.0));
-        // Rows near the poles stand for less of the sphere.
+        // Rows near the poles cover less of the sphere.
         let sines: Vec<f32> = (0..height).map(|y| fp::sin(PI * (y as f32 + 0.5) / height as f32)).collect();
         let mut sums = Vec::with_capacity(width * height);
         let mut whole = 0.0_f64;
         for (y, sine) in sines.iter().enumerate() {
             let mut row = 0.0_f64;
             for x in 0..width {
-                // Colours are mixed between the middles of texels: this is the mean over a texel.
+                // Colours are interpolated between the centres of texels: this is the mean over a
+                // texel.
                 let mean = |[before, here, after]: [f32; 3]| 0.125 * (before + after) + 0.75 * here;
                 let column = |x: usize| {
                     let x = x % width;
@@ -131,22 +133,22 @@ impl Environment {
         })
     }
 
-    /// The mean over all directions, nearly.
+    /// Approximate mean over all directions.
     pub fn mean(&self) -> Color {
         self.scale * self.mean
     }
 
-    /// The mean of what directions are chosen by: of the light above [`Environment::mean`], nearly.
+    /// Approximate mean of the sampling weights, that is of the light above [`Environment::mean`].
     pub fn mean_above(&self) -> Color {
         // Weights are means over texels, times the sine of the row.
         self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
-    /// Bytes for each texel that making it takes beside the texels that are given: those once more
-    /// where they stay with their sums, the sums alone, and the hints while they grow.
+    /// Bytes per texel of construction beside the given texels: the texels with their sums, the
+    /// sums alone, and the growing list of start indices.
     pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
-    /// Bytes in memory.
+    /// Size in memory in bytes.
     pub fn bytes(&self) -> usize {
         size_of_val(&*self.texels) + size_of_val(&*self.hints)
     }
@@ -159,9 +161,9 @@ impl Environment {
         Place { x: u * self.width as f32, y: v * self.height as f32, sine: beside / dir.length() }
     }
 
-    /// The light there, mixed of the four texels around.
+    /// Light at a position, interpolated bilinearly.
     pub fn light(&self, place: &Place) -> Color {
-        // Whole numbers from 0, by what lies one texel before.
+        // Integer coordinates from 0, of the texel after the position.
         let (x, y) = (place.x + 0.5, place.y + 0.5);
         let (right, below) = (x as usize, y as usize);
         let part = Vec2::new(x - right as f32, y - below as f32);
@@ -172,13 +174,13 @@ impl Environment {
         self.scale * row(below.saturating_sub(1).min(last)).lerp(row(below.min(last)), part.y).truncate()
     }
 
-    /// The density per solid angle with which a direction there is chosen.
+    /// Sampling density of a position per solid angle.
     fn density(&self, place: &Place) -> f32 {
         let (x, y) = ((place.x as usize).min(self.width - 1), (place.y as usize).min(self.height - 1));
         self.density_in((x, y), place.sine)
     }
 
-    /// The same in a texel, at the sine of an angle to the axis.
+    /// Sampling density of a texel per solid angle, at the sine of an angle to the y axis.
     fn density_in(&self, (x, y): (usize, usize), sine: f32) -> f32 {
         let (Row { sum, share }, row) = (self.rows[y], self.row(y));
         if sum <= 0.0 {
@@ -193,30 +195,31 @@ impl Environment {
         &self.texels[y * self.width..(y + 1) * self.width]
     }
 
-    /// The light from a direction of any length.
+    /// Light from a direction of any length.
     pub fn at(&self, dir: Vec3) -> Color {
         self.light(&self.place(dir))
     }
 
-    /// The density per solid angle with which a direction is chosen.
+    /// Sampling density of a direction per solid angle.
     pub fn pdf(&self, dir: Vec3) -> f32 {
         self.density(&self.place(dir))
     }
 
-    /// Both.
+    /// Light from a direction, and its sampling density per solid angle.
     pub fn at_with_pdf(&self, dir: Vec3) -> (Color, f32) {
         let place = self.place(dir);
         (self.light(&place), self.density(&place))
     }
 
-    /// A direction chosen by two numbers from 0 to 1, its light, and its density per solid angle.
+    /// Samples a direction by two numbers from 0 to 1; returns it with its light and its density
+    /// per solid angle.
     pub fn sample(&self, u: Vec2) -> Option<(Vec3, Color, f32)> {
         let (dir, place, pdf) = self.direction(u)?;
         Some((dir, self.light(&place), pdf))
     }
 
-    /// A direction chosen by two numbers from 0 to 1, where it lies in the picture, and its density
-    /// per solid angle.
+    /// Samples a direction by two numbers from 0 to 1; returns it with its position in the map and
+    /// its density per solid angle.
     pub fn direction(&self, u: Vec2) -> Option<(Vec3, Place, f32)> {
         let steps = self.width.div_ceil(STEP);
         let (y, v) = choose(&self.columns, |sum| *sum, self.columns[self.height - 1], &self.column_hints, u.y);
@@ -231,16 +234,16 @@ impl Environment {
     }
 }
 
-/// The entry at which a share of the whole sum is reached, and how far in it that is.
+/// Returns the entry at which a fraction `u` of the whole sum is reached, and the position in it.
 fn choose<T>(entries: &[T], sum: impl Fn(&T) -> f32, whole: f32, hints: &[u32], u: f32) -> (usize, f32) {
     let last = entries.len() - 1;
     let wanted = u * whole;
     let mut i = hints[((u * hints.len() as f32) as usize).min(hints.len() - 1)] as usize;
-    // A hint may be late by a rounding.
+    // Rounding may put the start index too far.
     while i > 0 && sum(&entries[i - 1]) > wanted {
         i -= 1;
     }
-    // Several at once are counted: nobody can foresee where to stop.
+    // Counting several entries at once avoids mispredicted branches.
     while let Some(ahead) = entries[i..last].first_chunk::<AHEAD>() {
         let below = ahead.iter().filter(|entry| sum(entry) <= wanted).count();
         i += below;
@@ -299,7 +302,7 @@ mod tests {
     #[test]
     fn the_middle_is_where_minus_z_points_and_rotation_turns_it() {
         let mut texels = vec![Vec3::ZERO; 8 * 4];
-        // The column right of the middle, upper half.
+        // The column right of the centre, upper half.
         texels[8 + 4] = Vec3::ONE;
         let at =
             |degrees: f32, dir: Vec3| Environment::new(8, 4, texels.clone(), degrees, Vec3::ONE).unwrap().at(dir).x;

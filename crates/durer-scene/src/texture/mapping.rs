@@ -1,4 +1,4 @@
-//! How a picture lies on a surface, as glTF has it: wrapping, filtering, a transform of the
+//! Mapping of a picture onto a surface, as in glTF: wrapping, filtering, and a transform of the
 //! coordinates.
 
 use crate::describe::{FieldType, Value};
@@ -19,12 +19,12 @@ described_words! {
 }
 
 impl Channel {
-    /// By the letter or word that stands for it after the colon of `file.png:g`.
+    /// Parses the letter or word after the colon of `file.png:g`.
     pub fn from_word(word: &str) -> Option<Self> {
         Self::from_value(Value::Word(word.into()))
     }
 
-    /// The number.
+    /// Value of the channel.
     pub fn of(self, [r, g, b, a]: [f32; 4]) -> f32 {
         match self {
             Channel::Red => r,
@@ -36,28 +36,27 @@ impl Channel {
     }
 }
 
-/// How a picture lies on a surface.
+/// Mapping of a picture onto a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Mapping {
-    /// Beyond the left and right border, and beyond the upper and lower.
+    /// Wrap mode across the left and right border, and across the upper and lower border.
     pub wrap: [Wrap; 2],
-    /// Whether the nearest texel counts alone; else the four around a point are mixed.
+    /// True for the nearest texel, false for bilinear filtering.
     pub nearest: bool,
-    /// Whether smaller versions of the picture are shown where many of its texels are seen at once.
+    /// True to use mipmaps for samples that cover many texels.
     pub mipmaps: bool,
-    /// Whether the second set of texture coordinates counts.
+    /// True to use the second set of texture coordinates.
     pub second: bool,
     /// From the surface's coordinates to the picture's, both with v downwards from the upper
     /// border: two rows of a matrix.
     pub transform: [[f32; 3]; 2],
-    /// Opacity is 1 where the picture's alpha is at least this, and else 0; `None`: as the alpha
-    /// says.
+    /// Threshold of the picture's alpha: opacity is 1 from it, 0 below; `None`: opacity is alpha.
     pub cutoff: Option<f32>,
-    /// How far the normals of a normal map lean, times; 1 as written.
+    /// Factor of the slopes in a normal map; 1 as stored.
     pub strength: f32,
-    /// What counts where a number is wanted; `None`: red, or of opacity what there is.
+    /// Channel to read as a number; `None`: red, and for opacity the alpha channel if there is one.
     pub channel: Option<Channel>,
-    /// What a texel's 0 and 1 stand for, where the picture changes a parameter.
+    /// Values of a parameter for 0 and 1 in the picture.
     pub range: [f32; 2],
 }
 
@@ -78,7 +77,7 @@ impl Default for Mapping {
 }
 
 impl Mapping {
-    /// The place in the picture, in its widths from the left and heights from the top, of surface
+    /// Position in the picture, in widths from the left and heights from the top, for surface
     /// coordinates with v upwards.
     pub fn place(&self, uv: Vec2) -> Vec2 {
         let (u, v) = (uv.x, 1.0 - uv.y);
@@ -86,13 +85,13 @@ impl Mapping {
         Vec2::new(x, y)
     }
 
-    /// What a number of a texel stands for.
+    /// Maps a channel's value to the range.
     pub fn ranged(&self, x: f32) -> f32 {
         let [low, high] = self.range;
         if [low, high] == [0.0, 1.0] { x } else { low + x * (high - low) }
     }
 
-    /// Colour and opacity with the opacity made 0 or 1 where there is a cutoff.
+    /// Applies the alpha cutoff, if there is one.
     pub(super) fn cut(&self, [r, g, b, alpha]: [f32; 4]) -> [f32; 4] {
         let alpha = match self.cutoff {
             Some(least) if alpha >= least => 1.0,
@@ -102,13 +101,13 @@ impl Mapping {
         [r, g, b, alpha]
     }
 
-    /// The directions in which a picture's own coordinates grow, from those in which the surface's
-    /// do, v upwards in both.
+    /// Directions in which the picture's coordinates grow, from those of the surface's coordinates,
+    /// with v upwards in both.
     pub fn directions<V>(&self, [u, v]: [V; 2]) -> [V; 2]
     where
         V: Copy + std::ops::Mul<f32, Output = V> + std::ops::Add<Output = V>,
     {
-        // The rows of the inverse transpose, but for a common factor that keeps the sides.
+        // The rows of the inverse transpose, up to a positive common factor.
         let [[a, b, _], [c, d, _]] = self.transform;
         let side = if a * d - b * c < 0.0 { -1.0 } else { 1.0 };
         [u * (side * d) + v * (side * c), u * (side * b) + v * (side * a)]
@@ -116,7 +115,7 @@ impl Mapping {
 }
 
 impl Wrap {
-    /// The texel of a row of `count` that stands for the i-th.
+    /// Index of the texel for index `i` in a row of `count`, which may be outside.
     pub fn index(self, i: i64, count: u32) -> u32 {
         let count = i64::from(count);
         let folded = match self {

@@ -1,4 +1,4 @@
-//! Smaller versions of a picture, for where many texels are seen at once.
+//! Mipmaps: smaller versions of a picture, for samples that cover many texels.
 //!
 //! Source: Williams, *Pyramidal Parametrics*, SIGGRAPH 1983.
 
@@ -8,20 +8,20 @@ use std::iter::successors;
 use std::sync::Arc;
 
 impl Texture {
-    /// The same with levels: each half as wide and high as the one before, down to a single texel.
+    /// Adds mipmap levels, each half as wide and high as the one before, down to a single texel.
     pub fn with_levels(self) -> Self {
         let first = Texture { mapping: None, levels: Arc::default(), ..self.clone() };
         let levels = successors(Some(first), |level| (level.count() > 1).then(|| level.halved())).skip(1).collect();
         Texture { levels, ..self }
     }
 
-    /// Whether it has levels.
+    /// Returns true if it has mipmap levels.
     pub fn has_levels(&self) -> bool {
         !self.levels.is_empty()
     }
 
-    /// Half as wide and high. A texel is the mean of what it covers, of linear values; colours of
-    /// eight bits are rounded to those again.
+    /// Halves width and height. A texel is the mean of the linear values that it covers; 8-bit
+    /// colours are rounded to 8 bits again.
     fn halved(&self) -> Texture {
         let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
         let mean = |i: u32, j: u32| {
@@ -58,8 +58,8 @@ impl Texture {
     }
 }
 
-/// The texels of a row of `large` that the i-th of `small` covers, and the share of it that each
-/// is: two or three.
+/// Texels of a row of `large` that texel `i` of a row of `small` covers, with their fractions of
+/// it: two or three.
 fn covered(i: u32, small: u32, large: u32) -> impl Iterator<Item = (usize, f32)> {
     let size = f64::from(large) / f64::from(small);
     let (from, to) = (f64::from(i) * size, (f64::from(i + 1) * size).min(f64::from(large)));
@@ -97,7 +97,7 @@ mod tests {
     fn eight_bits_are_rounded_to_the_nearest_and_means_are_of_linear_values() {
         let texture = Texture::new(2, 1, vec![[0, 10, 255], [255, 12, 255]]).unwrap();
         let square = texture.decoded(|x| (f32::from(x) / 255.0) * (f32::from(x) / 255.0)).with_levels();
-        // Of 10 and 12 the mean is that of 11, nearly: (11 / 255)^2.
+        // The mean of 10 and 12 is nearly that of 11: (11 / 255)^2.
         let [r, g, b] = square.levels[0].color(0);
         assert!((r - 0.5).abs() < 0.004 && (g - 0.00186).abs() < 1e-4 && b == 1.0, "{r} {g} {b}");
         let clear = Texture::new(2, 1, vec![[9; 3]; 2]).unwrap().with_alpha(Some(vec![0, 255])).with_levels();
@@ -112,7 +112,7 @@ mod tests {
         assert_eq!(at(0.0), 0.0);
         assert_eq!(at(1.0), 0.0);
         assert_eq!(at(2.0), 0.5);
-        // Half of the way by the logarithm.
+        // Halfway in the logarithm.
         assert!((at(2.0_f32.sqrt()) - 0.25).abs() < 1e-6, "{}", at(2.0_f32.sqrt()));
         assert_eq!(at(1e30), 0.5);
         assert_eq!(at(f32::NAN), 0.0);

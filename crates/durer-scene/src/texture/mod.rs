@@ -1,4 +1,4 @@
-//! Pictures on surfaces and around the scene.
+//! Textures on surfaces and around the scene.
 
 pub mod almanac;
 pub mod cie_sky;
@@ -16,45 +16,45 @@ pub use mapping::{Channel, Mapping, Wrap};
 pub use sky::Sky;
 use std::sync::Arc;
 
-/// A decoded picture: looked up as the course does or, with a [`Mapping`], as that says.
+/// A decoded picture, looked up by the course's rules or by a [`Mapping`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     width: u32,
     height: u32,
     texels: Texels,
-    /// Opacity of each texel, where not all are opaque.
+    /// Opacity of each texel, unless all are opaque.
     alpha: Option<Opacity>,
     mapping: Option<Mapping>,
-    /// Smaller and smaller versions of it, if there are any.
+    /// Mipmap levels, if there are any.
     levels: Arc<[Texture]>,
 }
 
 /// Red, green and blue, row 0 on top.
 #[derive(Clone, Debug, PartialEq)]
 enum Texels {
-    /// Eight bits a channel, and what each of the 256 values means.
+    /// 8 bits per channel, and the meaning of each of the 256 values.
     Eight(Arc<[[u8; 3]]>, Box<[f32; 256]>),
-    /// The numbers themselves.
+    /// Linear values.
     Float(Arc<[Color]>),
 }
 
 #[derive(Clone, Debug, PartialEq)]
 enum Opacity {
-    /// In 255ths.
+    /// In units of 1/255.
     Eight(Arc<[u8]>),
     /// From 0 to 1.
     Float(Arc<[f32]>),
 }
 
 impl Texture {
-    /// From texels, row 0 on top. `None` unless there are width times height of them, and at least
-    /// one.
+    /// Creates a texture from texels, row 0 on top. `None` unless there are width times height of
+    /// them, at least one.
     pub fn new(width: u32, height: u32, texels: Vec<[u8; 3]>) -> Option<Self> {
         let values = Box::new(std::array::from_fn(|i| i as f32 / 255.0));
         Texture::of(width, height, texels.len(), || Texels::Eight(texels.into(), values))
     }
 
-    /// The same from numbers of single precision.
+    /// Creates a texture from linear `f32` texels, row 0 on top.
     pub fn from_floats(width: u32, height: u32, texels: Vec<Color>) -> Option<Self> {
         Texture::of(width, height, texels.len(), || Texels::Float(texels.into()))
     }
@@ -64,7 +64,7 @@ impl Texture {
         fits.then(|| Texture { width, height, texels: texels(), alpha: None, mapping: None, levels: Arc::default() })
     }
 
-    /// The same texels, with other meanings of the 256 values of eight bits.
+    /// Replaces the meaning of the 256 values of 8-bit texels.
     pub fn decoded(self, decode: impl Fn(u8) -> f32) -> Self {
         let texels = match self.texels {
             Texels::Eight(texels, _) => Texels::Eight(texels, Box::new(std::array::from_fn(|i| decode(i as u8)))),
@@ -77,7 +77,7 @@ impl Texture {
         self.width as usize * self.height as usize
     }
 
-    /// The colour of a texel.
+    /// Colour of a texel.
     fn color(&self, at: usize) -> [f32; 3] {
         match &self.texels {
             Texels::Eight(texels, values) => texels[at].map(|c| values[usize::from(c)]),
@@ -85,7 +85,7 @@ impl Texture {
         }
     }
 
-    /// The opacity of a texel.
+    /// Opacity of a texel.
     fn opacity(&self, at: usize) -> f32 {
         match &self.alpha {
             None => 1.0,
@@ -94,12 +94,12 @@ impl Texture {
         }
     }
 
-    /// Whether it is not opaque everywhere.
+    /// Returns true if some texels are not opaque.
     pub fn has_alpha(&self) -> bool {
         self.alpha.is_some()
     }
 
-    /// Bytes in memory.
+    /// Size in memory in bytes.
     pub fn bytes(&self) -> usize {
         let texel = match &self.texels {
             Texels::Eight(..) => size_of::<[u8; 3]>(),
@@ -113,19 +113,19 @@ impl Texture {
         self.count() * (texel + opacity) + self.levels.iter().map(Texture::bytes).sum::<usize>()
     }
 
-    /// The same with an opacity for each texel; opaque where there are not as many.
+    /// Sets the opacity of each texel; opaque if the number of values differs.
     pub fn with_alpha(self, alpha: Option<Vec<u8>>) -> Self {
         let alpha = alpha.filter(|alpha| alpha.len() == self.count() && alpha.iter().any(|&a| a < 255));
         Texture { alpha: alpha.map(|alpha| Opacity::Eight(alpha.into())), ..self }
     }
 
-    /// The same with opacities of single precision.
+    /// Sets the opacity of each texel as `f32`.
     pub fn with_opacity(self, alpha: Vec<f32>) -> Self {
         let is_given = alpha.len() == self.count() && alpha.iter().any(|&a| a < 1.0);
         Texture { alpha: is_given.then(|| Opacity::Float(alpha.into())), ..self }
     }
 
-    /// Whether all texels are the same.
+    /// Returns true if all texels are equal.
     pub fn is_flat(&self) -> bool {
         match &self.texels {
             Texels::Eight(texels, _) => texels.iter().all(|texel| *texel == texels[0]),
@@ -133,19 +133,19 @@ impl Texture {
         }
     }
 
-    /// The same texels, shared, lying otherwise on surfaces.
+    /// Returns a texture with another mapping that shares the texels.
     pub fn mapped(&self, mapping: Mapping) -> Self {
         Texture { mapping: Some(mapping), ..self.clone() }
     }
 
-    /// How it lies on surfaces, unless as the course has it.
+    /// Mapping onto surfaces; `None` for the course's rules.
     pub fn mapping(&self) -> Option<&Mapping> {
         self.mapping.as_ref()
     }
 
-    /// Colour and opacity at (u, v), with v upwards, as its mapping says. Bilinear mixing is of
-    /// linear values. With levels, those two are mixed whose texels are about as wide as what is
-    /// seen there, which is `width` of its own texels wide.
+    /// Colour and opacity at (u, v), with v upwards, by a mapping. Bilinear filtering uses linear
+    /// values. With mipmap levels, interpolates between the two levels whose texels are about as
+    /// wide as the sample, which covers `width` texels of the full size.
     pub fn texel(&self, mapping: &Mapping, uv: Vec2, width: f32) -> [f32; 4] {
         let place = mapping.place(uv);
         if width <= 1.0 || width.is_nan() || self.levels.is_empty() {
@@ -163,17 +163,17 @@ impl Texture {
         mapping.cut(std::array::from_fn(|c| larger[c] + part * (smaller[c] - larger[c])))
     }
 
-    /// How many of its texels, along a side, a length of texture coordinates is.
+    /// Length of a distance in texture coordinates, in texels.
     pub fn texels_in(&self, mapping: &Mapping, length: f32) -> f32 {
         let [[a, b, _], [c, d, _]] = mapping.transform;
         let area = (a * d - b * c).abs() * self.width as f32 * self.height as f32;
         length * area.sqrt()
     }
 
-    /// How the red of a place changes with u and v.
+    /// Gradient of the red channel by u and v.
     pub fn slope(&self, mapping: &Mapping, uv: Vec2) -> Vec2 {
         let place = mapping.place(uv);
-        // As far as a texel is wide: less would tell where texels lie, and no more of the picture.
+        // The step is one texel: a smaller one would only show the grid of texels.
         let step = Vec2::new(1.0 / self.width as f32, 1.0 / self.height as f32);
         let along = |way: Vec2| {
             let [after, before] = [place + 0.5 * way, place - 0.5 * way].map(|at| self.texel_at(mapping, at)[0]);
@@ -181,12 +181,12 @@ impl Texture {
         };
         let (x, y) = (along(Vec2::new(step.x, 0.0)) / step.x, along(Vec2::new(0.0, step.y)) / step.y);
         let [[a, b, _], [c, d, _]] = mapping.transform;
-        // The surface's v goes up, the picture's down.
+        // The surface's v points up, the picture's down.
         Vec2::new(a * x + c * y, -(b * x + d * y))
     }
 
-    /// Colour and opacity at a place of the picture, in its widths from the left and heights from
-    /// the top; opacity is not cut yet.
+    /// Colour and opacity at a position in the picture, in widths from the left and heights from
+    /// the top, before the alpha cutoff.
     fn texel_at(&self, mapping: &Mapping, place: Vec2) -> [f32; 4] {
         let (x, y) = (f64::from(place.x) * f64::from(self.width), f64::from(place.y) * f64::from(self.height));
         let texel = |i: i64, j: i64| {
@@ -210,8 +210,8 @@ impl Texture {
         })
     }
 
-    /// The colour at (u, v), with v upwards: bilinear, with no half-texel shift, clamped at the
-    /// border; or as its mapping says.
+    /// Colour at (u, v), with v upwards: by its mapping, else bilinear without a half-texel shift
+    /// and clamped at the border.
     pub fn at(&self, uv: Vec2) -> Color {
         if let Some(mapping) = &self.mapping {
             let [r, g, b, _] = self.texel(mapping, uv, 0.0);

@@ -1,16 +1,17 @@
-//! Daylight: the clear sky and the sun, from where the sun stands and how hazy the air is.
+//! Daylight model: the clear sky and the sun, from the position of the sun and the turbidity of the
+//! air.
 //!
 //! Source: Preetham, Shirley and Smits, *A Practical Analytic Model for Daylight*, SIGGRAPH 1999.
-//! Brightness is in cd/m^2.
+//! Luminances are in cd/m^2.
 
 use crate::math::{Color, Vec2, Vec3, fp};
 use crate::spectrum::space::SRGB_FROM_XYZ;
 use std::f32::consts::PI;
 
-/// The sun's illuminance outside the atmosphere, in lux.
+/// Illuminance of the sun outside the atmosphere, in lux.
 const SUN_OUTSIDE: f32 = 128_000.0;
 
-/// Half the angle in which the sun is seen, in degrees.
+/// Angular radius of the sun in degrees.
 pub const SUN_RADIUS: f32 = 0.2665;
 
 /// A clear sky.
@@ -18,20 +19,20 @@ pub const SUN_RADIUS: f32 = 0.2665;
 pub struct Sky {
     /// Unit vector to the sun.
     sun: Vec3,
-    /// From 2 (clear) to 10 (hazy).
+    /// Turbidity from 2 (clear) to 10 (hazy).
     turbidity: f32,
-    /// Brightness and chromaticity at the zenith.
+    /// Luminance and chromaticity at the zenith.
     zenith: Vec3,
-    /// Perez' five numbers of each.
+    /// Perez' five coefficients for each of the three.
     perez: [[f32; 5]; 3],
     /// Perez' function at the zenith.
     there: Vec3,
-    /// The light from below the horizon.
+    /// Light from below the horizon.
     ground: Color,
 }
 
 impl Sky {
-    /// `sun` leads to the sun, which is taken to the horizon where it is below. y is up.
+    /// Creates a sky. `sun` points to the sun, y is up; a sun below the horizon is moved to it.
     pub fn new(sun: Vec3, turbidity: f32) -> Self {
         let sun = Vec3::new(sun.x, sun.y.max(0.0), sun.z).normalize_or(Vec3::Y);
         let t = turbidity.clamp(1.7, 10.0);
@@ -62,23 +63,23 @@ impl Sky {
         ];
         let there = Vec3::from(perez.map(|p| shape(&p, 1.0, theta, sun.y)));
         let zenith = Vec3::new(bright.max(0.0), x, y);
-        // A fifth of what is overhead.
+        // A fifth of the zenith luminance.
         Sky { sun, turbidity: t, zenith, perez, there, ground: Vec3::splat(0.2 * zenith.x) }
     }
 
-    /// The same over a matte ground that gives back a share of the light of sun and sky.
+    /// Returns the sky over a matte ground that reflects a fraction of the light of sun and sky.
     pub fn over(self, reflectance: f32) -> Self {
         let ground = reflectance * (self.on_level_ground() + self.sun() * self.sun.y / PI);
         Sky { ground, ..self }
     }
 
-    /// The mean of the light from above by the cosine: illuminance of level ground over pi, without
+    /// Cosine-weighted mean radiance of the sky: illuminance of horizontal ground over pi, without
     /// the sun.
     pub fn on_level_ground(&self) -> Color {
         const ROWS: u32 = 64;
         let mut sky = Color::ZERO;
         for row in 0..ROWS {
-            // Rings that a level surface sees alike.
+            // Rings of equal projected area.
             let sine = ((row as f32 + 0.5) / ROWS as f32).sqrt();
             for column in 0..ROWS {
                 let (s, c) = fp::sin_cos_degrees((f64::from(column) + 0.5) * 360.0 / f64::from(ROWS));
@@ -89,7 +90,7 @@ impl Sky {
         sky
     }
 
-    /// The light from a unit direction; below the horizon that of the ground.
+    /// Light from a unit direction; below the horizon it is that of the ground.
     pub fn at(&self, dir: Vec3) -> Color {
         if dir.y < 0.0 {
             return self.ground;
@@ -100,13 +101,12 @@ impl Sky {
         linear(bright.max(0.0), x, y)
     }
 
-    /// The illuminance of the sun on a surface that faces it, in lux, by colour.
+    /// Illuminance by the sun on a surface that faces it, in lux, by colour.
     ///
-    /// Rayleigh's and the aerosol's part of the attenuation, at the wavelengths of red, green and
-    /// blue.
+    /// Attenuated by Rayleigh scattering and aerosols, at the wavelengths of red, green and blue.
     pub fn sun(&self) -> Color {
         let degrees = angle(self.sun.y).to_degrees();
-        // The mass of air on the way, after Kasten and Young, 1989.
+        // Relative air mass, after Kasten and Young, 1989.
         let mass = 1.0 / (self.sun.y + 0.50572 * fp::pow(96.07995 - degrees, -1.6364));
         let beta = 0.04608 * self.turbidity - 0.04586;
         let through = |wavelength: f32| {
@@ -116,7 +116,7 @@ impl Sky {
     }
 }
 
-/// A picture of the light from all directions: the middle towards -z, y upwards.
+/// Environment map of a function of the direction: the centre towards -z, y upwards.
 pub fn picture(width: u32, height: u32, at: impl Fn(Vec3) -> Color) -> Vec<Color> {
     let pixel = |i: u32| {
         let place = (Vec2::new((i % width) as f32, (i / width) as f32) + 0.5) / Vec2::new(width as f32, height as f32);
@@ -136,7 +136,7 @@ fn shape(&[a, b, c, d, e]: &[f32; 5], cos_zenith: f32, to_sun: f32, cos_sun: f32
     (1.0 + a * fp::exp(b / cos_zenith)) * (1.0 + c * fp::exp(d * to_sun) + e * cos_sun * cos_sun)
 }
 
-/// Linear Rec.709 of CIE Yxy.
+/// Linear Rec.709 from CIE Yxy.
 fn linear(bright: f32, x: f32, y: f32) -> Color {
     let xyz = Vec3::new(bright * x / y, bright, bright * (1.0 - x - y) / y);
     (SRGB_FROM_XYZ.as_mat3() * xyz).max(Vec3::ZERO)
@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn the_ground_gives_back_its_share_of_sun_and_sky() {
         let sky = Sky::new(Vec3::new(0.3, 0.6, -0.5), 3.0).over(0.5);
-        // By equal solid angles instead of equal shares of the illuminance.
+        // By equal solid angles instead of equal projected areas.
         let (mut light, steps) = (Color::ZERO, 400);
         for row in 0..steps {
             let up = (row as f32 + 0.5) / steps as f32;
@@ -176,8 +176,8 @@ mod tests {
 
     #[test]
     fn the_zenith_has_the_published_brightness_and_colour() {
-        // By hand from the paper's formulas at turbidity 3 with the sun 45 degrees high: chi = (4/9
-        // - 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
+        // By hand from the paper's formulas at turbidity 3 with the sun at 45 degrees: chi = (4/9 -
+        // 3/120) (pi - pi/2) = 0.6589, Yz = 7.1649 tan chi - 0.6465 + 2.4192 = 7.319 kcd/m^2.
         let sky = sky(45.0, 3.0);
         assert!((brightness(sky.at(Vec3::Y)) / 7_319.0 - 1.0).abs() < 0.005, "{}", brightness(sky.at(Vec3::Y)));
         let zenith = sky.at(Vec3::Y);
@@ -186,9 +186,9 @@ mod tests {
 
     #[test]
     fn daylight_is_as_bright_as_the_paper_says() {
-        // The paper's formulas, summed over the sky by a program of its own, say 31.53 klx on the
-        // ground; that is twice what IES gives for a clear sky at this height of the sun (0.8 +
-        // 15.5 sqrt(sin h)). A high sun makes 60 to 110 klx.
+        // The paper's formulas, integrated over the sky by an independent program, give 31.53 klx
+        // on the ground. That is twice the IES value for a clear sky at this altitude of the sun
+        // (0.8 + 15.5 sqrt(sin h)). A high sun gives 60 to 110 klx.
         let sky = sky(60.0, 3.0);
         let n = 200;
         let mut horizontal = 0.0;

@@ -1,4 +1,4 @@
-//! Lookups in small pictures whose answers are known.
+//! Tests of lookups in small pictures with known results.
 
 use super::*;
 use crate::math::Vec3;
@@ -19,7 +19,7 @@ fn texels_are_exact_at_their_corners_and_mixed_between() {
     assert_eq!(at(0.25, 1.0), Vec3::new(0.5, 0.5, 0.0));
     assert_eq!(at(0.0, 0.75), Vec3::new(0.5, 0.0, 0.5));
     assert_eq!(at(0.25, 0.75), Vec3::splat(0.5));
-    // Past the last texel there is no other.
+    // Clamped at the last texel.
     assert_eq!(at(0.75, 0.25), Vec3::ONE);
 }
 
@@ -47,7 +47,7 @@ fn a_texture_has_as_many_texels_as_it_says() {
 
 #[test]
 fn directions_see_the_face_that_they_point_to() {
-    // One colour a face, from the order of the names.
+    // One colour for each face, in the order of the names.
     let face = |i: u8| Texture::new(1, 1, vec![[i * 10; 3]]).unwrap();
     let map = CubeMap { faces: std::array::from_fn(|i| face(i as u8)), mirrored_back: false };
     let seen = |d: Vec3| CubeMap::FACES[(map.at(d).x * 25.5).round() as usize];
@@ -67,8 +67,7 @@ fn directions_see_the_face_that_they_point_to() {
     assert!(map.at(Vec3::ZERO).is_finite() && map.at(Vec3::NAN).is_finite());
 }
 
-/// A letter on each face, none of which looks like itself in a mirror or on its head, in the order
-/// of the faces' names.
+/// A letter on each face, in the order of the faces' names. None of them is symmetric.
 const LETTERS: [[&str; 5]; 6] = [
     ["###  ", "#  # ", "###  ", "# #  ", "#  ##"],
     ["#    ", "#    ", "#    ", "#    ", "#### "],
@@ -78,9 +77,9 @@ const LETTERS: [[&str; 5]; 6] = [
     ["  ###", "   # ", "   # ", "#  # ", " ##  "],
 ];
 
-/// What somebody in the middle sees who looks at a face: the course's pictures of a church meet at
-/// their edges this way, and its programs' `back` is mirrored, which more than half of the pixels
-/// of their pictures of the rabbit in the church show.
+/// Faces seen from the centre of the cube: the course's pictures of a church meet at their edges
+/// this way. Its programs mirror `back`, as more than half of the pixels of their renderings of the
+/// rabbit in the church show.
 #[test]
 fn letters_are_seen_upright_and_the_course_mirrors_two() {
     let face = |rows: &[&str; 5]| {
@@ -96,8 +95,7 @@ fn letters_are_seen_upright_and_the_course_mirrors_two() {
         let side = forward.cross(up);
         let seen = |map: &CubeMap, mirror: bool, flip: bool| -> Vec<String> {
             let cell = |i: usize| (2.0 * i as f32 + 1.0) / 5.0 - 1.0;
-            // Texels are exact at their corners: each is looked up there, just inside of the
-            // direction in which it begins.
+            // Texels are exact at their corners, so each is looked up just inside its corner.
             let shift = |turned: bool| if turned { 0.999 / 5.0 } else { -0.999 / 5.0 };
             let pixel = |row: usize, column: usize| {
                 let (u, v) = (cell(column) + shift(mirror), -cell(row) - shift(flip));
@@ -120,7 +118,7 @@ fn numbers_are_looked_up_as_they_are() {
     let texture = Texture::from_floats(2, 1, texels.clone()).unwrap().with_opacity(vec![0.25, 1.0]);
     let mapping = Mapping { nearest: true, ..Mapping::default() };
     assert_eq!(texture.texel(&mapping, Vec2::new(0.25, 0.5), 0.0), [2.0, 0.1, -1.0, 0.25]);
-    // They have no curve, and take 16 bytes a texel with their opacity.
+    // They have no decoding curve, and take 16 bytes a texel with their opacity.
     assert_eq!(texture.clone().decoded(|_| 0.5), texture);
     assert!(texture.bytes() == 32 && texture.has_alpha() && !texture.is_flat());
     assert!(Texture::from_floats(1, 1, texels).is_none());

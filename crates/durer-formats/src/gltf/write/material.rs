@@ -1,5 +1,5 @@
-//! Materials: the words of OpenPBR as metallic-roughness and KHR extensions, the other way round
-//! than they are read.
+//! Writer of materials: translates OpenPBR parameters into metallic-roughness and KHR extensions,
+//! the inverse of the reader.
 
 use super::Writer;
 use durer_scene::bsdf::lobe::hair::Fibre;
@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 use std::f32::consts::TAU;
 
 impl Writer<'_> {
-    /// The number of a material of the scene. `holes`: colours of vertices let through what is
-    /// behind them.
+    /// Index of the glTF material for a material of the scene; writes it on the first use. `holes`:
+    /// some vertex colours are not opaque.
     pub(super) fn material(&mut self, number: u32, holes: bool) -> Option<usize> {
         if let Some(known) = self.materials.get(&number) {
             return *known;
@@ -39,7 +39,7 @@ impl Writer<'_> {
             Material::Solid(solid, _) => {
                 self.left_out("glTF has no patterns of two materials: the first is written");
                 let first = solid.materials()[0];
-                // Patterns are made of earlier materials.
+                // Patterns refer to earlier materials only, so the recursion ends.
                 if first < number { self.material(first, holes) } else { None }
                     .and_then(|at| self.lists.get("materials")?.get(at).cloned())
             }
@@ -52,19 +52,19 @@ impl Writer<'_> {
     fn layers(&mut self, m: &PrincipledMaterial, holes: bool) -> Value {
         let solid = m.walls == Walls::Solid;
         let clear = m.transmission_weight > 0.0;
-        // There both sides shine, or the other is not seen.
+        // In glTF both sides emit, unless the back side is culled.
         let dark_backs = solid && !clear && m.emission_luminance > 0.0;
         let mut material = json!({ "doubleSided": m.backs == Backs::Shown && !dark_backs });
         let mut extensions = Map::new();
         let unlit = m.emission_luminance == 1.0 && m.base_weight == 0.0 && m.specular_weight == 0.0;
-        // What passes a surface has the base colour.
+        // In glTF, transmitted light has the base colour.
         let tinted = clear && m.transmission_depth == 0.0;
         let base = match (unlit, tinted) {
             (true, _) => m.emission_color,
             (false, true) if m.transmission_weight >= 0.5 => m.transmission_color,
             _ => m.base_weight * m.base_color,
         };
-        // There metals have neither weight nor tint.
+        // glTF's metals have neither specular weight nor tint.
         let textured = m.metallic_roughness_texture.is_some() || m.base_metalness_texture.is_some();
         let is_metal = m.base_metalness == 1.0 && !textured;
         let base = if is_metal { m.specular_weight.min(1.0) * base } else { base };
@@ -112,7 +112,7 @@ impl Writer<'_> {
         }
         let pictured = m.specular_weight_texture.is_some() || m.specular_color_texture.is_some();
         if !is_metal && (m.specular_weight != 1.0 || m.specular_color != Vec3::ONE || pictured) {
-            // A weight above 1 goes into the colour, which has no bound.
+            // A weight above 1 is multiplied into the colour, which is unbounded.
             let weight = m.specular_weight.min(1.0);
             let color = m.specular_color * (m.specular_weight / weight.max(1e-6)).max(1.0);
             let value = json!({ "specularFactor": weight, "specularColorFactor": color.to_array() });
@@ -130,7 +130,7 @@ impl Writer<'_> {
             }
         }
         if m.disperses() {
-            // Source: KHR_materials_dispersion: 20 over Abbe's number.
+            // Source: KHR_materials_dispersion: 20 / Abbe number.
             let dispersion = 20.0 * m.transmission_dispersion_scale / m.transmission_dispersion_abbe_number;
             extend("KHR_materials_dispersion", json!({ "dispersion": dispersion }));
         }
@@ -149,7 +149,7 @@ impl Writer<'_> {
             extend("KHR_materials_anisotropy", value);
         }
         if m.thin_film_weight > 0.0 {
-            // In nanometres.
+            // Micrometres to nanometres.
             let thickness = 1000.0 * m.thin_film_thickness;
             let film = json!({
                 "iridescenceFactor": m.thin_film_weight, "iridescenceIor": m.thin_film_ior,
@@ -199,8 +199,8 @@ impl Writer<'_> {
         material
     }
 
-    /// Puts a picture of a parameter into the extension that has a place for it; false where none
-    /// has one that means the same.
+    /// Adds a parameter's texture to its extension; returns false if no extension has an
+    /// equivalent.
     fn add_picture(
         &mut self,
         m: &PrincipledMaterial,
@@ -209,9 +209,9 @@ impl Writer<'_> {
         extensions: &mut Map<String, Value>,
     ) -> bool {
         match field {
-            // It is that of the base colour there.
+            // In glTF this is the base colour texture.
             "transmission_color_texture" => return m.base_color_texture.as_ref() == Some(name),
-            // It is in the same picture as the strength.
+            // In glTF this is in the same texture as the strength.
             "specular_rotation_texture" if m.specular_anisotropy_texture.is_some() => return true,
             _ => {}
         }
@@ -219,7 +219,7 @@ impl Writer<'_> {
         let Some(value) = extensions.get_mut(extension) else { return false };
         let Picture { bytes, mapping } = self.picture(name);
         let fits = match field {
-            // Directions are in the same picture as the strength.
+            // The rotation must be in the same texture as the strength.
             "specular_anisotropy_texture" => {
                 let turned = Picture { bytes, mapping: Mapping { channel: Some(Channel::Angle), ..mapping } };
                 m.specular_rotation_texture.as_ref().is_some_and(|turns| self.picture(turns) == turned)
@@ -239,7 +239,7 @@ impl Writer<'_> {
     }
 }
 
-/// The roughness and the strength of anisotropy that glTF has for a material's.
+/// Returns the roughness and the anisotropy strength in glTF's parameters.
 fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     let pictured = m.metallic_roughness_texture.is_some()
         || m.specular_roughness_texture.is_some()
@@ -247,7 +247,8 @@ fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     if m.specular_anisotropy == 0.0 || pictured {
         return (m.specular_roughness, m.specular_anisotropy);
     }
-    // Across the highlight alpha is that of the roughness, and along it grows towards 1.
+    // In glTF the alpha across the highlight follows from the roughness, and the alpha along it
+    // grows towards 1.
     let Vec2 { x: along, y: across } = Ggx::new(m.specular_roughness, m.specular_anisotropy).alpha;
     if across >= 1.0 {
         return (1.0, 0.0);
@@ -255,7 +256,7 @@ fn brushed(m: &PrincipledMaterial) -> (f32, f32) {
     (across.sqrt(), ((along - across) / (1.0 - across)).max(0.0).sqrt())
 }
 
-/// Pictures of parameters: the extension, where in it they are, and the channel that counts.
+/// Textures of parameters: field, extension, key in the extension, and the channel that is read.
 const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("specular_weight_texture", "KHR_materials_specular", "specularTexture", Some(Channel::Alpha)),
     ("specular_color_texture", "KHR_materials_specular", "specularColorTexture", None),
@@ -270,7 +271,7 @@ const PICTURES: [(&str, &str, &str, Option<Channel>); 11] = [
     ("thin_film_thickness_texture", "KHR_materials_iridescence", "iridescenceThicknessTexture", Some(Channel::Green)),
 ];
 
-/// What is written of materials.
+/// Extensions that materials and lights are written with.
 const EXTENSIONS: [&str; 13] = [
     "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
@@ -287,8 +288,8 @@ const EXTENSIONS: [&str; 13] = [
     "KHR_lights_punctual",
 ];
 
-/// Layers that look like the course's material: a highlight's sharpness is a roughness, strong
-/// mirrors are metals, what lets light through is glass.
+/// Approximates a Phong material by OpenPBR: a sharp highlight becomes a low roughness, a strong
+/// mirror a metal, a transparent material glass.
 fn alike(phong: &PhongMaterial) -> PrincipledMaterial {
     let diffuse = phong.diffuse_color.unwrap_or(Vec3::ONE);
     let sharp = phong.exponent.or(phong.shininess).filter(|_| phong.specular_color != Vec3::ZERO);

@@ -1,4 +1,4 @@
-//! Meshes: one list of vertices for positions, normals and coordinates.
+//! Writer of meshes: positions, normals and texture coordinates share one vertex list.
 
 use super::Writer;
 use durer_scene::math::{Vec2, Vec3};
@@ -13,7 +13,7 @@ const VERTICES: u32 = 34962;
 const INDICES: u32 = 34963;
 
 impl Writer<'_> {
-    /// The number of a mesh of a name with a material.
+    /// Index of the glTF mesh for a mesh with a material; writes it on the first use.
     pub(super) fn mesh(&mut self, name: String, data: &MeshData, material: Option<u32>) -> Option<usize> {
         let key = (name, material);
         if let Some(known) = self.meshes.get(&key) {
@@ -36,7 +36,7 @@ impl Writer<'_> {
         Some(number)
     }
 
-    /// Attributes and indices of triangles; `None` where there are none.
+    /// Writes the attributes and indices of a mesh; `None` if it has no triangles.
     fn geometry(&mut self, data: &MeshData) -> Option<Value> {
         if data.triangles.is_empty() || data.positions.len() >= NO_INDEX as usize {
             return None;
@@ -50,13 +50,14 @@ impl Writer<'_> {
         attributes["POSITION"] = self.floats(&positions, 3, true).into();
         if !triangle_normals.is_empty() {
             let normal = |v: &[u32; 3]| normals.get(v[2] as usize).copied().unwrap_or(Vec3::Z);
-            // What is as good as of length 1 stays as it is, so that it is read again as it was.
+            // Keeps normals that are nearly of unit length, so that reading them back gives equal
+            // values.
             let unit = |n: Vec3| if (n.length() - 1.0).abs() < 1e-3 { n } else { n.normalize_or(Vec3::Z) };
             let normals = list(&|v| unit(normal(v)).to_array().into());
             attributes["NORMAL"] = self.floats(&normals, 3, false).into();
         }
         if !data.triangle_uvs.is_empty() {
-            // glTF's v grows downwards.
+            // glTF's v axis points down.
             let uv = |v: &[u32; 3]| data.uvs.get(v[1] as usize).copied().unwrap_or(Vec2::Y);
             let uvs = list(&|v| vec![uv(v).x, 1.0 - uv(v).y]);
             attributes["TEXCOORD_0"] = self.floats(&uvs, 2, false).into();
@@ -81,7 +82,7 @@ impl Writer<'_> {
         Some(json!({ "attributes": attributes, "indices": indices }))
     }
 
-    /// The accessor of rows of numbers.
+    /// Writes rows of `width` numbers; returns the index of the accessor.
     fn floats(&mut self, values: &[f32], width: usize, bounds: bool) -> usize {
         let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
         let view = self.view(&bytes, Some(VERTICES));
@@ -99,13 +100,13 @@ impl Writer<'_> {
     }
 }
 
-/// Whether colours of vertices let through what is behind them.
+/// Returns true if some vertex colour is not opaque.
 fn has_holes(data: &MeshData) -> bool {
     data.colors.iter().any(|color| color[3] < 1.0)
 }
 
-/// The corners of all triangles as numbers of vertices, each of which has a position, coordinates
-/// and a normal.
+/// Builds an indexed vertex list: returns a vertex index for each triangle corner, and for each
+/// vertex its indices of position, texture coordinate and normal.
 fn welded(data: &MeshData, triangle_normals: &[[u32; 3]]) -> (Vec<u32>, Vec<[u32; 3]>) {
     let (mut known, mut vertices) = (HashMap::new(), Vec::new());
     let own = |list: &[[u32; 3]], i: usize, k: usize| list.get(i).map_or(NO_INDEX, |corners| corners[k]);

@@ -1,7 +1,8 @@
-//! Scenes as glTF 2.0: one file of JSON with everything in it, or a binary one.
+//! Writer of scenes as glTF 2.0: a self-contained JSON file, or a binary file.
 //!
 //! Source: *glTF 2.0 Specification*, Khronos Group, 2021, and the extensions that are named where
-//! they are written. What it has no words for is told once, without a place.
+//! they are written. Content that glTF cannot represent is reported once per message, without a
+//! span.
 
 mod material;
 mod mesh;
@@ -26,18 +27,18 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f32::consts::PI;
 use std::sync::Arc;
 
-/// A scene on its way to a file.
+/// State of writing one scene.
 struct Writer<'a> {
     scene: &'a Scene,
     output: &'a Output<'a>,
     diagnostics: &'a mut Diagnostics,
     told: BTreeSet<String>,
     buffer: Vec<u8>,
-    /// Lists of the file, by name.
+    /// Top-level arrays of the file by name.
     lists: BTreeMap<&'static str, Vec<Value>>,
     extensions: BTreeSet<&'static str>,
-    /// Numbers of attributes of meshes, of meshes with materials, of materials, of textures and of
-    /// images.
+    /// Items already written, by their source: geometry, meshes with materials, materials, textures
+    /// and images.
     attributes: BTreeMap<String, Option<Value>>,
     meshes: BTreeMap<(String, Option<u32>), usize>,
     materials: BTreeMap<u32, Option<usize>>,
@@ -46,7 +47,7 @@ struct Writer<'a> {
     lights: Vec<Value>,
 }
 
-/// Writes a scene as the ending of its file's name says: `.glb`, or JSON.
+/// Writes a scene as binary glTF if the file name ends in `.glb`, else as JSON.
 pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostics) -> Vec<u8> {
     let mut writer = Writer {
         scene,
@@ -76,7 +77,7 @@ pub(crate) fn write(scene: &Scene, output: &Output, diagnostics: &mut Diagnostic
 }
 
 impl Writer<'_> {
-    /// Tells once what is not written as it is.
+    /// Warns once per message about content that is lost or changed.
     fn left_out(&mut self, message: impl Into<String>) {
         let message = message.into();
         if self.told.insert(message.clone()) {
@@ -84,14 +85,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Adds to a list, and gives the number.
+    /// Appends to a top-level array; returns the index.
     fn add(&mut self, list: &'static str, value: Value) -> usize {
         let list = self.lists.entry(list).or_default();
         list.push(value);
         list.len() - 1
     }
 
-    /// Puts bytes into the buffer, and gives the number of their view.
+    /// Appends bytes to the buffer; returns the index of their buffer view.
     fn view(&mut self, bytes: &[u8], target: Option<u32>) -> usize {
         self.buffer.resize(self.buffer.len().next_multiple_of(4), 0);
         let mut view = json!({ "buffer": 0, "byteOffset": self.buffer.len(), "byteLength": bytes.len() });
@@ -102,7 +103,7 @@ impl Writer<'_> {
         self.add("bufferViews", view)
     }
 
-    /// The node of an object, if it shows anything.
+    /// Writes the node of an object; `None` if it has nothing visible.
     fn object(&mut self, object: &Object) -> Option<usize> {
         match &object.node {
             Node::Group(group) => {
@@ -114,7 +115,7 @@ impl Writer<'_> {
                 let map = MatrixOp::product(ops, MatrixRules::default());
                 let own = self.lists.get("nodes").is_some_and(|nodes| nodes[child].get("matrix").is_none());
                 if own {
-                    // The map is that of the node itself.
+                    // The node has no matrix yet, so it takes the transform itself.
                     if let Some(node) = self.lists.get_mut("nodes").and_then(|nodes| nodes.get_mut(child)) {
                         node["matrix"] = columns(map);
                     }
@@ -147,7 +148,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "mesh": mesh })))
     }
 
-    /// The triangles of a name: of the scene, or of a file.
+    /// Mesh data of an asset or a file.
     fn mesh_data(&mut self, name: &str) -> Option<Arc<MeshData>> {
         if let Some(data) = self.scene.assets.meshes.get(name) {
             return Some(data.clone());
@@ -161,12 +162,11 @@ impl Writer<'_> {
         data.map(Arc::new)
     }
 
-    /// The node of the camera.
+    /// Writes the node of the camera.
     fn camera(&mut self) -> Option<usize> {
         let camera = self.scene.camera.as_ref()?;
         let pose = camera.pose();
-        // Angles and sizes here are those of the picture's larger side, and glTF's those from
-        // bottom to top.
+        // The scene's angles and sizes refer to the picture's larger side, glTF's to its height.
         let aspect = self.scene.wishes.size.map_or(1.0, |(width, height)| width as f32 / height as f32);
         let narrow = aspect.max(1.0);
         let upright = |angle: f32| {
@@ -204,7 +204,7 @@ impl Writer<'_> {
         Some(self.add("nodes", json!({ "camera": camera, "matrix": columns(place) })))
     }
 
-    /// The node of a light, after KHR_lights_punctual.
+    /// Writes the node of a light with KHR_lights_punctual.
     fn light(&mut self, light: &Light) -> Option<usize> {
         let light = &light.in_units();
         let (mut written, center, direction) = match light {
@@ -226,7 +226,7 @@ impl Writer<'_> {
                 return None;
             }
         };
-        // Intensities are luminous: what a matte white surface shows is a pi-th of them.
+        // glTF's intensities are luminous: a matte white surface reflects 1 / pi of them.
         let color = light.color();
         let most = color.max_element();
         if most <= 0.0 {
@@ -254,7 +254,7 @@ impl Writer<'_> {
         }
     }
 
-    /// The bytes of the file.
+    /// Assembles the file.
     fn file(mut self, roots: &[usize]) -> Vec<u8> {
         let mut root = Map::new();
         root.insert(
@@ -294,7 +294,7 @@ impl Writer<'_> {
     }
 }
 
-/// The two chunks of a binary file. Source: *glTF 2.0 Specification*, chapter 4.4.
+/// Builds a binary file of two chunks. Source: *glTF 2.0 Specification*, chapter 4.4.
 fn container(text: &[u8], buffer: &[u8]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(28 + text.len() + buffer.len());
     let word = |bytes: &mut Vec<u8>, word: u32| bytes.extend(word.to_le_bytes());
@@ -313,12 +313,12 @@ fn container(text: &[u8], buffer: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// A map as sixteen numbers, column by column.
+/// A matrix as sixteen numbers in column-major order.
 fn columns(map: DAffine3) -> Value {
     json!(DMat4::from(map).to_cols_array().map(|x| x as f32))
 }
 
-/// The place of what looks along its -z, with y upwards.
+/// Transform of a camera or light that looks along its -z axis, with y up.
 fn placed(center: Vec3, direction: Vec3, up: Vec3) -> DAffine3 {
     let back = -direction.as_dvec3().normalize_or(DVec3::NEG_Z);
     let right = up.as_dvec3().cross(back).normalize_or(back.any_orthonormal_vector());

@@ -1,4 +1,4 @@
-//! What is written is read again as the same.
+//! Tests that written files read back as the original scene.
 
 use crate::folder::FolderSource;
 use crate::scene::{Output, SCENE_FORMATS};
@@ -12,13 +12,13 @@ use durer_scene::material::principled::{Backs, Walls};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Scene, Staging};
 
-/// A scene of our own language, as it is.
+/// Reads a scene in the scene language, which must be valid.
 fn scene(text: &str) -> Scene {
     let (scene, told) = read_in(&std::env::temp_dir(), "a.txt", text);
     scene.unwrap_or_else(|| panic!("{told:?}"))
 }
 
-/// What a scene is after it was written and read, and what was told of the writing.
+/// Writes and reads a scene; returns the result and the writer's findings.
 fn again(scene: &Scene, name: &str) -> (Scene, Vec<String>) {
     let folder = folder(&[]);
     let source = FolderSource::new(folder.path());
@@ -55,7 +55,7 @@ fn materials_come_back() {
                 (**layers).clone()
             };
             let (old, mut new) = (layers(&old.value), layers(&new.value));
-            // Of brushed things other numbers are written, which say the same.
+            // Roughness and anisotropy are converted to glTF's parameters and back, which rounds.
             for (old, new) in [
                 (old.specular_roughness, &mut new.specular_roughness),
                 (old.specular_anisotropy, &mut new.specular_anisotropy),

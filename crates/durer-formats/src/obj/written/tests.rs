@@ -5,7 +5,7 @@ use durer_scene::scene::Material;
 
 const FACES: &str = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
 
-/// A material of some statements, and what is told of them.
+/// Reads a material of some statements; returns it with the findings.
 fn read(statements: &str) -> (PrincipledMaterial, Vec<String>) {
     let folder = folder(&[("m.mtl", format!("newmtl a\n{statements}\n").as_bytes())]);
     let (scene, told) = read_in(folder.path(), "m.obj", FACES);
@@ -25,11 +25,11 @@ fn of(statements: &str) -> PrincipledMaterial {
 fn highlights_are_those_of_ks_beside_physical_words_too() {
     let weight = |statements: &str| of(statements).specular_weight;
     assert_eq!((weight("Ks 0 0 0\nillum 1"), weight("Ks 0.5 0.5 0.5\nillum 2"), weight("illum 2")), (0.0, 0.5, 0.0));
-    // A half is Disney's and Blender's default, with which the index alone reflects.
+    // 0.5 is Disney's and Blender's default: the reflectance of the index alone.
     assert_eq!((weight("Pr 0.5\nKs 0 0 0\nillum 1"), weight("Pr 0.5\nKs 0 0 0")), (0.0, 0.0));
     assert_eq!((weight("Pr 0.5\nKs 0.5 0.5 0.5\nillum 2"), weight("Pr 0.5\nKs 1 1 1")), (1.0, 2.0));
     assert_eq!((weight("Pr 0.5"), weight("Pr 0.5\nillum 1")), (1.0, 0.0));
-    // Metals have no such weight; what is metal in part has it as an index.
+    // Metals have no specular weight; a partial metal gets an index instead.
     let metal = of("Pr 0.5\nPm 1\nKs 0 0 0\nillum 1");
     assert_eq!((metal.specular_weight, metal.base_metalness), (1.0, 1.0));
     let half = of("Pr 0.5\nPm 0.5\nKs 0 0 0\nillum 1");
@@ -39,17 +39,17 @@ fn highlights_are_those_of_ks_beside_physical_words_too() {
 
 #[test]
 fn glass_is_what_tf_lets_through_beside_physical_words() {
-    // As Blender writes it.
+    // As written by Blender.
     let glass = of("Kd 0.25 1 1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 2\nPr 0\nPm 0\nTf 1 1 1");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
     let tinted = of("Kd 1 1 1\nPr 0\nTf 0.125 0.5 0.5\nd 0.75\nillum 9");
     assert_eq!((tinted.transmission_weight, tinted.transmission_color), (0.5, Vec3::new(0.5, 1.0, 1.0)));
     assert_eq!((tinted.opacity, of("Pr 0\nTf 0 0 0\nillum 4").transmission_weight), (0.75, 0.0));
-    // Without them the model makes glass, and the filter is its colour: of the way in and the way
-    // out together.
+    // Without physical statements the model makes glass, and the filter is its colour for entering
+    // and leaving together.
     let glass = of("Tf 0.25 1 1\nillum 4\nNi 1.25");
     assert_eq!((glass.transmission_weight, glass.transmission_color), (1.0, Vec3::new(0.5, 1.0, 1.0)));
-    // Maya and 3ds Max write one with everything.
+    // Maya and 3ds Max write `Tf` with every material.
     assert_eq!(of("Tf 1 1 1\nillum 2\nd 0.5").transmission_weight, 0.0);
     assert_eq!(of("Tf 0 0 0\nillum 2\nd 1").transmission_weight, 0.0);
     let (layers, told) = read("illum 2\nd 0.5\nTf 1 0 0");

@@ -9,8 +9,8 @@ use durer_scene::math::{Vec2, fp};
 use durer_scene::sampler::SampleId;
 use std::f64::consts::PI;
 
-/// The illuminance over pi of a point with a normal, by many samples: what a white matte surface
-/// shows.
+/// Irradiance over pi at a point with a normal, by many samples: the reflected radiance of a white
+/// matte surface.
 fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let options = LoadOptions::default();
@@ -27,7 +27,8 @@ fn shown(text: &str, point: Vec3, normal: Vec3) -> Vec3 {
     (sum / f64::from(SAMPLES) / PI).as_vec3()
 }
 
-/// What shines has no studio, so all light is that of the text.
+/// Compares the irradiance over pi with a closed form. Scenes with emitters get no default
+/// lighting, so all light comes from the text.
 fn lit(text: &str, point: Vec3, normal: Vec3, expected: f64) {
     let found = f64::from(shown(text, point, normal).x);
     assert!((found / expected - 1.0).abs() < 0.02, "{text}: {found}, not {expected}");
@@ -38,10 +39,10 @@ fn lights_have_the_radiance_that_is_written() {
     let light = "void light l 0 0 3 8 8 8\n";
     // A sphere: L (r / d)².
     lit(&format!("{light}l sphere s 0 0 4 0 0 5 1"), Vec3::ZERO, Vec3::Z, 8.0 / 25.0);
-    // A disc that looks down: L r² / (r² + d²). One that looks up gives nothing.
+    // A disc that faces down: L r² / (r² + d²). One that faces up contributes nothing.
     lit(&format!("{light}l ring s 0 0 8 0 0 2 0 0 -1 0 1"), Vec3::ZERO, Vec3::Z, 8.0 / 5.0);
     assert_eq!(shown(&format!("{light}l ring s 0 0 8 0 0 2 0 0 1 0 1"), Vec3::ZERO, Vec3::Z), Vec3::ZERO);
-    // A polygon shines to the side from which its corners go round to the left.
+    // A polygon emits on the side from which its corners are counter-clockwise.
     let square = "l polygon s 0 0 12 -1 -1 1 -1 1 1 1 1 1 1 -1 1";
     let (a, b) = (1.0 / 2f64.sqrt(), 1.0 / 2f64.sqrt());
     let factor = 4.0 * 2.0 / (2.0 * PI) * a * fp::atan_f64(b);
@@ -59,14 +60,14 @@ fn lights_have_the_radiance_that_is_written() {
         "void brightfunc f 2 skybr skybright.cal 0 3 2 9 0\nf glow g 0 0 4 1 1 1 0\ng source s 0 0 4 0 0 1 180";
     let found = f64::from(shown(overcast, Vec3::ZERO, Vec3::Z).x);
     assert!((found / 7.0 - 1.0).abs() < 0.03, "{found}");
-    // A spot as seen from its axis: L A / d², over pi, faded as from its focus, which is 2 behind;
-    // beside its cone nothing.
+    // A spot on its axis: L A / d², over pi, with the falloff from its focus, which is 2 behind;
+    // zero outside the cone.
     let spot = "void spotlight l 0 0 7 6 6 6 30 0 0 -2\nl ring r 0 0 8 0 0 3 0 0 -1 0 .1";
     lit(spot, Vec3::ZERO, Vec3::Z, 6.0 * 0.01 / 25.0);
     assert_eq!(shown(spot, Vec3::new(1.0, 0.0, 0.0), Vec3::Z), Vec3::ZERO);
 }
 
-/// The direction that a view sees at a point of the picture, -1 to 1 across its larger side.
+/// Direction of a view at a picture position, -1 to 1 across the larger side.
 fn sees(options: &str, x: f32, y: f32) -> Vec3 {
     let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
     let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
@@ -80,10 +81,10 @@ fn sees(options: &str, x: f32, y: f32) -> Vec3 {
 #[test]
 fn views_see_what_radiance_s_do() {
     let close = |a: Vec3, b: Vec3| assert!((a - b).length() < 1e-5, "{a} is not {b}");
-    // From the front x is to the right, z upwards.
+    // With the default view, x is to the right and z upwards.
     close(sees("-vh 90 -vv 90", 1.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vh 90 -vv 90", 0.0, 1.0), Vec3::new(0.0, 1.0, 1.0).normalize());
-    // Parallel views see what is before their point, or before `-vo`.
+    // Parallel views show what is in front of their point, or of `-vo`.
     for (options, near) in [("-vtl -vp 1 2 3 -vh 4 -vv 4", 0.0), ("-vtl -vo -2.5 -vh 4 -vv 4", -2.5)] {
         let files = folder(&[("s.rad", b"void plastic w 0 0 5 1 1 1 0 0 w sphere s 0 0 4 0 0 0 1")]);
         let (scene, told) = read_in(files.path(), "x.rif", &format!("scene = s.rad\nview = {options}\n"));
@@ -92,9 +93,9 @@ fn views_see_what_radiance_s_do() {
         let frame = CameraBasis::of(&camera, CameraRules::default());
         assert_eq!(camera.ray(&frame, &CameraSample::at(Vec2::ZERO)).unwrap().t_min, near);
     }
-    // A picture higher than wide: its height is 90 degrees.
+    // A picture taller than wide: its height is 90 degrees.
     close(sees("-vh 53.130102 -vv 90", 0.5, 0.0), Vec3::new(0.5, 1.0, 0.0).normalize());
-    // Moved to the right by half its width: the middle is where the edge was.
+    // Shifted to the right by half its width: the centre is where the edge was.
     close(sees("-vh 90 -vv 90 -vs .5", 0.0, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vta -vh 180 -vv 180", 0.5, 0.0), Vec3::new(1.0, 1.0, 0.0).normalize());
     close(sees("-vth -vh 180 -vv 180", 0.6, 0.0), Vec3::new(0.6, 0.8, 0.0));
@@ -104,8 +105,8 @@ fn views_see_what_radiance_s_do() {
 
 #[test]
 fn round_things_are_lit_as_flat_ones_are() {
-    // What a cone's side gets of a lamp above does not hang on its being made of triangles with
-    // bent normals.
+    // The irradiance of a cone's side from a light above must not depend on its tessellation into
+    // triangles with interpolated normals.
     let text = "void plastic w 0 0 5 .5 .5 .5 0 0\nvoid light l 0 0 3 9 9 9\nw cone c 0 0 8 0 0 0 0 0 .5 1 .1\n\
                 l polygon p 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2";
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());

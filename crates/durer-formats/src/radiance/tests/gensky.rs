@@ -1,4 +1,4 @@
-//! The sun and the skies that `gensky` and `gendaylit` print.
+//! Tests of the output of `gensky` and `gendaylit`.
 
 use super::*;
 use crate::radiance::args::Thing;
@@ -14,7 +14,7 @@ fn words(text: &str) -> Vec<Word> {
     std::iter::from_fn(|| words.next()).collect()
 }
 
-/// How bright the sun is, and the numbers of the sky.
+/// Radiance of the sun, and the arguments of the sky.
 fn printed(args: &str) -> (f64, Vec<f64>) {
     let (said, words) = (Said::default(), words(&format!("gensky {args}")));
     let text = gensky::text(&said, &words[0], &words[1..]).unwrap_or_else(|| panic!("{args}"));
@@ -35,7 +35,7 @@ fn it_prints_what_radiance_6_0_prints() {
         ("-ang 30 20 -u", 0.0, &[3.0, 21.79, 4.358]),
         ("6 21 12 -c -B 55", 0.0, &[2.0, 22.51, 3.501]),
         ("6 21 +9 -s", 0.0, &[1.0, 10.77, 22.85, 0.6427, 0.648701, -0.083341, 0.756467]),
-        // With a year, by a better formula than ours or theirs without.
+        // With a year, both programs use a more exact formula than without.
         ("2 28 12 -y 2011 +s", 6.747e6, &[1.0, 9.316, 20.86, 0.5563, 0.089294, -0.712975, 0.695481]),
         ("9 1 8.25 -i -t 4 -b 20", 0.0, &[4.0, 20.0, 6.981, 1.042, 0.843806, -0.21235, 0.492848]),
         // Too near the zenith for the formula.
@@ -69,7 +69,7 @@ fn a_sky_by_command_is_that_by_its_text() {
     };
     let still = sun(&format!("!gensky 6 21 12 +s -a 42.3 -o 71 -m 75\n{glow}"));
     assert!((still - Vec3::new(0.058393, 0.321824, -0.944997)).length() < 1e-4, "{still}");
-    // Turned by what it is piped into.
+    // Rotated by the command that it is piped into.
     let turned = sun(&format!("!gensky 6 21 12 +s -a 42.3 -o 71 -m 75 | xform -rz 90\n{glow}"));
     assert!((turned - Vec3::new(-0.321824, 0.058393, -0.944997)).length() < 1e-4, "{turned}");
 }

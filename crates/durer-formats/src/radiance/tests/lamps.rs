@@ -1,4 +1,4 @@
-//! Lamps that shine otherwise in each direction.
+//! Tests of lights with a directional distribution.
 
 use super::*;
 use crate::beside::put_beside;
@@ -9,7 +9,7 @@ use durer_scene::math::fp;
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// How strong all lights of a scene shine together in a direction, far away: radiance times area.
+/// Sum of the intensities of all lights of a scene in a direction: radiance times area.
 fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     let lights = scene.lights.as_ref().unwrap().iter();
     let strong = lights.map(|light| {
@@ -20,7 +20,7 @@ fn intensity(scene: &Scene, dir: DVec3) -> f64 {
     strong.sum()
 }
 
-/// A direction by its angle from straight down and around that.
+/// Direction by its angle from straight down and its angle around the vertical axis.
 fn way(theta: f64, phi: f64) -> DVec3 {
     let [(sin, cos), (s, c)] = [theta, phi].map(fp::sin_cos_degrees);
     DVec3::new(sin * c, sin * s, -cos)
@@ -34,14 +34,14 @@ fn sin(degrees: f64) -> f64 {
     fp::sin_cos_degrees(degrees).0
 }
 
-/// A table by two angles: 0 to 180 around, 0 to 180 from below.
+/// A table over two angles: 0 to 180 around, 0 to 180 from below.
 fn by_two() -> String {
     let values =
         (0..=18).flat_map(|i| (0..=36).map(move |j| (1.0 + 0.1 * f64::from(i) + 0.2 * f64::from(j)).to_string()));
     format!("2 0 180 19 0 180 37 {}", values.collect::<Vec<_>>().join(" "))
 }
 
-/// What that table says, which is linear.
+/// Values of that table, which is linear.
 fn of_two(theta: f64, phi: f64) -> f64 {
     let folded = if phi > 180.0 { 360.0 - phi } else { phi };
     1.0 + 0.01 * folded + 0.04 * theta
@@ -60,7 +60,7 @@ fn lamps_shine_as_their_tables_say() {
     ]);
     let down = |theta: f64| if theta < 90.0 { cos(theta) } else { 0.0 };
     let cases: [(&str, Expected); 11] = [
-        // Radiance 3 times 2 times what is written, over the cosine, times an area of pi or 4.
+        // Radiance 3, times 2, times the table's value, over the cosine, times an area of pi or 4.
         (
             "void brightdata d 4 flatcorr a.dat source.cal src_theta 0 1 2 d light l 0 0 3 3 3 3 l ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(move |theta, _| 6.0 * PI * down(theta)),
@@ -74,7 +74,7 @@ fn lamps_shine_as_their_tables_say() {
              l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0",
             Box::new(|theta, phi| if theta < 90.0 { 4.0 * of_two(theta, phi) } else { 0.0 }),
         ),
-        // A ball shows as large a disc to all sides; a tube its sides.
+        // The projected area of a sphere is a disc in all directions, that of a tube its side.
         (
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 2",
             Box::new(|theta, phi| 4.0 * PI * of_two(theta, phi)),
@@ -83,7 +83,7 @@ fn lamps_shine_as_their_tables_say() {
             "void brightdata d 5 corr b.dat source.cal src_phi2 src_theta 0 0 d light l 0 0 3 1 1 1 l cylinder r 0 0 7 0 0 1 0 0 4 .5",
             Box::new(|theta, phi| 3.0 * sin(theta) * of_two(theta, phi)),
         ),
-        // A box and a cylinder shine in all as the table says.
+        // The intensity of a whole box or cylinder is the table's value.
         (
             "void brightdata d 5 boxcorr b.dat source.cal src_phi2 src_theta 0 4 1 2 4 1 d light l 0 0 3 1 1 1 !genbox l r 2 4 1",
             Box::new(of_two),
@@ -93,7 +93,7 @@ fn lamps_shine_as_their_tables_say() {
              l cylinder r 0 0 7 0 0 0 0 0 3 1 l ring t 0 0 8 0 0 3 0 0 1 0 1 l ring u 0 0 8 0 0 0 0 0 -1 0 1",
             Box::new(of_two),
         ),
-        // Turned by a quarter about z, and upside down, by a command and by hand.
+        // Rotated by a right angle about z, and upside down, by a command and by explicit options.
         (
             "!xform -rz 90 lamp.rad",
             Box::new(
@@ -102,15 +102,15 @@ fn lamps_shine_as_their_tables_say() {
         ),
         (
             "void brightdata d 6 corr back.dat source.cal src_theta -rx 180 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
-            // 4 below, 1 at the side, nothing above; upside down.
+            // 4 below, 1 at the side, 0 above; upside down.
             Box::new(|theta, _| PI * if theta > 90.0 { 4.0 - 3.0 * (180.0 - theta) / 90.0 } else { theta / 90.0 }),
         ),
-        // An eighth of the ring's radiance: two angles of a photometer of type B.
+        // An eighth of the ring's radiance: two angles of a type B photometer.
         (
             "void brightdata d 4 corr one.dat source.cal srcB_vert2 0 0 d light l 0 0 3 1 1 1 l sphere r 0 0 4 1 2 3 1",
             Box::new(|_, _| PI),
         ),
-        // A spotlight of 60 degrees in all, by its cosine.
+        // A spotlight of 60 degrees in total, by its cosine.
         (
             "void spotlight s 0 0 7 2 2 2 60 0 0 -1 s ring r 0 0 8 0 0 1 0 0 -1 0 1",
             Box::new(|theta, _| if theta <= 30.0 { 2.0 * PI * cos(theta) } else { 0.0 }),
@@ -142,7 +142,7 @@ fn lamps_of_one_kind_share_a_profile_and_are_written_beside_a_scene() {
     let text = format!("{lamp} l polygon q 0 0 12 -1 -1 2 -1 1 2 1 1 2 1 -1 2 !xform -t 5 0 0 lamp.rad");
     let (scene, _) = read_in(files.path(), "scene.rad", &text);
     let scene = scene.unwrap();
-    // The last is another text.
+    // The last text is a different one.
     assert_eq!((scene.assets.profiles.len(), scene.lights.as_ref().unwrap().len()), (2, 48));
     let (made, beside) = put_beside(&scene, "kept", &FolderSource::new(files.path()));
     let names: Vec<&str> = beside.iter().map(|(name, _)| name.as_str()).collect();
@@ -177,14 +177,14 @@ fn points_of_a_lamp_lie_around_its_middle() {
 
 #[test]
 fn angles_may_have_something_added() {
-    // As `ies2rad` has it of files from 90 to 270 degrees.
+    // As `ies2rad` writes files from 90 to 270 degrees.
     let files = folder(&[("b.dat", by_two().as_bytes())]);
     let text = "void brightdata d 7 flatcorr b.dat source.cal src_phi2+20 src_theta -rz -90 0 0 d light l 0 0 3 1 1 1
         l polygon r 0 0 12 -1 -1 0 -1 1 0 1 1 0 1 -1 0";
     let (scene, _) = read_in(files.path(), "scene.rad", text);
     let scene = scene.unwrap();
     for (theta, phi) in [(30.0, 0.0), (30.0, 200.0)] {
-        // The lamp is turned back by a quarter: its angle is a quarter more.
+        // The light is rotated back by a right angle, so its angle is a right angle more.
         let around: f64 = (phi + 90.0_f64).rem_euclid(360.0);
         let folded = if around > 180.0 { 360.0 - around } else { around };
         let expected = 4.0 * (1.0 + 0.01 * (folded + 20.0) + 0.04 * theta);

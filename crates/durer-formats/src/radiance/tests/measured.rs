@@ -1,5 +1,6 @@
-//! What Radiance's own programs do, as far as it is not in the manual: chains of patterns, skies,
-//! folders, standard views, shares of a sheet.
+//! Tests of behaviour that was measured with Radiance's own programs, as the manual does not
+//! specify it: chains of patterns, skies, folders, standard views, reflectance and transmittance of
+//! a sheet.
 
 use super::*;
 use crate::radiance::args::Thing;
@@ -16,10 +17,10 @@ use durer_scene::math::Ray;
 use durer_scene::sampler::SampleId;
 use glam::{DMat3, DVec3};
 
-/// What needs no studio, behind some text.
+/// A sun, appended to texts that need no default lighting.
 const SUN: &str = "\nvoid light sun 0 0 3 1 1 1 sun source s 0 0 4 0 0 1 .5";
 
-/// The material of the first object.
+/// Material of the first object.
 fn first(scene: &Scene) -> &PrincipledMaterial {
     let root = scene.root.as_ref().unwrap();
     layers(scene, root.objects.first().expect("an object").material.unwrap())
@@ -42,16 +43,16 @@ fn a_surface_of_a_pattern_has_the_material_below_it() {
             assert!(scene.root.unwrap().objects.len() == 1);
         }
     }
-    // A texture that does nothing makes no second material.
+    // A texture without effect adds no second material.
     let text = format!("{base}m texfunc t 4 0 0 0 . 0 0 t sphere p 0 0 4 0 0 0 1 m sphere q 0 0 4 3 0 0 1{SUN}");
     assert_eq!(read(&text).0.unwrap().materials.len(), 1);
-    // Patterns over nothing are nothing.
+    // Patterns over `void` give nothing.
     assert!(
         clean(&format!("void brightfunc t 2 1 . 0 0 t sphere p 0 0 4 0 0 0 1{SUN}")).root.unwrap().objects.is_empty()
     );
 }
 
-/// How bright a sky of some numbers is in four directions.
+/// Radiance of a sky in four directions.
 fn skies(numbers: &str, turn: DMat3) -> [f32; 4] {
     let text = format!("void brightfunc f 2 skybr skybright.cal 0 {numbers}");
     let said = Said::default();
@@ -90,7 +91,7 @@ fn skies_are_as_bright_as_rtrace_says() {
 
 #[test]
 fn skies_are_turned_by_what_is_around_them_and_behind_their_names() {
-    // The bright side of a clear sky, at y, turned to x. As text, as a pipe, as a file.
+    // The bright side of a clear sky, at y, rotated to x: by text, pipe and file.
     let numbers = "0 7 1 30 7 1.1 0 .7 .714143";
     let rest = "f glow g 0 0 4 1 1 1 0 g source s 0 0 4 0 0 1 180";
     let sky = format!("void brightfunc f 2 skybr skybright.cal {numbers} {rest}");
@@ -166,7 +167,7 @@ fn standard_views_are_those_of_rad() {
         ("view= x -vh 20\nZONE= E -4 4 -4 4 0 6\nUP= X", [-16.0, 0.0, 3.0], [8.0, 0.0, 0.0], Vec3::Z),
         ("view= yl\nZONE= E -4 4 -4 4 0 6\nUP= Y", [0.0, -16.0, 3.0], [0.0, 8.0, 0.0], Vec3::X),
         ("view= z\nZONE= I -4 4 -4 4 0 6", [0.0, 0.0, 0.3], [0.0, 0.0, 6.0], Vec3::Y),
-        // Without a zone, the cube around all.
+        // Without a zone, the bounding cube of everything.
         ("view= XYZ", [16.0, 16.0, 18.0], [-8.0, -8.0, -8.0], Vec3::Z),
     ] {
         let (scene, told) = read_in(files.path(), "x.rif", format!("scene = s.rad\n{lines}\n"));
@@ -182,8 +183,8 @@ fn standard_views_are_those_of_rad() {
 
 #[test]
 fn a_sheet_has_the_shares_that_are_written() {
-    // By the rules of thin sheets, at right angles: 2 F / (1 + F) of what goes straight through, F
-    // of the rest.
+    // By the formulas of thin sheets at normal incidence: 2 F / (1 + F) of the specularly
+    // transmitted part, F of the rest.
     for (numbers, [reflected, straight, matte]) in [
         (".05 0 .9 1", [0.05, 0.95 * 0.9, 0.95 * 0.1]),
         (".2 0 .5 .4", [0.2, 0.8 * 0.2, 0.8 * 0.8]),
@@ -203,7 +204,7 @@ fn a_sheet_has_the_shares_that_are_written() {
         let near = found.into_iter().zip([reflected, straight, matte]).all(|(a, b): (f32, f32)| (a - b).abs() < 1e-5);
         assert!(near, "{numbers}: {found:?}");
     }
-    // What goes through has its roughness without a boundary too.
+    // Transmitted light is rough even without a reflecting layer.
     assert_eq!(sphere("void trans m 0 0 7 1 1 1 0 0 1 1").0.specular_roughness, 0.0);
     assert!((sphere("void trans m 0 0 7 1 1 1 0 .09 1 1").0.specular_roughness - 0.3).abs() < 1e-6);
 }
@@ -245,7 +246,7 @@ fn mirrors_show_what_stands_for_them_and_void_lets_see_through() {
         let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
         assert_eq!((first(&scene).opacity, scene.materials.len()), (opacity, 1), "{mixed}");
     }
-    // A mixture of which half is there.
+    // A mixture with an opacity of one half.
     let text = format!("{other}{MATTE}void mixfunc two 4 blue white .5 . 0 0 void mixfunc m 4 two void .5 . 0 0");
     let scene = clean(&format!("{text} m sphere s 0 0 4 0 0 0 1{SUN}"));
     assert_eq!(scene.materials.len(), 3);
@@ -274,7 +275,7 @@ fn what_is_no_surface_is_left_out() {
 
 #[test]
 fn only_materials_that_are_used_are_there() {
-    // A sun's, and the other side of glass, are not.
+    // Those of a sun and of the outer side of glass are removed.
     let scene = clean(
         "void light l 0 0 3 9 9 9 l source s 0 0 4 0 0 1 .5 void interface g 0 0 8 1 1 1 1.5 1 1 1 1.33 g bubble b 0 0 4 0 0 0 1",
     );

@@ -1,4 +1,4 @@
-//! Whether models are seen whole, by every view and in pictures of every shape.
+//! Tests that whole models are visible, in every view and for every aspect ratio.
 
 use super::super::Assets;
 use super::*;
@@ -12,7 +12,7 @@ use std::sync::Arc;
 
 const VIEWS: [View; 5] = [View::ThreeQuarter, View::Front, View::Side, View::Top, View::Iso];
 
-/// A scene of one mesh with these corners, moved somewhere.
+/// A scene of one mesh with these vertices, under a transform.
 fn scene(corners: Vec<Vec3>) -> Scene {
     let triangles = (0..corners.len() as u32).map(|i| [i; 3]).collect();
     let data = MeshData { positions: corners, triangles, ..MeshData::default() };
@@ -41,7 +41,7 @@ fn every_view_sees_the_whole_and_fills_the_picture() {
             let scene = staged(scene(Vec::clone(&corners)), &staging);
             let camera = scene.camera.as_ref().unwrap();
             let frame = CameraBasis::of(camera, CameraRules::default());
-            // The picture's border: its larger side runs from -1 to 1.
+            // Border of the picture, whose larger side runs from -1 to 1.
             let border = Vec2::new(aspect.min(1.0), (1.0 / aspect).min(1.0));
             let (mut most, mut low, mut high) = (0f32, Vec2::INFINITY, Vec2::NEG_INFINITY);
             points(&scene, &mut |p| {
@@ -109,8 +109,8 @@ fn only_what_is_missing_is_added() {
     let same = staged(own.clone(), &Staging::default());
     assert_eq!((&same.camera, &same.lights), (&own.camera, &own.lights));
     assert_eq!(same.root.unwrap().objects.len(), 1);
-    // Around what has its own light it is dark; where nothing shines it is not, so that something is
-    // seen.
+    // The background of a scene with its own light is black; without any light it is not, so that
+    // something is visible.
     assert_eq!(same.background.color, Vec3::ZERO);
     let none = Staging { studio: Some(Studio::None), ..Staging::default() };
     assert_eq!(staged(scene(vec![Vec3::ZERO, Vec3::ONE]), &none).background, Background::default());

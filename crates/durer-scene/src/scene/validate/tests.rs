@@ -1,4 +1,4 @@
-//! Scenes built in code with invalid values, each with what is said of it.
+//! Tests of scenes built in code with invalid values, and of the reported messages.
 
 use super::*;
 use crate::camera::PerspectiveCamera;
@@ -69,7 +69,7 @@ fn fields_are_checked_together_once_each_is_valid() {
     assert_eq!(messages(&with_shape(upside_down)), ["`min` of a `Box` must be less than its `max` in x, y and z"]);
     let camera = |camera: CaveCamera| messages(&Scene { camera: Some(camera.into()), ..Scene::default() });
     assert_eq!(camera(CaveCamera::default()), [""; 0]);
-    // Its walls are not looked at before each number is finite.
+    // Its walls are only checked once all numbers are finite.
     let walls = vec![[f32::NAN; 9]];
     assert_eq!(camera(CaveCamera { walls, ..CaveCamera::default() }), ["CaveCamera: walls must be finite"]);
     let light = PointLight { candela: Some(1.0), lumens: Some(1.0), ..PointLight::default() };

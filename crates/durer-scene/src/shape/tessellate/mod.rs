@@ -1,5 +1,5 @@
-//! Triangle meshes of shapes. The functions of this file approximate primitives for
-//! [`Shape::to_mesh`](super::Shape::to_mesh); the modules tessellate surfaces that have no primitive.
+//! Triangle meshes of shapes. The functions in this file approximate primitives, for
+//! [`Shape::to_mesh`](super::Shape::to_mesh); the modules tessellate surfaces without a primitive.
 
 pub mod net;
 pub mod revolution;
@@ -9,7 +9,7 @@ pub mod tube;
 use super::MeshData;
 use crate::math::{Vec2, Vec3, fp};
 
-/// Steps around a ball, half as many from pole to pole.
+/// Segments around a sphere; half as many from pole to pole.
 const STEPS: u32 = 96;
 
 /// A single flat triangle.
@@ -31,14 +31,14 @@ pub(super) fn ring(center: Vec3, axis: Vec3, [inner, outer]: [f32; 2]) -> MeshDa
     data
 }
 
-/// A parallelogram that its edges go around counter-clockwise.
+/// Adds a parallelogram whose edges go around it counter-clockwise.
 pub(super) fn face(data: &mut MeshData, corner: Vec3, [e, f]: [Vec3; 2]) {
     let p = data.positions.len() as u32;
     data.positions.extend([corner, corner + e, corner + e + f, corner + f]);
     data.triangles.extend([[p, p + 1, p + 2], [p, p + 2, p + 3]]);
 }
 
-/// A box along the axes.
+/// An axis-aligned box.
 pub(super) fn block(min: Vec3, max: Vec3) -> MeshData {
     let mut data = MeshData { flat: true, ..MeshData::default() };
     let size = max - min;
@@ -50,7 +50,7 @@ pub(super) fn block(min: Vec3, max: Vec3) -> MeshData {
     data
 }
 
-/// What is round about the line between the middles of two circles, with caps.
+/// A solid of revolution between two circles, with caps.
 pub(super) fn round([base, top]: [(Vec3, f32); 2]) -> MeshData {
     let mut data = MeshData::default();
     let axis = (top.0 - base.0).normalize_or(Vec3::Y);
@@ -60,8 +60,8 @@ pub(super) fn round([base, top]: [(Vec3, f32); 2]) -> MeshData {
     data
 }
 
-/// The surface between two circles about an axis: flat where their middles are the same, and then
-/// it faces along the axis; else it faces outwards.
+/// Adds the surface between two circles about an axis. It is flat if their centres are equal, and
+/// then faces along the axis; else it faces outwards.
 pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     let axis = axis.normalize_or(Vec3::Y);
     let (x, y) = axis.any_orthonormal_pair();
@@ -71,7 +71,7 @@ pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     for i in 0..=STEPS {
         let (sin, cos) = fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(STEPS));
         let outwards = cos as f32 * x + sin as f32 * y;
-        // Across the way from one circle to the other.
+        // Perpendicular to the line from one circle to the other.
         let normal = match along == 0.0 {
             true => axis,
             false => (along * outwards + (inner - outer) * axis).normalize_or(outwards),
@@ -96,8 +96,7 @@ pub(super) fn band(data: &mut MeshData, axis: Vec3, circles: [(Vec3, f32); 2]) {
     data.triangle_normals = data.triangles.clone();
 }
 
-/// A ball with the normals of a round one, and its coordinates: u is 1/2 where it looks along -z, v
-/// grows upwards.
+/// A sphere with exact normals and texture coordinates: u is 1/2 towards -z, v grows upwards.
 pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     let mut data = MeshData::default();
     let rows = STEPS / 2;
@@ -115,7 +114,7 @@ pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     let at = |j: u32, i: u32| j * (STEPS + 1) + i;
     for (j, i) in (0..rows).flat_map(|j| (0..STEPS).map(move |i| (j, i))) {
         let [a, b, c, d] = [at(j, i), at(j, i + 1), at(j + 1, i + 1), at(j + 1, i)];
-        // At the poles one of the two has no area.
+        // At the poles one of the two triangles is degenerate.
         if j > 0 {
             data.triangles.push([a, c, b]);
         }
@@ -127,7 +126,7 @@ pub(super) fn ball(center: Vec3, radius: f32) -> MeshData {
     data
 }
 
-/// An ellipsoid with its axes along those of the coordinates.
+/// An ellipsoid with axes parallel to the coordinate axes.
 pub(super) fn ellipsoid(center: Vec3, radii: Vec3) -> MeshData {
     let mut data = ball(Vec3::ZERO, 1.0);
     data.positions.iter_mut().for_each(|p| *p = center + radii * *p);
@@ -135,7 +134,7 @@ pub(super) fn ellipsoid(center: Vec3, radii: Vec3) -> MeshData {
     data
 }
 
-/// A torus around `axis`: the circle of radius `minor` around a circle of radius `major`.
+/// A torus around `axis`: a circle of radius `minor` swept along a circle of radius `major`.
 pub(super) fn torus(center: Vec3, axis: Vec3, [major, minor]: [f32; 2]) -> MeshData {
     let mut data = MeshData::default();
     let axis = axis.normalize_or(Vec3::Y);
@@ -193,7 +192,7 @@ mod tests {
             (volume(Ellipsoid { center, radii: Vec3::new(1.0, 2.0, 3.0) }), 4.0 / 3.0 * PI * 6.0),
             (volume(Torus { center, axis: top, major_radius: 3.0, minor_radius: 1.0 }), 2.0 * PI * PI * 3.0),
         ] {
-            // Within the error of 96 steps around, and of 48 around the torus.
+            // Within the error of 96 segments around, and of 48 around the torus.
             assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
         }
         let disc = Disc { center, normal: Vec3::NEG_Z, radius: 2.0, inner_radius: 1.0 };
@@ -222,16 +221,16 @@ mod tests {
         let zone = revolution::sphere(2.0, [-1.0, 0.5], 90.0);
         assert!(zone.positions.iter().all(|p| (p.length() - 2.0).abs() < 1e-5));
         assert!((area(&zone) / (0.25 * 2.0 * PI * 2.0 * 1.5) - 1.0).abs() < 2e-3, "{}", area(&zone));
-        // The radius of a paraboloid grows with the root of its height.
+        // The radius of a paraboloid grows with the square root of the height.
         let bowl = revolution::paraboloid(1.0, [0.0, 4.0], 360.0);
         assert!(bowl.positions.iter().all(|p| (p.truncate().length_squared() - 0.25 * p.z).abs() < 1e-5));
-        // A tube of a straight segment has the lateral area of a cylinder, between that of the
-        // inscribed and of the circumscribed polygon.
+        // A tube around a straight segment has the lateral area of a cylinder, between those of the
+        // inscribed and the circumscribed polygon.
         let line = tube::straight([[0.0, 0.0, 0.0, 0.5], [0.0, 0.0, 3.0, 0.5]].map(Into::into));
         let mut data = MeshData::default();
         tube::add_tube(&mut data, &tube::places(&[line], 1), false);
         assert!((area(&data) / (PI * 0.5 * 3.0) - 1.0).abs() < 0.02, "{}", area(&data));
-        // A bilinear patch that is flat becomes two triangles.
+        // A flat bilinear patch becomes two triangles.
         let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];
         let flat = net::Patches { positions: corners.to_vec(), faces: vec![[0, 1, 2, 3]], ..Default::default() };
         assert_eq!(net::bilinear(&flat).triangles.len(), 2);

@@ -1,4 +1,4 @@
-//! Surfaces over rectangular nets of points: height fields, bilinear patches and NURBS.
+//! Surfaces over rectangular grids of points: height fields, bilinear patches and NURBS.
 //!
 //! Source: Piegl and Tiller, *The NURBS Book*, 2nd edition, 1997.
 
@@ -6,13 +6,13 @@ use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 
-/// Steps along each side of a NURBS surface.
+/// Segments along each side of a NURBS surface.
 const STEPS: u32 = 48;
 
-/// Steps along each side of a patch that is not flat.
+/// Segments along each side of a patch that is not flat.
 const PATCH: u32 = 8;
 
-/// Adds the triangles between the points of a net.
+/// Adds the triangles between the points of a grid.
 fn grid(data: &mut MeshData, [columns, rows]: [u32; 2]) {
     for (j, i) in (1..rows).flat_map(|j| (1..columns).map(move |i| (j - 1, i - 1))) {
         let p = |di: u32, dj: u32| (j + dj) * columns + i + di;
@@ -21,8 +21,8 @@ fn grid(data: &mut MeshData, [columns, rows]: [u32; 2]) {
     data.triangle_uvs.clone_from(&data.triangles);
 }
 
-/// Heights over the unit square, row by row; there are as many as `columns` times `rows`, which are
-/// 2 or more.
+/// A height field over the unit square, row by row; it has `columns` times `rows` heights, both at
+/// least 2.
 pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>) -> MeshData {
     let mut data = MeshData::default();
     for (k, height) in (0_u32..).zip(heights) {
@@ -39,15 +39,15 @@ pub fn heights([columns, rows]: [u32; 2], heights: impl IntoIterator<Item = f32>
 pub struct Patches {
     /// Positions.
     pub positions: Vec<Vec3>,
-    /// Normals, one a position; may be empty.
+    /// Normals, one for each position; may be empty.
     pub normals: Vec<Vec3>,
-    /// Texture coordinates, one a position; may be empty.
+    /// Texture coordinates, one for each position; may be empty.
     pub uvs: Vec<Vec2>,
     /// The corners (0, 0), (1, 0), (0, 1) and (1, 1) of each patch.
     pub faces: Vec<[u32; 4]>,
 }
 
-/// Triangles of bilinear patches: two of a flat patch, a grid of a bent one.
+/// Tessellates bilinear patches: two triangles for a flat patch, a grid for a curved one.
 pub fn bilinear(patches: &Patches) -> MeshData {
     let Patches { positions, normals, uvs, faces } = patches;
     let mut data = MeshData::default();
@@ -84,20 +84,20 @@ pub fn bilinear(patches: &Patches) -> MeshData {
     data
 }
 
-/// The knots of one side of a NURBS surface, and the interval of the parameter that is shown.
+/// Knots of one side of a NURBS surface, and the visible parameter interval.
 #[derive(Clone, Copy, Debug)]
 pub struct NurbsSide<'a> {
-    /// The knots, rising; as many as control points and the order together.
+    /// Ascending knots; their number is that of the control points plus the order.
     pub knots: &'a [f64],
     /// The order, at least 2: the degree plus 1.
     pub order: usize,
-    /// The start of the interval.
+    /// Start of the interval.
     pub from: f64,
-    /// Its end.
+    /// End of the interval.
     pub to: f64,
 }
 
-/// A NURBS surface of control points with weights above 0, row by row, `columns` in a row.
+/// A NURBS surface of control points with positive weights, row by row, `columns` in a row.
 pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData {
     let side = STEPS + 1;
     let mut data = MeshData::default();
@@ -113,8 +113,8 @@ pub fn nurbs(points: &[DVec4], columns: u32, sides: &[NurbsSide; 2]) -> MeshData
     data
 }
 
-/// The first control point that counts at a parameter, the weights of it and those after it, and
-/// their derivatives.
+/// Index of the first control point with influence at a parameter, the weights of it and the
+/// following ones, and their derivatives.
 fn weights(knots: &NurbsSide, t: f64) -> (usize, Vec<f64>, Vec<f64>) {
     let (all, degree) = (knots.knots, knots.order - 1);
     let last = all.len() - knots.order - 1;

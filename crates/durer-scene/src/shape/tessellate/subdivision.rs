@@ -1,7 +1,8 @@
 //! Loop's subdivision surfaces.
 //!
 //! Sources: Loop, *Smooth Subdivision Surfaces Based on Triangles*, 1987; Hoppe et al., *Piecewise
-//! Smooth Surface Reconstruction*, SIGGRAPH 1994 (borders, limits); Warren, for the weight of corners.
+//! Smooth Surface Reconstruction*, SIGGRAPH 1994 (borders, limits); Warren, for the weight of
+//! vertices.
 
 use crate::math::fp;
 use crate::shape::MeshData;
@@ -14,18 +15,18 @@ struct Net {
     faces: Vec<[u32; 3]>,
 }
 
-/// The neighbours of a point in order, and whether they form a closed ring.
+/// Neighbours of a point in order; true if they form a closed ring.
 struct Ring {
     around: Vec<u32>,
     closed: bool,
 }
 
-/// Subdivides the triangles of a control mesh `levels` times, or until the next level would have
-/// more than `most` triangles, and moves the points to their limit positions. Returns the mesh and
-/// the number of levels.
+/// Subdivides the triangles of a control mesh `levels` times, or until the next level would exceed
+/// `most` triangles, and moves the points to their limit positions. Returns the mesh and the number
+/// of levels.
 pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, u32) {
     let points = control.positions.iter().map(|p| p.as_dvec3()).collect();
-    // A triangle with a repeated corner has no area, and no edges to follow.
+    // A triangle with a repeated corner has no area, and its edges cannot be traversed.
     let sound = |face: &&[u32; 3]| face[0] != face[1] && face[1] != face[2] && face[2] != face[0];
     let mut net = Net { points, faces: control.triangles.iter().filter(sound).copied().collect() };
     let mut done = 0;
@@ -36,13 +37,13 @@ pub fn loop_surface(control: &MeshData, levels: u32, most: usize) -> (MeshData, 
     (net.limit(), done)
 }
 
-/// The weight of each of `count` neighbours of an inner point.
+/// Weight of each of `count` neighbours of an inner point.
 fn beta(count: usize) -> f64 {
     if count == 3 { 3.0 / 16.0 } else { 3.0 / (8.0 * count as f64) }
 }
 
 impl Net {
-    /// The ring of each point. A point where more than two sheets meet has none.
+    /// Ring of each point; `None` where more than two sheets meet.
     fn rings(&self) -> Vec<Option<Ring>> {
         let mut sides: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.points.len()];
         for &[a, b, c] in &self.faces {
@@ -53,7 +54,7 @@ impl Net {
         sides.iter().map(|sides| ring(sides)).collect()
     }
 
-    /// The next level: four triangles for each.
+    /// The next level, with four triangles for each.
     fn finer(&self) -> Net {
         let rings = self.rings();
         let even = |i: usize| {
@@ -92,13 +93,13 @@ impl Net {
         Net { points, faces: self.faces.iter().flat_map(quarters).collect() }
     }
 
-    /// A point blended with its neighbours, each of a weight.
+    /// Blends a point with its neighbours, each with a weight.
     fn blend(&self, point: DVec3, around: &[u32], weight: f64) -> DVec3 {
         let sum: DVec3 = around.iter().map(|&k| self.points[k as usize]).sum();
         point * (1.0 - weight * around.len() as f64) + weight * sum
     }
 
-    /// The points at their limit positions, with normals.
+    /// Moves the points to their limit positions and computes normals.
     fn limit(mut self) -> MeshData {
         let rings = self.rings();
         let moved = |i: usize| {
@@ -135,7 +136,7 @@ impl Net {
         }
     }
 
-    /// The cross product of two tangents.
+    /// Cross product of two limit tangents.
     fn normal(&self, point: DVec3, ring: &Ring) -> DVec3 {
         let around: Vec<DVec3> = ring.around.iter().map(|&k| self.points[k as usize]).collect();
         let count = around.len();
@@ -162,8 +163,8 @@ impl Net {
     }
 }
 
-/// Orders the edges opposite a point, each from one neighbour to the next, to a ring, which starts at
-/// the border if there is one.
+/// Orders the edges opposite a point, each from one neighbour to the next, into a ring, which
+/// starts at the border if there is one.
 fn ring(sides: &[[u32; 2]]) -> Option<Ring> {
     let next: BTreeMap<u32, u32> = sides.iter().map(|&[from, to]| (from, to)).collect();
     if next.len() != sides.len() || sides.is_empty() {

@@ -1,42 +1,42 @@
-//! Curves with a width: tubes around them, and ribbons.
+//! Curves with a width, as tubes and ribbons.
 
 use crate::math::{Vec2, fp};
 use crate::shape::MeshData;
 use glam::{DVec3, DVec4};
 use std::f64::consts::PI;
 
-/// Sides of a tube, and of one of very many. Its mean width is that of a round tube.
+/// Sides of a tube, and of one among many. The mean width is that of a round tube.
 const SIDES: [u32; 2] = [12, 6];
 
-/// Steps of a hemisphere from its rim to its pole.
+/// Segments of a hemisphere from its rim to its pole.
 const CAP: u32 = 4;
 
-/// The least and most steps of a segment, and the most of all segments together.
+/// Minimum and maximum steps of a segment, and maximum steps of all segments together.
 const STEPS: [f64; 2] = [2.0, 64.0];
 const MAX_STEPS: usize = 1 << 15;
 
-/// A cubic Bézier segment: four control points, each with the curve's width as the fourth number.
+/// A cubic Bézier segment: four control points, with the curve's width in w.
 pub type Piece = [DVec4; 4];
 
-/// A point of a curve with what is needed to sweep a cross section through it.
+/// A sample of a curve with the data to sweep a cross section through it.
 pub struct Place {
     /// The point.
     pub point: DVec3,
-    /// The unit tangent.
+    /// Unit tangent.
     pub along: DVec3,
-    /// The curve's width there.
+    /// Width of the curve at the point.
     pub width: f64,
-    /// The sine of the angle from the cross section to the surface normals.
+    /// Sine of the angle from the cross section to the surface normals.
     pub lean: f64,
-    /// From 0 at the start of the curve to 1 at its end.
+    /// Position along the curve, from 0 at its start to 1 at its end.
     pub share: f64,
-    /// The number of the segment.
+    /// Index of the segment.
     pub piece: usize,
-    /// From 0 to 1 within the segment.
+    /// Position within the segment, from 0 to 1.
     pub part: f64,
 }
 
-/// The Bézier segment of four control points of a uniform cubic B-spline.
+/// Bézier segment for four control points of a uniform cubic B-spline.
 pub fn of_spline(p: &[DVec4; 4]) -> Piece {
     [
         (p[0] + 4.0 * p[1] + p[2]) / 6.0,
@@ -51,8 +51,8 @@ pub fn straight([a, b]: [DVec4; 2]) -> Piece {
     [a, a.lerp(b, 1.0 / 3.0), a.lerp(b, 2.0 / 3.0), b]
 }
 
-/// Samples a curve such that the chords stay within a fiftieth of the width; more coarsely where
-/// `all_pieces`, the segments of all curves together, are very many.
+/// Samples a curve such that the chords deviate by at most a fiftieth of the width. The steps are
+/// coarser if `all_pieces`, the number of segments of all curves together, is very large.
 pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
     let mut all: Vec<Place> = Vec::new();
     let width = pieces.iter().flatten().map(|p| p.w).fold(0.0, f64::max);
@@ -76,7 +76,7 @@ pub fn places(pieces: &[Piece], all_pieces: usize) -> Vec<Place> {
     all
 }
 
-/// Adds a hemisphere to either end.
+/// Adds a hemisphere at either end.
 pub fn rounded(mut places: Vec<Place>) -> Vec<Place> {
     let cap = |end: &Place, side: f64, step: u32| {
         let (sin, cos) = fp::sin_cos_degrees(f64::from(90 * step) / f64::from(CAP));
@@ -91,14 +91,14 @@ pub fn rounded(mut places: Vec<Place>) -> Vec<Place> {
     places
 }
 
-/// Adds a tube through places, with fewer sides where there are `many` tubes: u grows along it, v
-/// around it.
+/// Adds a tube through sample points, with fewer sides if there are `many` tubes: u grows along it,
+/// v around it.
 pub fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
     let Some(first) = places.first() else { return };
     let sides = SIDES[usize::from(many)];
-    // A polygon around the circle and one in it: half way between both.
+    // Radius halfway between the inscribed and the circumscribed polygon.
     let corner = (PI / f64::from(sides)) / fp::sin_cos_f64(PI / f64::from(sides)).0;
-    // Shares of a turn, their sines and cosines.
+    // Fractions of a turn with their sines and cosines.
     let circle: Vec<(f64, (f64, f64))> = (0..=sides)
         .map(|k| f64::from(k) / f64::from(sides))
         .map(|share| (share, fp::sin_cos_degrees(360.0 * share)))
@@ -106,7 +106,7 @@ pub fn add_tube(data: &mut MeshData, places: &[Place], many: bool) {
     let mut across = first.along.any_orthonormal_vector();
     let begin = data.positions.len() as u32;
     for place in places {
-        // Carried along the curve without turning about it.
+        // Transport the frame along the curve without twist.
         across = (across - place.along * across.dot(place.along))
             .try_normalize()
             .unwrap_or(place.along.any_orthonormal_vector());
@@ -134,7 +134,7 @@ fn add_strip(data: &mut MeshData, begin: u32, rows: usize, count: u32) {
     triangle_normals.extend(&triangles[first..]);
 }
 
-/// A ribbon through places, which turns from normal to normal; there is one normal more than
+/// A ribbon through sample points that turns from normal to normal; there is one normal more than
 /// segments. u grows along it, v across it.
 pub fn ribbon(places: &[Place], normals: &[DVec3]) -> MeshData {
     let mut data = MeshData::default();
@@ -165,7 +165,7 @@ fn turned_between([from, to]: [DVec3; 2], share: f64) -> DVec3 {
     from * cos + across * sin
 }
 
-/// A quadratic Bézier segment as a cubic one.
+/// Degree elevation of a quadratic Bézier segment to a cubic one.
 pub fn raised([a, b, c]: [DVec3; 3]) -> [DVec3; 4] {
     [a, a.lerp(b, 2.0 / 3.0), c.lerp(b, 2.0 / 3.0), c]
 }

@@ -1,10 +1,10 @@
-//! All crossings of closed shapes, against what is inside of them, sampled along lines in double
+//! Tests of all crossings of closed shapes against their insides, sampled along lines in double
 //! precision.
 
 use super::*;
 use crate::math::random::Random;
 
-/// A line past a shape of a size: in any direction, along an axis, or in a plane of two.
+/// A line near a shape: in a random direction, along an axis, or in a coordinate plane.
 fn line(shape: &Primitive, random: &mut Random, size: f32) -> Line {
     let middle = shape.bounds().map_or(Vec3::ZERO, |b| b.center());
     let dir = match random.below(4) {
@@ -37,8 +37,8 @@ fn all_crossings_are_where_a_line_goes_in_or_out() {
             let inside = |t: f64| shape.inside(line.at(t)).unwrap();
             let unit = f64::from(size) / line.dir.length();
             let middle = line.nearest(shape.bounds().map_or(DVec3::ZERO, |b| b.center().as_dvec3()));
-            // Each is a change: a little before it is not as a little behind it, if nothing else is
-            // near.
+            // Each crossing changes the side: the points slightly before and behind it differ,
+            // unless another crossing is near.
             let little = 1e-8 * unit;
             for (i, &(t, uv)) in all.iter().enumerate() {
                 let near = |other: Option<&(f64, Vec2)>| other.is_some_and(|o| (o.0 - t).abs() < 1e-3 * unit);
@@ -50,13 +50,14 @@ fn all_crossings_are_where_a_line_goes_in_or_out() {
                 assert_ne!(inside(t - little), inside(t + little), "{shape:?} {line:?} {t} of {all:?}");
                 let on = distance(shape, line.at(t)).abs();
                 assert!(on < 1e-9 * f64::from(size), "{on} {shape:?} {line:?} {t}");
-                // The crossing knows its face.
+                // The crossing has the right face.
                 let surface = shape.surface(line.at(t), &ShapeHit { t: t as f32, uv });
                 let off = (surface.position.as_dvec3() - line.at(t)).length();
                 assert!(off < 1e-6 * f64::from(size), "{shape:?} {line:?} {t} {surface:?}");
                 found[kind] += 1;
             }
-            // Between them nothing changes: every sampled place is as their number tells.
+            // Nothing changes between crossings: the parity of their number determines every
+            // sampled point.
             let start = shape.starts_inside(&line);
             let mut passed = 0;
             for step in 0..=STEPS {
@@ -87,7 +88,7 @@ fn inside_is_behind_the_surface() {
             if near_edge(&shape, p, 1e-3) || too_far(&shape, p, 1.0) || shape.inside(p).is_none() {
                 continue;
             }
-            // What is far away, or sharp, is known less well than this.
+            // Far or sharp surfaces are less accurate than this.
             if surface.error.max_element() > 1e-6 || surface.curvature > 100.0 {
                 continue;
             }

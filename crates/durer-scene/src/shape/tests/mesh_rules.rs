@@ -1,4 +1,4 @@
-//! Normals of meshes that bring none, and what is interpolated over a triangle.
+//! Tests of computed mesh normals, and of interpolation over a triangle.
 
 use super::*;
 use crate::dialect::MeshNormals;
@@ -8,7 +8,7 @@ fn normal_at(mesh: &Mesh, part: u32, uv: Vec2) -> Vec3 {
     mesh.surface(part, &ShapeHit { t: 1.0, uv }).n_shade
 }
 
-/// Places on a triangle: its three corners.
+/// Barycentric coordinates of the three corners.
 const CORNERS: [Vec2; 3] = [Vec2::ZERO, Vec2::X, Vec2::Y];
 
 fn cube() -> MeshData {
@@ -19,7 +19,7 @@ fn cube() -> MeshData {
     MeshData { positions, triangles, ..MeshData::default() }
 }
 
-/// A ball of rings: every vertex on the unit sphere.
+/// A sphere made of rings: every vertex is on the unit sphere.
 fn ball(rings: u32) -> MeshData {
     let mut data = MeshData::default();
     let around = 2 * rings;
@@ -34,7 +34,7 @@ fn ball(rings: u32) -> MeshData {
         for i in 0..around {
             let at = |i: u32, j: u32| j * around + i % around;
             let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
-            // Triangles at the poles have two corners in one place, and are left out.
+            // Degenerate triangles at the poles are omitted.
             data.triangles.extend((j > 0).then_some([a, b, c]));
             data.triangles.extend((j + 1 < rings).then_some([a, c, d]));
         }
@@ -53,7 +53,7 @@ fn flat_means_one_normal_a_triangle() {
     }
 }
 
-/// Three faces around the origin: a large one upwards, two small ones towards -x and -z.
+/// Three faces around the origin: a large one facing up, two small ones facing -x and -z.
 fn corner_of_three() -> MeshData {
     MeshData {
         positions: vec![Vec3::ZERO, Vec3::X * 4.0, Vec3::Z * 4.0, Vec3::NEG_Y],
@@ -72,7 +72,7 @@ fn faces_around_a_vertex_weigh_by_area_or_alike() {
         close(normal_at(&by_area, part, CORNERS[0]), Vec3::new(-2.0, 8.0, -2.0).normalize());
         close(normal_at(&by_face, part, CORNERS[0]), Vec3::new(-1.0, 1.0, -1.0).normalize());
     }
-    // The far corner on x belongs to the faces +y and -z alone.
+    // The far corner on x only belongs to the faces +y and -z.
     close(normal_at(&by_area, 2, CORNERS[1]), Vec3::new(0.0, 8.0, -2.0).normalize());
 }
 
@@ -102,16 +102,16 @@ fn a_crease_keeps_a_cube_flat_and_makes_a_ball_smooth() {
         for uv in CORNERS {
             let surface = mesh.surface(part, &ShapeHit { t: 1.0, uv });
             let off = (surface.n_shade - surface.position).length();
-            // At the poles each triangle has a vertex of its own; elsewhere four or more faces are
+            // At the poles each triangle has its own vertex. Elsewhere four or more faces are
             // averaged, whose planes are tilted by up to half a ring, 5.6 degrees, and not quite
-            // evenly around.
+            // evenly distributed.
             let pole = surface.position.y.abs() > 0.999;
             assert!(pole || off < 0.02, "{surface:?} {off}");
         }
     }
 }
 
-/// Triangles that share no vertex, and one that touches another by one of its corners.
+/// Triangles that share no vertex, and one that touches another at a corner.
 #[test]
 fn triangles_that_share_nothing_have_no_normals_of_their_own() {
     let apart = |count: u32| {
@@ -149,7 +149,7 @@ fn tiny_meshes_are_as_smooth_as_others() {
     }
 }
 
-/// What was taken apart is still smooth where it was one.
+/// Triangles that were separated are still smooth where they were joined.
 #[test]
 fn loosened_triangles_share_their_vertices() {
     let mut apart = ball(8);
@@ -188,7 +188,7 @@ fn a_files_normals_and_coordinates_are_interpolated() {
     assert_eq!(seen.uv.get(), Some(Vec2::new(0.5, 1.5)));
     assert!((seen.n_shade - Vec3::new(0.25, 2.5, 0.5).normalize()).length() < 1e-6);
     assert_eq!(surface(&data, MeshNormals::Flat, false).n_shade, Vec3::Z);
-    // A triangle that lacks one is given normals by the rule, and has no coordinates.
+    // A triangle without all its normals gets computed ones, and has no texture coordinates.
     data.triangle_normals[0][1] = NO_INDEX;
     data.triangle_uvs[0][1] = NO_INDEX;
     let seen = surface(&data, MeshNormals::SmoothByArea, true);

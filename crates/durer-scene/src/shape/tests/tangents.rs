@@ -1,11 +1,11 @@
-//! Tangents against those of another program that was made from Mikkelsen's.
+//! Tests of tangents against another implementation of Mikkelsen's algorithm.
 
 use crate::math::random::Random;
 use crate::math::{Vec2, Vec3};
 use crate::shape::MeshData;
 use bevy_mikktspace::{Geometry, TangentSpace, generate_tangents};
 
-/// A mesh as the other program asks for it, and the tangents that it tells.
+/// A mesh in the interface of the other implementation, and the tangents that it computes.
 struct Other<'a>(&'a MeshData, Vec<[f32; 4]>);
 
 impl Geometry for Other<'_> {
@@ -29,7 +29,7 @@ impl Geometry for Other<'_> {
     }
 }
 
-/// A bent sheet of squares, each cut in two. `uv` gives the coordinates of a corner of a square.
+/// A bumpy sheet of squares, each cut in two. `uv` returns the texture coordinates of a grid point.
 fn sheet(size: usize, random: &mut Random, uv: impl Fn(usize, usize) -> Vec2) -> MeshData {
     let mut data = MeshData::default();
     for (y, x) in (0..=size).flat_map(|y| (0..=size).map(move |x| (y, x))) {
@@ -51,7 +51,7 @@ fn index(mut data: MeshData) -> MeshData {
     data
 }
 
-/// Checks every corner; returns how many vertices became several.
+/// Compares every corner; returns the number of vertices added by splitting.
 fn agree(mut data: MeshData) -> usize {
     let mut other = Other(&data, vec![[0.0; 4]; 3 * data.triangles.len()]);
     generate_tangents(&mut other).unwrap();
@@ -81,7 +81,7 @@ fn tangents_are_those_of_mikktspace() {
     assert_eq!(agree(sheet(12, &mut random, even)), 0);
     // Mirrored at a line: vertices on it have two tangents.
     assert_eq!(agree(sheet(12, &mut random, |x, y| Vec2::new(x.abs_diff(6) as f32, y as f32))), 13);
-    // Turned by a quarter from one square to the next, such that u grows in all directions.
+    // Rotated by a right angle from one square to the next, such that u grows in all directions.
     let folded = |x: usize, y: usize| even(x, y) * Vec2::new([1.0, -1.0][x % 2], [1.0, 1.0, -1.0][y % 3]);
     agree(sheet(12, &mut random, folded));
 }
@@ -90,7 +90,7 @@ fn tangents_are_those_of_mikktspace() {
 fn vertices_that_are_equal_share_a_tangent() {
     let mut random = Random(42);
     let together = sheet(5, &mut random, |x, y| Vec2::new(x as f32 + 0.2 * y as f32, y as f32));
-    // The same sheet, each triangle with corners of its own.
+    // The same sheet with separate corners for each triangle.
     let mut apart = MeshData::default();
     for &i in together.triangles.iter().flatten() {
         apart.positions.push(together.positions[i as usize]);
@@ -110,7 +110,7 @@ fn vertices_that_are_equal_share_a_tangent() {
 
 #[test]
 fn hostile_meshes_get_tangents_at_once() {
-    // Programs that recurse from triangle to triangle end here: all of them have one vertex.
+    // Recursive implementations overflow the stack here: all triangles share one vertex.
     const COUNT: u32 = 200_000;
     let mut fan = MeshData::default();
     fan.positions.push(Vec3::ZERO);
@@ -121,7 +121,7 @@ fn hostile_meshes_get_tangents_at_once() {
     let mut fan = index(fan);
     assert!(fan.make_tangents().is_empty());
     assert!((Vec3::from_slice(&fan.tangents[0]) - Vec3::X).length() < 1e-3 && fan.tangents[0][3] == 1.0);
-    // One place, many coordinates.
+    // One position, many texture coordinates.
     let mut heap = MeshData { positions: vec![Vec3::ONE; 3 * COUNT as usize], ..MeshData::default() };
     heap.normals = vec![Vec3::Y; heap.positions.len()];
     heap.uvs = (0..heap.positions.len()).map(|i| Vec2::new(i as f32, (i * i % 97) as f32)).collect();
@@ -129,7 +129,7 @@ fn hostile_meshes_get_tangents_at_once() {
     let mut heap = index(heap);
     heap.make_tangents();
     assert!(heap.tangents.iter().all(|tangent| *tangent == [0.0; 4]));
-    // Whatever numbers: nothing but finite tangents.
+    // For arbitrary values, all tangents are finite.
     let mut random = Random(43);
     let values = [0.0, -0.0, 1.0, -1.0, f32::NAN, f32::INFINITY, 3e38, 1e-38, 0.5];
     for _ in 0..2_000 {

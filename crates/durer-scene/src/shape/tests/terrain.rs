@@ -1,4 +1,4 @@
-//! A landscape is the mesh that its lists are.
+//! Tests that a terrain equals its mesh as lists.
 
 use super::*;
 use crate::dialect::MeshNormals;
@@ -48,7 +48,7 @@ fn a_landscape_is_its_lists() {
     }
 }
 
-/// Around each vertex lie the corners that its triangles have there, in their order.
+/// The corners around each vertex are found in order.
 #[test]
 fn corners_around_a_crossing_are_known_without_lists() {
     let terrain = field(Vec3::ZERO, 5, 4, &mut Random(4));
