@@ -144,7 +144,7 @@ impl Put<'_> {
             return self.once("densities", name, |put| put.file(name, "vol", vol::write(bounds, grid)));
         }
         let Some(Picture { bytes, mapping }) = scene.assets.pictures.get(name) else {
-            // `lamp.csv:red` and `picture.png:g` are a column and a channel of a file.
+            // `light.csv:red` and `picture.png:g` are a column and a channel of a file.
             let parted = name.rsplit_once(':').filter(|_| !self.source.contains(name));
             let (path, what) = parted.map_or((name, String::new()), |(path, what)| (path, format!(":{what}")));
             return self.once("picture", path, |put| put.copied(path)) + &what;

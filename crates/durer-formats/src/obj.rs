@@ -33,7 +33,7 @@ enum Statement {
     Uv,
     Normal,
     Face,
-    /// Lines have no surface: mesh readers ignore them, scene readers show them. So with points.
+    /// Lines and points have no surface: mesh readers ignore them, scene readers show them.
     Line,
     Point,
     /// Sets the material of the following statements.

@@ -256,8 +256,7 @@ impl Parser<'_> {
         String::from_utf8(bytes).or_else(|_| self.error(start..self.at, "this string is no UTF-8"))
     }
 
-    /// Reads an escape and returns its character. After an error, the position is that of the
-    /// error.
+    /// Reads an escape and returns its character; on failure, `at` is where it went wrong.
     fn escaped(&mut self) -> Option<char> {
         self.at += 1;
         let letter = self.peek()?;

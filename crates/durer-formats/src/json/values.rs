@@ -31,7 +31,7 @@ pub(super) struct Members<'n> {
     at: Range<usize>,
     all: &'n [Member],
     taken: Vec<bool>,
-    /// Names that were asked for, which are all names that the object may have.
+    /// Names passed to [`Members::take`]: in the end, all names that the object may have.
     known: Vec<&'static str>,
 }
 

@@ -60,8 +60,8 @@ impl From<HairMaterial> for Material {
     }
 }
 
-/// A scene that is being built. Lengths are in one unit of any size, which is the metre where light
-/// is in candela or lumen; y is up.
+/// Builder of a scene. Lengths may have any unit; it is the metre if lights are given in candela or
+/// lumens. y is up.
 ///
 /// ```
 /// use durer_scene::camera::PerspectiveCamera;

@@ -275,7 +275,7 @@ fn what_is_no_surface_is_left_out() {
 
 #[test]
 fn only_materials_that_are_used_are_there() {
-    // Those of a sun and of the outer side of glass are removed.
+    // The materials of a sun and of the outer side of glass are removed.
     let scene = clean(
         "void light l 0 0 3 9 9 9 l source s 0 0 4 0 0 1 .5 void interface g 0 0 8 1 1 1 1.5 1 1 1 1.33 g bubble b 0 0 4 0 0 0 1",
     );
