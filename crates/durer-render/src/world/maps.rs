@@ -4,6 +4,7 @@ use super::material::{Maps, Principled};
 use super::{Geometry, Interaction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{Change, TEXTURED};
+use durer_scene::material::principled::Switch;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::shape::Shape;
 use durer_scene::texture::{Channel, Mapping, Texture};
@@ -47,7 +48,9 @@ impl World {
 
     /// What a picture makes of a surface's own light.
     pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
-        self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))
+        let picture = self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
+        let [r, g, b, _] = at.surface.color;
+        if own.written.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
     /// The share of a surface that is there, by number, vertices and picture.
@@ -59,12 +62,13 @@ impl World {
             let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
             Some(channel.of(self.texel(Some(map), at)?))
         });
-        own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0)
+        let opacity = own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0);
+        own.written.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))
     }
 
     /// Whether a material in layers may be there in part only. Vertices may say so of any.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
-        own.written.opacity < 1.0 || self.has_holes(own)
+        own.written.opacity < 1.0 || own.written.opacity_cutoff.is_some() || self.has_holes(own)
     }
 
     /// Whether a picture says what of a material is there.
