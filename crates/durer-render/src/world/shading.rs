@@ -10,7 +10,7 @@ use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::material::principled::{Backs, Surroundings, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::medium::Medium;
 use durer_scene::shape::Surface;
@@ -106,6 +106,7 @@ impl World {
                 continue;
             }
             match &part.phong.principled {
+                Some(own) if inside && own.written.backs == Backs::Black => {}
                 Some(own) => {
                     let here = self.parameters_at(own, at);
                     layers::scattering(bsdf, part.share, &here, &own.tables, view);
@@ -139,7 +140,7 @@ impl World {
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
         let Some(own) = &phong.principled else { return Some(*emission) };
         let radiance = own.written.opacity * emission.radiance;
-        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own);
+        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own) && own.written.opacity_cutoff.is_none();
         chosen.then_some(Emission { radiance, ..*emission })
     }
 
@@ -210,6 +211,15 @@ impl World {
             most = if ior.is_some() && part.share > most.0 { (part.share, ior) } else { most };
         }
         most.1
+    }
+
+    /// Whether glass that was hit takes its index for that over what is around it, whatever that is.
+    pub fn ignores_surroundings(&self, at: &Interaction) -> bool {
+        let own = |phong: &Phong| {
+            let principled = phong.principled.as_ref();
+            principled.is_some_and(|own| own.written.surroundings == Surroundings::Ignored)
+        };
+        self.parts(at).iter().any(|part| own(part.phong))
     }
 
     /// The share of a surface that is there.

@@ -140,7 +140,11 @@ impl Path<'_> {
     /// How light goes through the surface of an object that lets it in.
     pub(super) fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
         let ior = self.world.refracts(at, lanes)?;
-        Some(media.nested_passage(self.world, at, ior, at.inside()))
+        let passage = media.nested_passage(self.world, at, ior, at.inside());
+        Some(match self.world.ignores_surroundings(at) {
+            true => passage.across(ior, at.inside()),
+            false => passage,
+        })
     }
 
     /// Whether a surface only bounds a medium and does not deflect light.
