@@ -174,7 +174,9 @@ impl Reader<'_> {
         if picture.is_none() {
             self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
-        Rc::new(inner.changed(&|m| (m.bump_texture, m.bump_height) = (picture.clone(), height)))
+        Rc::new(inner.changed(&|m| {
+            (m.bump_texture, m.bump_height, m.normal_bending) = (picture.clone(), height, Switch::Off);
+        }))
     }
 
     fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
@@ -189,7 +191,7 @@ impl Reader<'_> {
         texture.finish(self.said);
         let Some(picture) = picture else { return inner };
         let name = asset(&mut self.scene, picture, property.at);
-        Rc::new(inner.changed(&|m| m.normal_texture = Some(name.clone())))
+        Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
     /// An index of refraction: a number or a name.

@@ -10,7 +10,7 @@ use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Surroundings, Walls};
+use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::medium::Medium;
 use durer_scene::shape::Surface;
@@ -86,19 +86,24 @@ impl World {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
         // The first of a mixture that bends normals counts for all of it.
-        let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
-        let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
-        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
+        let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
+        let mapped = mapped.find(|own| own.maps.normal.is_some() || own.maps.bump.is_some());
+        let n_shade = mapped.and_then(|own| self.mapped_normal(&own.maps, at)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         let wo = -dir.normalize_or(-n_geo);
         let n = n.normalize_or(n_geo);
-        let bent = bent(n, n_geo, wo);
+        let keeps = mapped.is_some_and(|own| own.written.normal_bending == Switch::Off);
+        let is_turned_away = keeps && n.dot(wo) <= 0.0;
+        let bent = if keeps && !is_turned_away { n } else { bent(n, n_geo, wo) };
         let frame = self.frame(&parts, at, bent);
         let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
         let wo = frame.to_local(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let view = View { lanes, wo, normal, inside, eta };
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
+        if is_turned_away {
+            return shading;
+        }
         let bsdf = &mut shading.bsdf;
         for part in &parts {
             if let Some(fibre) = &part.phong.fibre {

@@ -214,6 +214,9 @@ described! {
         /// How far its white lies above its black, in units of the world; negative where white lies
         /// deep.
         bump_height: f32 = 0.01, optional, Rule::Any, ["bumpHeight" in set::DURER];
+        /// `on`: normals of pictures that are turned away from who looks are bent until mirrors show what is
+        /// outside; `off`: such places are black, as in Mitsuba.
+        normal_bending: Switch = Switch::On, optional, Rule::Any, ["normalBending" in set::DURER];
         /// Share of the surface that is there, from 0 to 1: the rest lets light through as if
         /// nothing were there.
         opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
