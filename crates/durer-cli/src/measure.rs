@@ -149,12 +149,6 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let scene = &opened.loaded.scene;
     let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
     let lumens = opened.world.lumens().unwrap_or(LUMINANCE);
-    let grey = opened.world.background();
-    if !scene.background_span.is_place() && opened.world.environment().is_none() && grey != Color::ZERO {
-        let message =
-            "without a `Background` grey 0.5 shines from all around: write `Background { color 0 0 0 }` for none";
-        report::note(&Diagnostic::warning(message));
-    }
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };

@@ -21,6 +21,8 @@ pub struct Contents {
     pub frame: CameraBasis,
     /// Colour of rays that hit nothing.
     pub background: Color,
+    /// Whether paths find no light around, since the scene says nothing of it.
+    pub dark: bool,
     /// Light that is everywhere.
     pub ambient: Color,
     /// Lights.
@@ -104,6 +106,11 @@ impl World {
     /// Colour of rays that hit nothing.
     pub fn background(&self) -> Color {
         self.contents.background
+    }
+
+    /// Whether paths find no light around, since the scene says nothing of it.
+    pub fn is_dark(&self) -> bool {
+        self.contents.dark
     }
 
     /// Light that is everywhere.

@@ -419,6 +419,7 @@ impl Emitters {
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         match world.environment() {
             Some(environment) => environment.at_with_pdf(wi),
+            None if world.is_dark() => (Color::ZERO, 0.0),
             None => (world.sky(wi), 0.0),
         }
     }

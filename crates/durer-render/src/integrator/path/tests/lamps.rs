@@ -84,6 +84,29 @@ fn nothing_that_is_convex_lights_its_own_outside() {
 }
 
 #[test]
+fn without_a_background_light_is_only_what_a_scene_says() {
+    let of = |background: &str| {
+        read(&format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} {background}
+             Lights {{ PointLight {{ position 0 2 0 candela 1000 }} }} Materials {{ {MATTE} }}
+             Group {{ MaterialIndex 0 Sphere {{ center 9 -9 0 radius 1 }} }}"
+        ))
+    };
+    let lux = |world: &World| {
+        let path = Path::new(world, Job::default().settings, Transport::default());
+        let one = |i| path.irradiance(DVec3::ZERO, Vec3::Y, SampleId::new(3, (0, 0), i), &mut ());
+        let sum: Vec3 = (0..64).map(one).sum();
+        sum.dot(durer_scene::math::LUMINANCE) / 64.0
+    };
+    // I / d^2, and pi L of even surroundings beside.
+    assert!((lux(&of("")) - 250.0).abs() < 1e-3, "{}", lux(&of("")));
+    let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
+    assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
+    // Whitted's pictures are before grey.
+    assert_eq!(of("").sky(Vec3::Y), Vec3::splat(0.5));
+}
+
+#[test]
 fn errors_know_of_lamps_that_are_found_by_chance() {
     let most = |lamp: &str, direct| {
         let world = over_floor("", lamp);
