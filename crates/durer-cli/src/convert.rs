@@ -50,6 +50,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         // A ground is no part of a model.
         options.staging.studio = Some(Studio::None);
     }
+    let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let has_words = args.to.is_none() && (mesh_format_for(&name).is_some() || scene_format_for(&name).is_some());
+    if !["", "txt", "json"].contains(&&*ending) && !has_words || has_words && is_only_read(&name) {
+        let message = format!("`.{ending}` cannot be written: a scene is written as .txt or .json");
+        return Err(bad(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
+    }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // What a model lacks, options of rendering add later.
     options.staging.bare = as_scene.is_some();
@@ -105,6 +111,11 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     }
     let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();
     output::save(&places.iter().zip(contents).collect::<Vec<_>>(), false)
+}
+
+/// Whether files of the name's ending are read, and not written.
+fn is_only_read(name: &str) -> bool {
+    mesh_format_for(name).is_none() && scene_format_for(name).is_some_and(|format| format.write.is_none())
 }
 
 /// The options of rendering that a file asks for, if any.

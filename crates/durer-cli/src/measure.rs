@@ -31,7 +31,7 @@ A grid is a corner, two edges from it and numbers of points: the points are the 
 it measures what falls from above; an upright grid has the normal of its second edge times its first.
 The illuminance is in lux where the scene's light is in cd/m^2 (`emissionLuminance`, `sun`), and of Radiance's scenes; the
 irradiance is by colour. Nothing is measured on the other side of the normal. Standard errors are those of independent samples;
-these are spread more evenly, and are nearer than that.")]
+these are spread more evenly, and are nearer than that. Light of lamps that only chance finds, as in mirrors, makes them larger.")]
 pub struct MeasureArgs {
     /// The scene file
     pub scene: PathBuf,
@@ -113,11 +113,13 @@ impl Sums {
         self.squares += brightness * brightness;
     }
 
-    /// The mean by colour, that of the brightness, and its standard error.
-    fn mean(&self, samples: u32) -> ([f64; 3], f64, f64) {
+    /// The mean by colour, that of the brightness, and its standard error. Had one sample more found
+    /// the brightest lamp that is found by chance alone, the mean would be `rare` over the number of
+    /// samples larger: it is not known better than that.
+    fn mean(&self, samples: u32, rare: f64) -> ([f64; 3], f64, f64) {
         let n = f64::from(samples);
         let mean = self.bright / n;
-        let error = ((self.squares / n - mean * mean).max(0.0) / n).sqrt();
+        let error = ((self.squares / n - mean * mean).max(0.0) / n).sqrt().hypot(rare / n);
         (self.light.map(|sum| sum / n), mean, error)
     }
 }
@@ -146,12 +148,6 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
     let scene = &opened.loaded.scene;
     let up = Sides::new(scene.up.unwrap_or(Axis::Y)).up.as_vec3();
     let lumens = opened.world.lumens().unwrap_or(LUMINANCE);
-    let grey = opened.world.background();
-    if !scene.background_span.is_place() && opened.world.environment().is_none() && grey != Color::ZERO {
-        let message =
-            "without a `Background` grey 0.5 shines from all around: write `Background { color 0 0 0 }` for none";
-        report::note(&Diagnostic::warning(message));
-    }
     let grids = args.grid.iter().flat_map(|grid| {
         let normal = grid.edges[1].cross(grid.edges[0]).normalize_or(up);
         let normal = if normal.dot(up) < 0.0 { -normal } else { normal };
@@ -195,11 +191,19 @@ pub fn run(args: &MeasureArgs) -> Result<(), Failure> {
             });
         }
     });
+    let rare = f64::from(path.most_by_chance(|color| color.dot(lumens)));
     say("x,y,z,nx,ny,nz,illuminance,illuminance_error,irradiance_r,irradiance_g,irradiance_b");
+    let mut missed = false;
     for ((point, normal), sums) in places.iter().zip(sums) {
-        let (light, mean, error) = sums.mean(args.samples);
+        let (light, mean, error) = sums.mean(args.samples, rare);
+        missed |= rare / f64::from(args.samples) > 0.01 * mean.max(error);
         let [p, n, c] = [*point, *normal, Color::from(light.map(|x| x as f32))].map(vector_of);
         say(&format!("{p},{n},{mean:.6},{error:.6},{c}"));
+    }
+    if missed {
+        let message = "some lamps are found by chance alone, in mirrors or glass, on solids or by their pictures: errors \
+                       say what one more of them would bring; take more `--samples`, or `--integrator photons`";
+        report::note(&Diagnostic::warning(message).code("RARE_LIGHT"));
     }
     Ok(())
 }

@@ -1,8 +1,7 @@
 //! What Disney's material gives back on the mean over all directions, for formats that have it.
 //!
 //! Its matte base is seen as if no boundary took light from it, and gives back more the rougher it
-//! is; its sheen is faint, and its mirror loses what goes from facet to facet. Ours keep energy:
-//! colours and weights are chosen that have the same mean.
+//! is; its sheen is faint. Ours keep energy: colours and weights are chosen that have the same mean.
 //!
 //! Source: Burley, *Physically-Based Shading at Disney*, SIGGRAPH 2012, and *Extending the Disney
 //! BRDF to a BSDF*, 2015.
@@ -86,20 +85,18 @@ pub(super) fn kept([reflected, all]: [f32; 2]) -> f32 {
 /// What a matte base below a boundary gives back in Disney's material and in ours.
 pub(super) struct Matte {
     given: f32,
-    /// What their mirror loses between its facets and ours gives back.
-    pub lost: f32,
     passing: f32,
 }
 
 impl Matte {
     pub fn new(ior: f32, roughness: f32) -> Matte {
         let means = single_means(ior, roughness);
-        Matte { given: matte_mean(roughness), lost: kept(means) - means[0], passing: passing(means) }
+        Matte { given: matte_mean(roughness), passing: passing(means) }
     }
 
-    /// Our base for theirs, where so much is to be taken from what is given back.
-    pub fn base(&self, color: Color, lost: Color) -> Color {
-        (self.given * color - lost).max(Color::ZERO) / self.passing
+    /// Our base for theirs.
+    pub fn base(&self, color: Color) -> Color {
+        self.given * color / self.passing
     }
 }
 

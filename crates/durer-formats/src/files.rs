@@ -37,3 +37,19 @@ pub(super) fn mesh_file(input: &Input, said: &Said, name: &str, at: Span) -> Opt
     said.extend(own);
     data
 }
+
+/// A text without percent-encoding; `None` where that is broken.
+pub(super) fn unescaped(uri: &str) -> Option<String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.bytes();
+    while let Some(byte) = rest.next() {
+        bytes.push(match byte {
+            b'%' => {
+                let digits = [rest.next()?, rest.next()?];
+                u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?
+            }
+            other => other,
+        });
+    }
+    String::from_utf8(bytes).ok()
+}

@@ -2,12 +2,13 @@
 //!
 //! It reads files below a few allowed folders only, and within a budget of bytes.
 
+use crate::files::unescaped;
 use durer_diag::did_you_mean;
 use durer_scene::source::{AssetSource, Digest, ReadRecord, SourceError, Stamp, is_packed, unpacked_file};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::UNIX_EPOCH;
 
@@ -131,7 +132,11 @@ impl FolderSource {
         let mut candidates: Vec<PathBuf> = self.search.iter().map(|folder| folder.join(path)).collect();
         candidates.extend(bare.iter().flat_map(|bare| self.assets.iter().map(move |folder| folder.join(bare))));
         let mut outside = false;
-        for candidate in &candidates {
+        // Where none is as it is written, one that is meant.
+        let others = || self.search.iter().filter_map(|folder| meant(folder, path));
+        let others: Vec<PathBuf> =
+            if candidates.iter().any(|path| path.exists()) { Vec::new() } else { others().collect() };
+        for candidate in candidates.iter().chain(&others) {
             let Ok(real) = candidate.canonicalize() else { continue };
             if self.allows(&real) {
                 return Ok(real);
@@ -188,6 +193,40 @@ impl FolderSource {
         self.progress().left = left - bytes.len() as u64;
         Ok(bytes)
     }
+}
+
+/// The file of a folder that a path means which does not exist as it is written: without percent
+/// escapes and without `folder/..`, and with letters of the other case, as other systems have it.
+fn meant(folder: &Path, path: &Path) -> Option<PathBuf> {
+    let mut names: Vec<&str> = Vec::new();
+    for part in path.components() {
+        match part {
+            Component::CurDir => {}
+            // Of a folder that is not there `..` leads back; nothing leads out of this one.
+            Component::ParentDir => names.pop().map(|_| ())?,
+            Component::Normal(name) => names.push(name.to_str()?),
+            Component::RootDir | Component::Prefix(_) => return None,
+        }
+    }
+    let found = names.into_iter().try_fold(folder.to_path_buf(), |folder, name| same_name(&folder, name))?;
+    found.is_file().then_some(found)
+}
+
+/// A name without percent escapes.
+fn plain(name: &str) -> String {
+    unescaped(name).unwrap_or_else(|| name.to_string())
+}
+
+/// A file of a folder with a name as written, without percent escapes, or in another case.
+fn same_name(folder: &Path, name: &str) -> Option<PathBuf> {
+    let plain = plain(name);
+    let exact = [name, &plain].into_iter().map(|name| folder.join(name)).find(|path| path.exists());
+    exact.or_else(|| {
+        let lower = plain.to_lowercase();
+        let names = fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+        let same = names.take(10_000).filter(|other| other.to_lowercase() == lower).min()?;
+        Some(folder.join(same))
+    })
 }
 
 impl AssetSource for FolderSource {

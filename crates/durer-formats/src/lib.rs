@@ -37,6 +37,7 @@ mod smooth;
 mod sticks;
 mod stl;
 mod threemf;
+mod unscattered;
 pub mod vol;
 mod xml;
 mod zip;

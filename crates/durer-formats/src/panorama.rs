@@ -57,6 +57,23 @@ pub(super) fn looked_up(picture: &Image, dir: DVec3) -> Color {
     picture.get(texel(u, picture.width), texel(v, picture.height)).unwrap_or_default()
 }
 
+/// What a picture of longitude and latitude has in a direction, y upwards, whose first and last rows
+/// are the poles: bilinear between the middles of columns and the rows.
+///
+/// Source: measured with Mitsuba 3.9, whose `envmap` lies so.
+pub(super) fn between_poles(picture: &Image, dir: DVec3) -> Color {
+    let dir = dir.as_vec3();
+    let (u, v) = (fp::atan2(dir.x, -dir.z) / TAU + 0.5, fp::atan2((dir.x * dir.x + dir.z * dir.z).sqrt(), dir.y) / PI);
+    let (width, last) = (i64::from(picture.width), picture.height.saturating_sub(1));
+    let (x, y) = (u * width as f32 - 0.5, v * last as f32);
+    let (left, above) = (x.floor(), (y.floor() as u32).min(last));
+    let row = |y: u32| {
+        let texel = |dx: i64| picture.get((left as i64 + dx).rem_euclid(width) as u32, y.min(last)).unwrap_or_default();
+        texel(0).lerp(texel(1), x - left)
+    };
+    row(above).lerp(row(above + 1), y - above as f32)
+}
+
 /// Bilinear lookup at a place in widths and heights of the picture from its upper left corner; the
 /// picture repeats beyond its borders.
 pub(super) fn between(image: &Image, place: Vec2) -> Color {

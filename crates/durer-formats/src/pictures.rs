@@ -75,12 +75,17 @@ impl Pictures<'_> {
         Some((self.eight_bits(name, at)?, 1.0))
     }
 
-    /// A picture of colours, made of one whose bytes have no curve.
-    pub fn curved(&self, picture: &Picture, at: Span) -> Option<Picture> {
+    /// A picture of colours or of numbers, made of one whose bytes have another curve: `decode` makes
+    /// what is meant of a byte's share of 255.
+    pub fn recoded(&self, picture: &Picture, at: Span, is_color: bool, decode: impl Fn(f32) -> f32) -> Option<Picture> {
         // What was of another format has a curve already.
         let PictureBytes::File(path) = &picture.bytes else { return None };
-        let bytes = as_png(self.decoded(path, at, image::decode_linear)?, Transfer::Srgb)?;
-        Some(Picture { bytes: PictureBytes::Here(format!("{path}#curved.png"), bytes), mapping: picture.mapping })
+        let mut image = self.decoded(path, at, image::decode_linear)?;
+        image.pixels.iter_mut().for_each(|pixel| *pixel = pixel.map(&decode).clamp(Color::ZERO, Color::ONE));
+        // Numbers have no curve.
+        let bytes = as_png(image, if is_color { Transfer::Srgb } else { Transfer::Linear })?;
+        let path = format!("{path}#{}.png", &Digest::of(&bytes).to_string()[..12]);
+        Some(Picture { bytes: PictureBytes::Here(path, bytes), mapping: picture.mapping })
     }
 
     /// The mean of all values of a picture.

@@ -8,6 +8,7 @@ use durer_diag::{Diagnostic, Span};
 use quick_xml::events::attributes::{AttrError, Attributes};
 use quick_xml::{Reader, escape, events};
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// Maximum depth of nested elements.
 const DEEPEST: usize = 128;
@@ -83,6 +84,18 @@ pub(super) fn begins_with(bytes: &[u8], names: &[&str]) -> bool {
 /// A name without its namespace prefix.
 fn local(name: &str) -> &str {
     name.rsplit(':').next().unwrap_or(name)
+}
+
+/// A text in UTF-8, made of one in UTF-16 that begins with the mark of that.
+pub(super) fn utf8(bytes: Arc<[u8]>) -> Arc<[u8]> {
+    let number: fn([u8; 2]) -> u16 = match *bytes {
+        [0xff, 0xfe, ..] => u16::from_le_bytes,
+        [0xfe, 0xff, ..] => u16::from_be_bytes,
+        _ => return bytes,
+    };
+    let words = bytes[2..].as_chunks::<2>().0.iter().map(|pair| number(*pair));
+    let text: String = char::decode_utf16(words).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+    text.into_bytes().into()
 }
 
 impl<'a> Xml<'a> {

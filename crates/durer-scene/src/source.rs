@@ -297,16 +297,17 @@ pub fn is_packed(bytes: &[u8]) -> bool {
 ///
 /// A sentence: the data are damaged or would become too large.
 pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
-    // Deflate compresses at most 1032 bytes into one.
+    // Deflate packs at most 1032 bytes into one. The last four tell the size of the last piece.
+    let most = budget.min(1032 * bytes.len() as u64);
     let declared = bytes.last_chunk().map_or(0, |size| u64::from(u32::from_le_bytes(*size)));
-    if declared > budget || declared > 1032 * bytes.len() as u64 {
+    if declared > most {
         return Err(format!("the packed file would have {declared} bytes: that is too large"));
     }
     let mut all = Vec::new();
-    let mut decoder = flate2::read::GzDecoder::new(bytes).take(declared + 1);
+    let mut decoder = flate2::read::MultiGzDecoder::new(bytes).take(most + 1);
     match decoder.read_to_end(&mut all) {
-        Ok(_) if all.len() as u64 == declared => Ok(all.into()),
-        Ok(_) => Err("the packed file is not as large as it says".into()),
+        Ok(_) if all.len() as u64 <= most => Ok(all.into()),
+        Ok(_) => Err(format!("the packed file would have more than {most} bytes: that is too large")),
         Err(error) => Err(format!("the file cannot be unpacked: {error}")),
     }
 }
@@ -314,6 +315,20 @@ pub fn unpacked(bytes: &[u8], budget: u64) -> Result<Arc<[u8]>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_of_several_packed_pieces_are_the_pieces_one_after_the_other() {
+        use std::io::Write as _;
+        let packed = |text: &str| {
+            let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+            encoder.write_all(text.as_bytes()).unwrap();
+            encoder.finish().unwrap()
+        };
+        let both = [packed("a cube, "), packed("a ball")].concat();
+        assert_eq!(&*unpacked(&both, 100).unwrap(), b"a cube, a ball");
+        assert!(unpacked(&both, 13).unwrap_err().contains("too large"));
+        assert!(unpacked(&both[..both.len() - 1], 100).is_err());
+    }
 
     #[test]
     fn files_in_memory_are_found_and_recorded() {

@@ -29,7 +29,9 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let mut paths = entries.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     let known = |path: &PathBuf| {
         let end = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        ["jpg", "jpeg", "png"].contains(&&*end) && path.is_file()
+        // macOS puts a hidden file of its own beside each on other systems' disks.
+        let hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        ["jpg", "jpeg", "png"].contains(&&*end) && !hidden && path.is_file()
     };
     paths.retain(known);
     paths.sort();

@@ -174,7 +174,7 @@ Group {
 ";
 
 /// Examples that say more than the defaults of a statement do.
-const EXAMPLES: [(&str, &str); 29] = [
+const EXAMPLES: [(&str, &str); 30] = [
     ("Fog", "Fog { extinction 0.25 color 0.9 0.95 1 }"),
     ("Texture", "Texture { name bark picture bark.png wrapU mirror uvTransform { 4 0 0  0 4 0 } }"),
     ("Background", "Background { color 0.7 0.8 0.9 ambientLight 0.2 0.2 0.2 }"),
@@ -193,6 +193,7 @@ const EXAMPLES: [(&str, &str); 29] = [
     ("Marble", "Marble { materialIndex 1 materialIndex 2 octaves 4 frequency 6 amplitude 5 }"),
     ("Wood", "Wood { materialIndex 1 materialIndex 2 octaves 2 frequency 20 amplitude 2 }"),
     ("Mix", "Mix { materialIndex 1 materialIndex 2 share 0.7 }"),
+    ("TwoSided", "TwoSided { materialIndex 1 materialIndex 2 }"),
     (
         "Noise in a material",
         "PhongMaterial { Noise { color 0.2 0.1 0.05 color 0.9 0.7 0.5 octaves 3 frequency 5 amplitude 4 } }",

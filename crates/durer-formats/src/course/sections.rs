@@ -273,6 +273,7 @@ impl Reader<'_, '_> {
                 "Marble",
                 "Wood",
                 "Mix",
+                "TwoSided",
                 "numMaterials",
             ];
             self.unknown(word, span, "among materials", &known);

@@ -105,7 +105,7 @@ pub(super) fn home_of(word: &str) -> Option<&'static str> {
     Some(match word {
         "TriangleMesh" | "HeightField" | "Grid" | "Transform" | "MaterialIndex" | "Group" | "use" | "define" => "Group",
         "PhongMaterial" | "PrincipledMaterial" | "HairMaterial" | "Material" | "Checkerboard" | "Marble" | "Wood"
-        | "Mix" => "Materials",
+        | "Mix" | "TwoSided" => "Materials",
         "PointLight" | "DirectionalLight" => "Lights",
         "Texture" => "Textures",
         "Translate" | "Scale" | "UniformScale" | "XRotate" | "YRotate" | "ZRotate" | "Rotate" | "Matrix"

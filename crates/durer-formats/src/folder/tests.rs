@@ -25,6 +25,24 @@ fn files_below_the_folder_are_read_by_any_spelling() {
 }
 
 #[test]
+fn files_are_found_by_names_as_other_systems_write_them() {
+    let (root, source) = house();
+    fs::write(root.path().join("scene/my mesh.obj"), "blank").unwrap();
+    for (name, text) in [
+        ("Models/CUBE.obj", "cube"),
+        ("nowhere/../near.obj", "near"),
+        ("my%20mesh.obj", "blank"),
+        ("MODELS/../My%20Mesh.OBJ", "blank"),
+    ] {
+        assert_eq!(&*source.read(name).unwrap(), text.as_bytes(), "{name}");
+        assert!(source.contains(name));
+    }
+    for name in ["nowhere/../../outside/secret.obj", "../OUTSIDE/secret.obj", "%2e%2e/outside/secret.obj"] {
+        assert!(!source.contains(name) && source.read(name).is_err(), "{name}");
+    }
+}
+
+#[test]
 fn nothing_outside_the_folder_is_read_unless_allowed() {
     let (root, source) = house();
     symlink(root.path().join("outside/secret.obj"), root.path().join("scene/link.obj")).unwrap();
@@ -55,7 +73,7 @@ fn a_missing_file_has_a_near_name_but_none_from_outside() {
         other => panic!("{other:?}"),
     };
     assert_eq!(near("neat.obj").as_deref(), Some("near.obj"));
-    assert_eq!(near("models/Cube.OBJ").as_deref(), Some("cube.obj"));
+    assert_eq!(near("models/Cubes.OBJ").as_deref(), Some("cube.obj"));
     assert_eq!(near("nothing/like/it.txt"), None);
     assert_eq!(near("../outside/secrets.obj"), None);
 }

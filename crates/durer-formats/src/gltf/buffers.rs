@@ -2,6 +2,7 @@
 
 use super::Model;
 use super::json::At;
+use crate::files::unescaped;
 use crate::report::shown;
 use base64::Engine;
 use base64::alphabet::STANDARD;
@@ -105,22 +106,6 @@ pub(super) fn target<'a>(at: &At<'a>) -> Option<Target<'a>> {
         return None;
     }
     Some(Target::File(path))
-}
-
-/// A text without percent-encoding; `None` where that is broken.
-fn unescaped(uri: &str) -> Option<String> {
-    let mut bytes = Vec::with_capacity(uri.len());
-    let mut rest = uri.bytes();
-    while let Some(byte) = rest.next() {
-        bytes.push(match byte {
-            b'%' => {
-                let digits = [rest.next()?, rest.next()?];
-                u8::from_str_radix(std::str::from_utf8(&digits).ok()?, 16).ok()?
-            }
-            other => other,
-        });
-    }
-    String::from_utf8(bytes).ok()
 }
 
 impl Model<'_> {

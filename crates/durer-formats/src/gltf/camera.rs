@@ -20,8 +20,8 @@ pub(super) struct CameraData {
 
 #[derive(Clone, Copy)]
 enum Seen {
-    /// The angle from bottom to top, in radians.
-    Perspective(f32),
+    /// The angle from bottom to top, in radians, and how much wider than high what is seen is.
+    Perspective(f32, Option<f32>),
     /// Half the height.
     Orthographic(f32),
 }
@@ -58,7 +58,8 @@ impl Model<'_> {
                     if angle >= PI {
                         lens.warning("CAMERA_YFOV_GEQUAL_PI", "`yfov` must be less than pi");
                     }
-                    Seen::Perspective(angle.min(3.1))
+                    let aspect = lens.get("aspectRatio").and_then(|aspect| aspect.within(1e-4..));
+                    Seen::Perspective(angle.min(3.1), aspect)
                 }
             };
             Some(CameraData { name, view })
@@ -119,9 +120,10 @@ impl Model<'_> {
         let up = map.transform_vector3(DVec3::Y).normalize_or(DVec3::Y).as_vec3();
         let center = map.translation.as_vec3();
         // Here angles and sizes are those of the picture's larger side.
-        let wide = self.input.staging.aspect.unwrap_or(1.0).max(1.0);
+        let own = if let Seen::Perspective(_, aspect) = camera.view { aspect } else { None };
+        let wide = self.input.staging.aspect.or(own).unwrap_or(1.0).max(1.0);
         let camera = match camera.view {
-            Seen::Perspective(angle) => {
+            Seen::Perspective(angle, _) => {
                 let half = fp::tan_f64(f64::from(angle) / 2.0) * f64::from(wide);
                 let angle = (2.0 * fp::atan_f64(half)).to_degrees() as f32;
                 PerspectiveCamera { center, direction, up, angle: angle.min(179.9) }.into()

@@ -9,7 +9,7 @@ use durer_scene::bsdf::layers::opaque_ior;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::material::principled::{Backs, Switch, Walls};
 use durer_scene::math::Vec3;
 use durer_scene::texture::{Channel, Mapping};
 use std::f32::consts::TAU;
@@ -42,10 +42,22 @@ pub(super) fn needs_tangents(at: &At) -> bool {
 impl Model<'_> {
     pub(super) fn materials(&self, root: &At) -> Vec<PrincipledMaterial> {
         let Some(materials) = root.get("materials") else { return Vec::new() };
-        materials.items().map(|material| self.material(&material)).collect()
+        materials.items().enumerate().map(|(i, material)| self.material(i, &material)).collect()
     }
 
-    fn material(&self, at: &At) -> PrincipledMaterial {
+    /// Of each material, whether some vertices with it have colours.
+    pub(super) fn colored(root: &At) -> Vec<bool> {
+        let mut colored = vec![false; root.get("materials").map_or(0, |materials| materials.items().count())];
+        let meshes = root.value.get("meshes").and_then(|meshes| meshes.as_array()).into_iter().flatten();
+        let primitives = meshes.filter_map(|mesh| mesh.get("primitives")?.as_array()).flatten();
+        for primitive in primitives.filter(|primitive| primitive.pointer("/attributes/COLOR_0").is_some()) {
+            let number = primitive.get("material").and_then(|material| material.as_u64());
+            number.and_then(|number| colored.get_mut(number as usize)).into_iter().for_each(|one| *one = true);
+        }
+        colored
+    }
+
+    fn material(&self, number: usize, at: &At) -> PrincipledMaterial {
         // glTF's own default: white, wholly metal and wholly rough, of ior 1.5.
         let mut m = PrincipledMaterial {
             base_color: Vec3::ONE,
@@ -70,6 +82,11 @@ impl Model<'_> {
         if alpha == Alpha::Opaque {
             m.opacity = 1.0;
         }
+        let is_colored = self.colored.get(number) == Some(&true);
+        if alpha == Alpha::Mask && is_colored {
+            // The alpha of vertices counts before the cutoff.
+            self.mask_whole(&mut m, at, cutoff);
+        }
         m.normal_texture = at.get("normalTexture").and_then(|texture| {
             let strength = texture.get("scale").and_then(|scale| scale.number()).unwrap_or(1.0);
             self.texture(&texture, |mapping| mapping.strength = strength)
@@ -83,6 +100,9 @@ impl Model<'_> {
         }
         if let Some(extensions) = &extensions {
             self.extended(&mut m, extensions);
+            if extensions.get("KHR_materials_unlit").is_some() && is_colored {
+                m.emission_vertex_colors = Switch::On;
+            }
         }
         // Of glass both sides of the skin are seen.
         let both = at.get("doubleSided").and_then(|both| both.boolean()).unwrap_or(false);
@@ -105,6 +125,24 @@ impl Model<'_> {
         m.specular_roughness = share(pbr, "roughnessFactor", 1.0);
         m.metallic_roughness_texture =
             pbr.get("metallicRoughnessTexture").and_then(|texture| self.texture(&texture, |_| ()));
+    }
+
+    /// A mask by the alpha of factor, texture and vertices together.
+    fn mask_whole(&self, m: &mut PrincipledMaterial, at: &At, cutoff: f32) {
+        let extensions = at.get("extensions");
+        let old = extensions.as_ref().and_then(|extensions| extensions.get("KHR_materials_pbrSpecularGlossiness"));
+        let (base, [factor, texture]) = match old {
+            Some(old) => (Some(old), ["diffuseFactor", "diffuseTexture"]),
+            None => (at.get("pbrMetallicRoughness"), ["baseColorFactor", "baseColorTexture"]),
+        };
+        (m.opacity, m.opacity_cutoff) = (1.0, Some(cutoff));
+        let Some(base) = base else { return };
+        if let Some(factor) = base.get(factor).and_then(|factor| factor.numbers::<4>()) {
+            m.opacity = factor[3].clamp(0.0, 1.0);
+        }
+        if let Some(texture) = base.get(texture) {
+            m.base_color_texture = self.texture_as(&texture, ":whole", |mapping| mapping.cutoff = None);
+        }
     }
 
     /// The base colour's texture, and what its alpha and that of the factor make of opacity.

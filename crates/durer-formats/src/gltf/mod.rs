@@ -87,6 +87,8 @@ struct Model<'a> {
     variant: Option<usize>,
     /// Whether each material lets what is behind it be seen by its alpha.
     blends: Vec<bool>,
+    /// Of each material, whether some vertices with it have colours.
+    colored: Vec<bool>,
     /// Whether each material wants to know how its surface moves as u grows.
     leans: Vec<bool>,
     meshes: Vec<Primitives>,
@@ -171,6 +173,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
         material_count: 0,
         variant: None,
         blends: Vec::new(),
+        colored: Vec::new(),
         leans: Vec::new(),
         meshes: Vec::new(),
         weights: Vec::new(),
@@ -190,6 +193,7 @@ fn scene(input: &Input, parts: Parts, root: At) -> Option<Scene> {
     model.unpack_primitives(&root);
     model.images = model.images(&root);
     model.textures = model.textures(&root);
+    model.colored = Model::colored(&root);
     let materials = model.materials(&root);
     model.material_count = materials.len();
     model.variant = model.chosen_variant(&root);

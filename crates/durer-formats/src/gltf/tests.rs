@@ -15,6 +15,7 @@ use durer_scene::texture::Channel;
 use std::path::{Path, PathBuf};
 
 mod places;
+mod vertices;
 
 /// Reads bytes as a file of a folder; findings as severity, code and message.
 fn read(bytes: &[u8], folder: &Path, name: &str, at: Option<f32>) -> (Option<Scene>, Vec<(Severity, String)>) {

@@ -15,6 +15,9 @@ use std::rc::Rc;
 
 /// The size of a film that does not say it.
 const SIZE: [u32; 2] = [768, 576];
+/// Where Mitsuba's cameras begin and end to see, if nothing is said.
+const NEAR: f32 = 0.01;
+const FAR: f32 = 10_000.0;
 /// Bounces of paths that have no end.
 const ENDLESS: u32 = 64;
 
@@ -138,7 +141,11 @@ impl Reader<'_> {
         if sensor.kind == "thinlens" && aperture == 0.0 {
             said.bad(sensor.at, "a `thinlens` needs an `aperture_radius`");
         }
-        if aperture == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO {
+        // The usual planes cut off nothing that a scene is made for.
+        let near = sensor.number(said, "near_clip").filter(|near| *near > NEAR).unwrap_or(0.0);
+        let far = sensor.positive(said, "far_clip");
+        let far = far.filter(|far| *far < FAR);
+        if aperture == 0.0 && handedness == Handedness::Right && shift == DVec2::ZERO && near == 0.0 && far.is_none() {
             return PerspectiveCamera { center, direction, up, angle }.into();
         }
         let (shift_right, shift_up) = (shift.x as f32, -shift.y as f32);
@@ -150,6 +157,8 @@ impl Reader<'_> {
             aperture,
             focus_distance: focus,
             handedness,
+            near,
+            far,
             ..Default::default()
         };
         ThinLensCamera { shift_right, shift_up, ..lens }.into()
@@ -231,9 +240,7 @@ impl Reader<'_> {
             Some(-1.0) => self.scene.wishes.bounces = Some(ENDLESS),
             Some(depth) if (0.0..=1e6).contains(&depth) => {
                 self.scene.wishes.bounces = Some((depth as u32).saturating_sub(2));
-                if depth < 2.0 {
-                    said.other(plugin.place("max_depth"), "light that is not scattered is no picture: 2 is taken");
-                }
+                self.emitters_only = depth < 2.0;
             }
             Some(_) => said.bad(plugin.place("max_depth"), "`max_depth` must be -1 or from 0 to 1000000"),
             None if plugin.kind.contains("path") => self.scene.wishes.bounces = Some(ENDLESS),

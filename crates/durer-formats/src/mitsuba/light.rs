@@ -26,6 +26,10 @@ const SKY_ROWS: u32 = 512;
 /// Steps of both angles of what throws a picture.
 const STEPS: [u32; 2] = [360, 720];
 
+/// Of a picture of at least so many rows it makes no difference that Mitsuba has the first and the
+/// last of them at the poles.
+const FINE_ROWS: u32 = 256;
+
 /// Rows of a picture of all directions that is turned.
 const MAX_ROWS: u32 = 2048;
 
@@ -238,11 +242,12 @@ impl Reader<'_> {
             }
             Some(Infinite::Picture { name, at, scale, to_world }) => {
                 let Some(picture) = self.pictures().image(&name, at) else { return };
-                let rows = picture.height.min(MAX_ROWS);
+                let is_fine = picture.height >= FINE_ROWS;
+                let rows = picture.height.clamp(FINE_ROWS, MAX_ROWS);
                 let y = to_world.matrix3.y_axis;
                 // The middle of Mitsuba's pictures is where its z points, and of ours where -z
                 // does.
-                if y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
+                if is_fine && y.x == 0.0 && y.z == 0.0 && y.y > 0.0 && to_world.matrix3.determinant() > 0.0 {
                     let z = to_world.matrix3.z_axis.as_vec3();
                     let degrees = 180.0 - fp::atan2(z.x, z.z).to_degrees();
                     let background = &mut self.scene.background;
@@ -254,7 +259,7 @@ impl Reader<'_> {
                 let to_light = to_world.inverse();
                 let light = |dir: DVec3| {
                     let DVec3 { x, y, z } = to_light.transform_vector3(dir).normalize_or(DVec3::Y);
-                    scale * panorama::looked_up(&picture, DVec3::new(-x, y, -z))
+                    scale * panorama::between_poles(&picture, DVec3::new(-x, y, -z))
                 };
                 let memory = panorama::beside([&picture], self.input.memory);
                 if let Err(error) = panorama::surround(&mut self.scene, (&name, at), rows, memory, light) {

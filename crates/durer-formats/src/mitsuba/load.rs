@@ -6,7 +6,7 @@
 use super::plugin::{Plugin, Property, Value};
 use crate::model::Input;
 use crate::said::{Said, meant};
-use crate::xml::{Attribute, Piece, Tag, Xml};
+use crate::xml::{Attribute, Piece, Tag, Xml, utf8};
 use durer_diag::{Diagnostic, Span};
 use durer_image::decode_srgb;
 use durer_scene::math::Vec3;
@@ -304,7 +304,7 @@ impl<'a> Loader<'a> {
             return Err(Broken);
         }
         let bytes = match self.input.source.read(&self.path(&name)) {
-            Ok(bytes) if bytes.len() < u32::MAX as usize => bytes,
+            Ok(bytes) if bytes.len() < u32::MAX as usize => utf8(bytes),
             Ok(_) => {
                 self.said.bad(at, format!("`{name}` is too large"));
                 return Ok(());

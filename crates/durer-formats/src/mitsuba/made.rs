@@ -16,6 +16,8 @@ pub(super) enum Made {
     Hair(HairMaterial),
     /// Two others, the share of the first, and a picture that multiplies it.
     Mix(Rc<Made>, Rc<Made>, f32, Option<FileName>),
+    /// One on the front and another on the back.
+    Sides(Rc<Made>, Rc<Made>),
     /// What is not there at all.
     Nothing,
 }
@@ -37,6 +39,7 @@ impl Made {
             Made::Mix(a, b, share, picture) => {
                 Made::Mix(a.changed(change).into(), b.changed(change).into(), *share, picture.clone())
             }
+            Made::Sides(front, back) => Made::Sides(front.changed(change).into(), back.changed(change).into()),
             Made::Hair(hair) => Made::Hair(hair.clone()),
             Made::Nothing => Made::Nothing,
         }

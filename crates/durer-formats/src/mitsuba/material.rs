@@ -17,7 +17,8 @@ use durer_scene::bsdf::fresnel::conductor_colors;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::material::mix::Mix;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
+use durer_scene::material::two_sided::TwoSided;
 use durer_scene::material::{HairMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Material, Spanned};
@@ -79,11 +80,17 @@ impl Reader<'_> {
             "hair" => return Rc::new(self.hair(plugin)),
             "null" => return Rc::new(Made::Nothing),
             "twosided" => {
+                let both = |made: &Made| Rc::new(made.changed(&|m| m.backs = Backs::Shown));
                 let parts = self.parts(plugin, Some("bsdf"));
-                if let Some((other, _)) = parts.get(1) {
-                    self.said.once(other.at, "another material on the back has no counterpart: both sides are alike");
-                }
-                return self.inner(plugin, depth);
+                return match parts.as_slice() {
+                    [(_, front), (_, back)] => {
+                        let sides = [front, back].map(|side| both(&self.material(side, depth + 1)));
+                        // A sphere turned inside out has its front where ours has its back.
+                        let [front, back] = sides;
+                        Rc::new(if self.inside_out { Made::Sides(back, front) } else { Made::Sides(front, back) })
+                    }
+                    _ => both(&self.inner(plugin, depth)),
+                };
             }
             "mask" => {
                 let (opacity, picture) = self.pictured(plugin, "opacity", 0.5, |x| x.clamp(0.0, 1.0));
@@ -114,6 +121,11 @@ impl Reader<'_> {
                 plugin.properties.iter().for_each(|property| property.used.set(true));
                 return Rc::new(Made::matte(0.5));
             }
+        }
+        // All but glass is black from behind, where it is not `twosided`.
+        let is_open = m.transmission_weight > 0.0 || m.walls == Walls::Thin || m.transmission_weight_texture.is_some();
+        if !is_open && !self.inside_out {
+            m.backs = Backs::Black;
         }
         Rc::new(Made::Layers(Box::new(m)))
     }
@@ -162,7 +174,9 @@ impl Reader<'_> {
         if picture.is_none() {
             self.said.once(property.at, "a `bumpmap` needs a picture: the surface stays smooth");
         }
-        Rc::new(inner.changed(&|m| (m.bump_texture, m.bump_height) = (picture.clone(), height)))
+        Rc::new(inner.changed(&|m| {
+            (m.bump_texture, m.bump_height, m.normal_bending) = (picture.clone(), height, Switch::Off);
+        }))
     }
 
     fn normal_map(&mut self, plugin: &Plugin, depth: u32) -> Rc<Made> {
@@ -177,7 +191,7 @@ impl Reader<'_> {
         texture.finish(self.said);
         let Some(picture) = picture else { return inner };
         let name = asset(&mut self.scene, picture, property.at);
-        Rc::new(inner.changed(&|m| m.normal_texture = Some(name.clone())))
+        Rc::new(inner.changed(&|m| (m.normal_texture, m.normal_bending) = (Some(name.clone()), Switch::Off)))
     }
 
     /// An index of refraction: a number or a name.
@@ -198,19 +212,9 @@ impl Reader<'_> {
         self.index(plugin, "int_ior", usual) / self.index(plugin, "ext_ior", AIR)
     }
 
-    /// The index of a body over that of air. What has the index of another body outside is inside
-    /// of that, and rays know what they are in.
-    fn index_of_body(&self, plugin: &Plugin, usual: f32) -> f32 {
-        let (mut inside, mut outside) = (self.index(plugin, "int_ior", usual), self.index(plugin, "ext_ior", AIR));
-        if self.inside_out && plugin.kind != "thindielectric" {
-            std::mem::swap(&mut inside, &mut outside);
-        }
-        let nested = (outside - AIR).abs() > 1e-3 && self.clear.iter().any(|index| (index - outside).abs() < 1e-3);
-        inside / if nested { AIR } else { outside }
-    }
-
     /// GGX's alpha along both directions as ours: roughness, anisotropy and turn.
     fn roughness(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
+        m.energy_compensation = Switch::Off;
         if !plugin.kind.starts_with("rough") {
             m.specular_roughness = 0.0;
             return;
@@ -251,11 +255,15 @@ impl Reader<'_> {
 
     fn glass(&mut self, plugin: &Plugin, m: &mut PrincipledMaterial) {
         m.transmission_weight = 1.0;
-        m.specular_ior = self.index_of_body(plugin, 1.5046);
+        let index = self.relative_index(plugin, 1.5046);
+        let is_thin = plugin.kind == "thindielectric";
+        m.specular_ior = if self.inside_out && !is_thin { 1.0 / index } else { index };
+        // `ext_ior` is what the file says, and not what lies around.
+        m.surroundings = Surroundings::Ignored;
         self.tint(plugin, m);
         (m.transmission_color, m.transmission_color_texture) = self.colored(plugin, "specular_transmittance", 1.0);
         m.transmission_color = m.transmission_color.min(Vec3::ONE);
-        m.walls = if plugin.kind == "thindielectric" { Walls::Thin } else { Walls::Solid };
+        m.walls = if is_thin { Walls::Thin } else { Walls::Solid };
         self.roughness(plugin, m);
     }
 
@@ -374,6 +382,12 @@ impl Reader<'_> {
                 }
                 Material::Hair(hair.clone())
             }
+            Made::Sides(front, back) => match (self.numbered(front, shine, at), self.numbered(back, None, at)) {
+                (Some(material1), Some(material2)) => {
+                    Material::Solid(Solid::from(TwoSided { material1, material2 }), Vec::new())
+                }
+                (only, other) => return only.or(other),
+            },
             Made::Mix(a, b, share, picture) => match (self.numbered(a, shine, at), self.numbered(b, shine, at)) {
                 (Some(material1), Some(material2)) => {
                     let mix = Mix { material1, material2, share: *share, share_texture: picture.clone() };

@@ -1,7 +1,5 @@
 //! Indices of refraction of metals and of what is clear, by name.
 
-use super::plugin::Value;
-
 /// Indices of metals: the real part and the imaginary part, for red, green and blue.
 ///
 /// Source: the spectra of Palik, *Handbook of Optical Constants of Solids*, 1985, and of the SOPRA
@@ -76,14 +74,4 @@ pub(super) fn clear(name: &str) -> Option<f32> {
 /// Names of what is clear.
 pub(super) fn clear_names() -> impl Iterator<Item = &'static str> {
     CLEAR.iter().map(|row| row.0)
-}
-
-/// An index of refraction as a property has it: a number or a name.
-pub(super) fn written(value: &Value) -> Option<f32> {
-    match value {
-        Value::Text(name) => clear(name),
-        Value::Number(number) => Some(*number as f32),
-        Value::Even(number) => Some(*number),
-        _ => None,
-    }
 }

@@ -8,7 +8,7 @@ use super::state::Reader;
 use crate::disney::{self, Matte};
 use durer_scene::bsdf::fresnel::ior_of_reflectance;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Surroundings, Switch, Walls};
 use durer_scene::math::{LUMINANCE, Vec3};
 
 impl Reader<'_> {
@@ -40,11 +40,7 @@ impl Reader<'_> {
         let matte = match (thin, &metalness_texture) {
             (true, _) => disney::matte_mean(rough) * base_color,
             (false, Some(_)) => base_color,
-            (false, None) => {
-                let matte = Matte::new(ior, rough);
-                let lost = if base_color_texture.is_some() { 0.0 } else { matte.lost };
-                base_color.lerp(matte.base(base_color, Vec3::splat(lost)), 1.0 - metallic)
-            }
+            (false, None) => base_color.lerp(Matte::new(ior, rough).base(base_color), 1.0 - metallic),
         };
         let sheen = share("sheen", 0.0);
         let fuzz_weight = if sheen > 0.0 { sheen * disney::sheen_of_fuzz() } else { 0.0 };
@@ -66,6 +62,8 @@ impl Reader<'_> {
             specular_roughness: (0.5 * (u * u + v * v)).sqrt().min(1.0).sqrt(),
             specular_roughness_texture: roughness_texture,
             specular_anisotropy: 1.0 - v / u.max(1e-12),
+            energy_compensation: Switch::Off,
+            surroundings: Surroundings::Ignored,
             transmission_weight: clear,
             // Disney's glass takes the root of the colour at each of two surfaces.
             transmission_color: if thin { base_color } else { base_color.map(f32::sqrt) }.clamp(Vec3::ZERO, Vec3::ONE),

@@ -1,7 +1,7 @@
 //! What rough boundaries let through in Mitsuba, which does not give back what goes from facet to
 //! facet.
 
-use crate::disney::{kept, passing};
+use crate::disney::passing;
 use durer_scene::bsdf::albedo::single_means;
 use durer_scene::bsdf::fresnel;
 use durer_scene::math::{Vec3, fp};
@@ -14,7 +14,7 @@ pub(super) struct Boundary {
     smooth: [f32; 2],
     /// What ours lets through to the base and out again.
     passing: f32,
-    /// What theirs loses between facets and ours mirrors.
+    /// What ours mirrors more than theirs.
     lost: f32,
 }
 
@@ -33,7 +33,7 @@ impl Boundary {
             rough: [all - reflected, inside],
             smooth: [sum - mirrored, within],
             passing: passing(ours),
-            lost: kept(ours) - reflected,
+            lost: ours[0] - reflected,
         }
     }
 

@@ -2,12 +2,12 @@
 
 use super::load::Loader;
 use super::made::{Infinite, Made};
-use super::metals;
-use super::plugin::{Key, Plugin, Property, Value, is_inside_out};
+use super::plugin::{Key, Plugin, Property, Value};
 use crate::bodies::join_bodies;
 use crate::model::Input;
 use crate::pictures::Pictures;
 use crate::said::{Said, meant};
+use crate::unscattered;
 use durer_diag::{Diagnostic, Span};
 use durer_scene::scene::{Group, Object, Scene};
 use durer_scene::shape::MeshData;
@@ -37,8 +37,8 @@ pub(super) struct Reader<'a> {
     /// Whether the shape at hand is turned inside out: the index inside of its glass is outside.
     pub inside_out: bool,
     pub infinite: Option<Infinite>,
-    /// Indices of refraction inside of what is clear.
-    pub clear: Vec<f32>,
+    /// Whether light that was scattered is not to be seen.
+    pub emitters_only: bool,
     pub scene: Scene,
 }
 
@@ -55,14 +55,13 @@ impl<'a> Reader<'a> {
             count: 0,
             inside_out: false,
             infinite: None,
-            clear: Vec::new(),
+            emitters_only: false,
             scene: Scene::default(),
         }
     }
 
     /// The scene of its plugins.
     pub fn read(mut self, all: &Plugin) -> Scene {
-        self.clear = self.clear_inside(all);
         let mut sensors = Vec::new();
         for (property, plugin) in self.parts(all, None) {
             if self.said.is_full() {
@@ -85,33 +84,15 @@ impl<'a> Reader<'a> {
         self.camera(&sensors);
         self.surround();
         join_bodies(&mut self.scene, self.input.name);
+        if self.emitters_only {
+            unscattered::blacken(&mut self.scene);
+        }
         if self.scene.root.is_none() && !self.said.has_errors() {
             let at = Span { end: all.at.start, ..all.at };
             let warning = Diagnostic::warning("the file has no shapes that can be shown");
             self.said.push(warning.code("no-objects").at(at));
         }
         self.scene
-    }
-
-    /// The indices of refraction inside of all that is clear.
-    fn clear_inside(&self, all: &Plugin) -> Vec<f32> {
-        let clear = |part: &Plugin, inside_out: bool| match part.get(if inside_out { "ext_ior" } else { "int_ior" }) {
-            Some(property) => metals::written(&property.value),
-            None if inside_out => None,
-            None => metals::clear("bk7"),
-        };
-        // What is wrong with a shape is said where it is read.
-        let unsaid = Said::default();
-        let mut indices = Vec::new();
-        for shape in self.reachable(all, &["shape"]) {
-            let inside_out = is_inside_out(&shape, &unsaid);
-            let inner = self.reachable(&shape, &["bsdf"]);
-            let glass = inner.iter().filter(|part| part.kind.ends_with("dielectric"));
-            indices.extend(glass.filter_map(|part| clear(part, inside_out)));
-        }
-        indices.sort_by(f32::total_cmp);
-        indices.dedup();
-        indices
     }
 
     /// All plugins inside of one, of some tags and through such, each once. Nothing is told, and

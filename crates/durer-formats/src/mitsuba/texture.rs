@@ -38,7 +38,7 @@ impl Reader<'_> {
 
     /// A picture of colours whose bytes are numbers without a curve, if they are `raw`.
     pub fn without_curve(&self, picture: Picture, raw: bool, at: Span) -> Picture {
-        if raw { self.pictures().curved(&picture, at).unwrap_or(picture) } else { picture }
+        if raw { self.pictures().recoded(&picture, at, true, |x| x).unwrap_or(picture) } else { picture }
     }
 
     fn texture_of(&self, property: &Property, usual: Color) -> Texture {

@@ -14,7 +14,9 @@ use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
 use durer_scene::math::Vec3;
 use durer_scene::scene::{Picture, PictureBytes};
+use durer_scene::spectrum::space::color_of_xyz;
 use durer_scene::texture::{Channel, Mapping, Wrap};
+use glam::DVec3;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -34,6 +36,7 @@ pub(super) fn read_files(
     diagnostics: &mut Diagnostics,
 ) {
     let all = String::from_utf8_lossy(&input.bytes[names.clone()]).into_owned();
+    let all = unquoted(&all).to_string();
     let files = match found(input, &all, span) {
         Some(whole) => vec![(all.clone(), Some(whole))],
         // Some programs escape blanks within a name by a backslash.
@@ -152,8 +155,13 @@ impl Reader<'_, '_> {
             parse_f32(text).map(Some).map_err(problem)
         };
         let color = || -> Result<Option<Vec3>, (Span, String)> {
-            // Colours given as a spectrum or in CIE XYZ begin with a word.
-            match numbers(rest)[..] {
+            // Colours in CIE XYZ and by spectrum have a word before them.
+            let is_xyz = rest.first().is_some_and(|word| word.text == "xyz");
+            match numbers(&rest[usize::from(is_xyz)..])[..] {
+                [x, y, z, ..] if is_xyz => {
+                    let xyz = DVec3::new(f64::from(x), f64::from(y), f64::from(z));
+                    Ok(Some(color_of_xyz(xyz).max(Vec3::ZERO)))
+                }
                 [r, g, b, ..] => Ok(Some(Vec3::new(r, g, b).max(Vec3::ZERO))),
                 [r, ..] => Ok(Some(Vec3::splat(r.max(0.0)))),
                 [] => Err((keyword.at, format!("`{word}` needs three numbers"))),
@@ -253,9 +261,16 @@ impl Reader<'_, '_> {
         }
         // Texture coordinates have v upwards; the picture's rows go down.
         mapping.transform = [[scale[0], 0.0, offset[0]], [0.0, scale[1], 1.0 - scale[1] - offset[1]]];
+        // Some programs write options behind the name.
         let named = rest.get(at..).unwrap_or_default();
+        let behind = named.iter().skip(1).position(|word| is_option(&word.text));
+        let named = &named[..behind.map_or(named.len(), |behind| behind + 1)];
+        if behind.is_some() {
+            self.leave_out("options behind a picture's name", keyword.at);
+        }
         let span = named.first().zip(named.last()).map_or(keyword.at, |(first, last)| first.at.to(last.at));
         let name = named.iter().map(|word| word.text.as_str()).collect::<Vec<_>>().join(" ");
+        let name = unquoted(&name).to_string();
         let word = &keyword.text;
         let Some(file) = found(self.input, &name, span) else {
             let message = format!("material `{}`: there is no picture {} ({word})", m.name, shown(name.as_bytes()));
@@ -277,7 +292,21 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The leading numbers in a list of words.
+/// A name without the quotes around it.
+fn unquoted(name: &str) -> &str {
+    let name = name.trim();
+    ['"', '\''].into_iter().find_map(|quote| name.strip_prefix(quote)?.strip_suffix(quote)).unwrap_or(name)
+}
+
+/// Whether a word is an option of a picture's.
+fn is_option(word: &str) -> bool {
+    const OPTIONS: [&str; 13] = [
+        "-blendu", "-blendv", "-boost", "-mm", "-o", "-s", "-t", "-texres", "-clamp", "-bm", "-imfchan", "-type", "-cc",
+    ];
+    OPTIONS.contains(&word)
+}
+
+/// The numbers with which some words begin.
 fn numbers(words: &[Word]) -> Vec<f32> {
     words.iter().map_while(|word| parse_f32(word.text.as_bytes()).ok()).collect()
 }

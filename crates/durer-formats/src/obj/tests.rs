@@ -188,7 +188,7 @@ fn names_of_files_of_materials_may_have_blanks() {
     let (a, b) = (mtl("a"), mtl("b"));
     let folder = folder(&[("one two.mtl", a.as_bytes()), ("three.mtl", b.as_bytes())]);
     let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
-    for names in ["one two.mtl", "three.mtl one\\ two.mtl"] {
+    for names in ["one two.mtl", "three.mtl one\\ two.mtl", "\"one two.mtl\"", "One Two.MTL"] {
         let told = read_in(folder.path(), "m.obj", &format!("mtllib {names}\n{triangle}")).1;
         assert!(told.is_empty(), "{names}: {told:?}");
     }

@@ -302,11 +302,7 @@ impl Reader<'_> {
         }
         match params.whole("maxdepth").unwrap_or(5) {
             depth @ 1..=1_000_000 => self.scene.wishes.bounces = Some(depth as u32 - 1),
-            0 => {
-                self.scene.wishes.bounces = Some(0);
-                self.said
-                    .other(params.place("maxdepth"), "light that is not scattered at all is no picture: 1 is taken");
-            }
+            0 => (self.scene.wishes.bounces, self.emitters_only) = (Some(0), true),
             _ => self.said.bad(params.place("maxdepth"), "`maxdepth` must be from 0 to 1000000"),
         }
         params.known(&["regularize", "lightsampler", "sampledirect", "visualizestrategies", "visualizeweights"]);

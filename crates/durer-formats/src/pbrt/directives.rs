@@ -464,6 +464,9 @@ impl Reader<'_> {
             self.said.push(error.help(format!("a `{end}` is missing")));
         }
         crate::bodies::join_bodies(&mut self.scene, self.input.name);
+        if self.emitters_only {
+            crate::unscattered::blacken(&mut self.scene);
+        }
         self.frame();
         self.surround();
         if self.scene.root.is_none() && !self.said.has_errors() {

@@ -41,7 +41,7 @@ pub(super) enum Texture {
 }
 
 /// The light of a surface.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct AreaLight {
     /// Its radiance where no power is given; else the colour of its power.
     pub radiance: Color,

@@ -1,7 +1,7 @@
 //! Shapes.
 
 use super::language::Language;
-use super::made::Opacity;
+use super::made::{AreaLight, Opacity};
 use super::params::{Kind, Param, Params};
 use super::state::{Reader, SHAPE};
 use super::{curve, mesh, net, round};
@@ -29,6 +29,8 @@ struct Made {
     lights: usize,
     /// Where it is in the world.
     map: DAffine3,
+    /// Whether its normals point inwards and ours outwards.
+    inside_out: bool,
 }
 
 impl Reader<'_> {
@@ -115,7 +117,11 @@ impl Reader<'_> {
             !inside
         });
         let material = self.filled();
-        let radiance = light.as_ref().map(|light| (&**light, radiance(light, &made)));
+        let mut light = light.map(|light| (light.clone(), radiance(&light, &made)));
+        if let Some((light, _)) = light.as_mut().filter(|_| made.inside_out) {
+            *light = Rc::new(AreaLight { two_sided: true, ..(**light).clone() });
+        }
+        let radiance = light.as_ref().map(|(light, radiance)| (&**light, *radiance));
         let Some(material) = self.number(material, radiance, opacity) else {
             if light.is_some() {
                 self.said.once(at, "what is not there (`interface`) does not shine");
@@ -141,7 +147,7 @@ impl Reader<'_> {
             return self.grown(data, map, params.at);
         }
         if flipped && self.state.area.as_ref().is_some_and(|light| !light.two_sided) {
-            self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards");
+            self.said.once(params.at, "a sphere turned inside out has no counterpart: it shines outwards as well");
         }
         let world = radius * map.transform_vector3(DVec3::X).length() as f32;
         let (center, map) = match map.matrix3 == DAffine3::IDENTITY.matrix3 {
@@ -154,7 +160,7 @@ impl Reader<'_> {
             false => (Vec3::ZERO, map),
         };
         let node = Node::Primitive(Sphere { center, radius }.into());
-        Some(Made { node, area: 4.0 * PI * world * world, lights: 1, map })
+        Some(Made { node, area: 4.0 * PI * world * world, lights: 1, map, inside_out: flipped })
     }
 
     fn disk(&mut self, params: &Params, map: DAffine3, flipped: bool) -> Option<Made> {
@@ -173,7 +179,7 @@ impl Reader<'_> {
         let stretch = map.transform_vector3(DVec3::X).cross(map.transform_vector3(DVec3::Y)).length() as f32;
         let area = PI * (radius * radius - inner_radius * inner_radius) * stretch;
         let node = Node::Primitive(Disc { center: height * Vec3::Z, normal, radius, inner_radius }.into());
-        Some(Made { node, area, lights: 1, map })
+        Some(Made { node, area, lights: 1, map, inside_out: false })
     }
 
     /// A mesh that is made of few numbers. All of a file may have so many triangles and no more.
@@ -202,7 +208,7 @@ impl Reader<'_> {
         let name = name.unwrap_or_else(|| format!("{}#{}", self.input.name, self.scene.assets.meshes.len()));
         let lights = data.triangles.len();
         let node = self.scene.add_mesh(&name, data, at);
-        Some(Made { node, area, lights, map })
+        Some(Made { node, area, lights, map, inside_out: false })
     }
 
     fn ply(&mut self, params: &Params, map: DAffine3, at: Span) -> Option<Made> {
@@ -230,7 +236,7 @@ impl Reader<'_> {
 
 /// The radiance of a shape that shines. A power is that of each of its lights: of each triangle of
 /// a mesh.
-fn radiance(light: &super::made::AreaLight, made: &Made) -> Color {
+fn radiance(light: &AreaLight, made: &Made) -> Color {
     let Some(power) = light.power else { return light.radiance };
     let sides = if light.two_sided { 2.0 } else { 1.0 };
     let strength = power / (sides * PI * made.area / made.lights as f32);

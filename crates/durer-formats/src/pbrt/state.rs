@@ -106,6 +106,8 @@ pub(super) struct Reader<'a> {
     pub early: Option<Span>,
     pub in_world: bool,
     pub infinite: Vec<Infinite>,
+    /// Whether light that was scattered is not to be seen.
+    pub emitters_only: bool,
     pub meshes: BTreeMap<(String, bool), Arc<MeshData>>,
     pub scene: Scene,
 }
@@ -139,6 +141,7 @@ impl<'a> Reader<'a> {
             early: None,
             in_world: false,
             infinite: Vec::new(),
+            emitters_only: false,
             meshes: BTreeMap::new(),
             scene: Scene::default(),
         }

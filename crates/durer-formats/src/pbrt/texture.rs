@@ -7,9 +7,9 @@ use super::state::{Reader, TEXTURE};
 use crate::pictures::{self, Pictures};
 use crate::said::meant;
 use durer_diag::Span;
-use durer_image::decode_srgb;
+use durer_image::{decode_srgb, linear_from_srgb};
 use durer_scene::describe::FileName;
-use durer_scene::math::{Color, Vec3};
+use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::scene::{Picture, PictureBytes};
 use durer_scene::texture::{Mapping, Wrap};
 use std::rc::Rc;
@@ -177,11 +177,6 @@ impl Reader<'_> {
         self.pictures().mean(picture, at)
     }
 
-    /// The mean of a picture of numbers that the scene has.
-    pub fn mean_of_asset(&self, name: &FileName, at: Span) -> Option<f32> {
-        self.pictures().mean(self.scene.assets.pictures.get(&name.path)?, at)
-    }
-
     /// A picture that a number is, with its values made others; `None` where it is no picture.
     pub fn changed(
         &mut self,
@@ -262,20 +257,38 @@ impl Reader<'_> {
             let plain = params.truth("gamma") == Some(false);
             let bytes = self.eight_bits(name, at)?;
             let picture = Picture { bytes, mapping };
-            let curved = if plain { self.pictures().curved(&picture, at) } else { None };
+            let curved = if plain { self.pictures().recoded(&picture, at, true, |x| x) } else { None };
             return Some(Texture::Picture(curved.unwrap_or(picture), scale));
         }
-        if params.text("encoding").is_some_and(|encoding| encoding != "sRGB") && is_color {
-            self.said
-                .once(params.place("encoding"), "an encoding other than `sRGB` has no counterpart: `sRGB` is taken");
-        }
-        if params.truth("invert") == Some(true) {
-            self.said.once(params.place("invert"), "inverted pictures have no counterpart: it is shown as it is");
-        }
+        let gamma = self.encoding(params);
+        let inverted = params.truth("invert") == Some(true);
         params.known(&["maxanisotropy", "trilinear"]);
         let scale = Vec3::splat(params.float("scale").unwrap_or(1.0));
-        let bytes = self.eight_bits(name, at)?;
-        Some(Texture::Picture(Picture { bytes, mapping }, scale))
+        let picture = Picture { bytes: self.eight_bits(name, at)?, mapping };
+        if gamma.is_none() && !inverted {
+            return Some(Texture::Picture(picture, scale));
+        }
+        let decode = |x: f32| {
+            let decoded = gamma.map_or_else(|| linear_from_srgb(x), |gamma| fp::pow(x, gamma));
+            if inverted { (1.0 - decoded).max(0.0) } else { decoded }
+        };
+        let recoded = self.pictures().recoded(&picture, at, is_color, decode);
+        Some(Texture::Picture(recoded.unwrap_or(picture), scale))
+    }
+
+    /// The power that makes light of the bytes of a picture; `None` where that is sRGB's curve.
+    fn encoding(&self, params: &Params) -> Option<f32> {
+        let text = params.text("encoding").filter(|encoding| *encoding != "sRGB")?;
+        if text == "linear" {
+            return Some(1.0);
+        }
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let gamma = if let ["gamma", x] = words[..] { x.parse::<f32>().ok().filter(|x| *x > 0.0) } else { None };
+        if gamma.is_none() {
+            let message = format!("there is no encoding `{text}`: it is `sRGB`, `linear`, or `gamma` and a number");
+            self.said.bad(params.place("encoding"), message);
+        }
+        gamma
     }
 
     fn mapping(&self, params: &Params) -> Mapping {

@@ -1,8 +1,9 @@
 //! The ZIP archive: finds the model part, and reads parts by name.
 
+use crate::files::unescaped;
 use crate::model::Input;
 use crate::said::{Said, meant};
-use crate::xml::{Piece, Xml};
+use crate::xml::{Piece, Xml, utf8};
 use crate::zip::Zip;
 use durer_diag::{Diagnostic, Span};
 use std::sync::Arc;
@@ -74,7 +75,7 @@ impl<'a> Package<'a> {
             return None;
         }
         if let Some((name, at)) = roots.into_iter().next() {
-            if !self.zip.names().any(|part| part == name) {
+            if self.known(&name).is_none() {
                 let help = meant(&name, self.zip.names());
                 self.said.bad_with(at, format!("the archive has no part `{name}`"), help);
                 return None;
@@ -93,8 +94,18 @@ impl<'a> Package<'a> {
         }
     }
 
-    /// Reads the bytes of a part; reports an error if that fails.
+    /// The name of a part as the archive has it: names are the same whatever the case of their
+    /// letters, and may be written with percent escapes.
+    fn known(&self, name: &str) -> Option<String> {
+        let plain = |name: &str| unescaped(name).unwrap_or_else(|| name.to_string()).to_lowercase();
+        let same = |part: &&str| *part == name;
+        let alike = |part: &&str| plain(part) == plain(name);
+        self.zip.names().find(same).or_else(|| self.zip.names().find(alike)).map(str::to_string)
+    }
+
+    /// The bytes of a part; complains if it cannot be read.
     pub fn bytes(&mut self, name: &str, at: Span) -> Option<Arc<[u8]>> {
+        let name = &self.known(name)?;
         match self.zip.part(name)? {
             Ok(bytes) => Some(bytes.into()),
             Err(problem) => {
@@ -107,7 +118,7 @@ impl<'a> Package<'a> {
 
     /// Reads a text part and registers it as a file, for spans.
     pub fn part(&mut self, name: &str, at: Span) -> Option<(Arc<[u8]>, u32)> {
-        let bytes = self.bytes(name, at)?;
+        let bytes = utf8(self.bytes(name, at)?);
         if bytes.len() >= u32::MAX as usize {
             self.said.bad(at, format!("the part `{name}` is too large"));
             return None;

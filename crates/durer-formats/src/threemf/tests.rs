@@ -276,3 +276,27 @@ fn the_consortiums_files_are_read_or_refused() {
     let names: Vec<String> = read.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(names, HARMLESS.map(|name| format!("MUSTFAIL_{name}")));
 }
+
+#[test]
+fn names_of_parts_have_no_case_and_may_be_escaped() {
+    let text = model("", "", [""; 4], ITEM);
+    let relation = |target: &str| {
+        format!("<Relationships><Relationship Target='{target}' Type='http://x/3dmodel'/></Relationships>")
+    };
+    for (target, part) in
+        [("/3D/A.model", "3D/a.model"), ("/3D/a%20b.model", "3D/a b.model"), ("/3D/a%20b.model", "3D/a%20b.model")]
+    {
+        let (scene, told) = read_parts(&[("_rels/.rels", relation(target).as_bytes()), (part, text.as_bytes())]);
+        assert!(scene.is_some() && told.is_empty(), "{target} {part}: {told:?}");
+    }
+}
+
+#[test]
+fn models_may_be_in_utf_16() {
+    let text = model("", "", [""; 4], ITEM);
+    for number in [u16::to_le_bytes, u16::to_be_bytes] {
+        let bytes: Vec<u8> = "\u{feff}".encode_utf16().chain(text.encode_utf16()).flat_map(number).collect();
+        let (scene, told) = read_parts(&[("_rels/.rels", RELATIONS.as_bytes()), ("3D/a.model", &bytes)]);
+        assert!(scene.is_some() && told.is_empty(), "{told:?}");
+    }
+}

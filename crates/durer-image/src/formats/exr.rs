@@ -164,6 +164,15 @@ fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     single.ok_or_else(|| ImageError::unsupported(NAME, "there are no channels R, G and B, nor Y"))
 }
 
+/// The width and height of the window that is shown, and where the pixels that are there begin in it:
+/// those of a crop fill a part of it, and some programs make more than is shown.
+fn window(header: &Header) -> (Vec2<usize>, Vec2<i64>) {
+    let shown = header.shared_attributes.display_window;
+    let from = header.own_attributes.layer_position;
+    let offset = |a: i32, b: i32| i64::from(a) - i64::from(b);
+    (shown.size, Vec2(offset(from.0, shown.position.0), offset(from.1, shown.position.1)))
+}
+
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, _) = chosen(&meta)?;
@@ -178,6 +187,7 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     if block.saturating_mul(header.channels.bytes_per_pixel as u64) > pixel_limit(bytes.len()).saturating_mul(16) {
         return Err(ImageError::TooLarge { width: width as u64, height: height as u64, bytes: bytes.len() });
     }
+    let (Vec2(width, height), _) = window(header);
     Ok(Head {
         width: width as u64,
         height: height as u64,
@@ -190,19 +200,21 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, [red, green, blue]) = chosen(&meta)?;
-    let Vec2(width, height) = header.layer_size;
+    let (Vec2(width, height), offset) = window(header);
     // Allocated at once, so that lack of memory is an error.
     let room = RefCell::new(room_for(width * height, Vec3::ZERO)?);
     let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();
     let picture = if is_grey {
-        let place = move |pixels: &mut Vec<Vec3>, at, (grey,): (f32,)| put(pixels, width, at, Vec3::splat(grey));
+        let place =
+            move |pixels: &mut Vec<Vec3>, at, (grey,): (f32,)| put(pixels, width, (at, offset), Vec3::splat(grey));
         let channels = channels.required(red).collect_pixels(|_, _| room.take(), place);
         let reader = channels.first_valid_layer().all_attributes().non_parallel();
         reader.from_buffered(Cursor::new(bytes)).map_err(malformed)?.layer_data.channel_data.pixels
     } else {
-        let place =
-            move |pixels: &mut Vec<Vec3>, at, (r, g, b): (f32, f32, f32)| put(pixels, width, at, Vec3::new(r, g, b));
+        let place = move |pixels: &mut Vec<Vec3>, at, (r, g, b): (f32, f32, f32)| {
+            put(pixels, width, (at, offset), Vec3::new(r, g, b))
+        };
         let channels = channels.required(red).required(green).required(blue);
         let reader = channels.collect_pixels(|_, _| room.take(), place).first_valid_layer().all_attributes();
         reader.non_parallel().from_buffered(Cursor::new(bytes)).map_err(malformed)?.layer_data.channel_data.pixels
@@ -210,8 +222,12 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     Ok(Raster::Float(Image { width: width as u32, height: height as u32, pixels: picture }, Vec::new()))
 }
 
-fn put(pixels: &mut [Vec3], width: usize, Vec2(x, y): Vec2<usize>, color: Vec3) {
-    if let Some(pixel) = pixels.get_mut(y * width + x) {
+fn put(pixels: &mut [Vec3], width: usize, (Vec2(x, y), offset): (Vec2<usize>, Vec2<i64>), color: Vec3) {
+    let [x, y] = [x as i64 + offset.0, y as i64 + offset.1];
+    if !(0..width as i64).contains(&x) || y < 0 {
+        return;
+    }
+    if let Some(pixel) = pixels.get_mut(y as usize * width + x as usize) {
         *pixel = color;
     }
 }
@@ -248,6 +264,29 @@ mod tests {
         assert_eq!(channels.len(), 9);
         let normals = channels.iter().find(|channel| channel.name.eq("normals.G")).unwrap();
         assert_eq!(normals.sample_data, FlatSamples::F32((0..6).map(|i| i as f32).collect()));
+    }
+
+    #[test]
+    fn a_crop_lies_where_its_windows_say() {
+        use ::exr::prelude::{IntegerBounds, Layer as ExrLayer, LayerAttributes, SpecificChannels};
+        // Pixels (3, 2) and (4, 2) are there; from (1, 1) on 5 x 4 are shown, or only 2 x 2.
+        let read = |shown: (usize, usize)| {
+            let channels = SpecificChannels::rgb(|at: Vec2<usize>| (at.0 as f32 + 1.0, 0.0_f32, 0.5_f32));
+            let attributes = LayerAttributes { layer_position: Vec2(3, 2), ..LayerAttributes::named("a") };
+            let encoding = Encoding { compression: Compression::Uncompressed, ..ENCODING };
+            let mut picture = ExrImage::from_layer(ExrLayer::new((2, 1), attributes, encoding, channels));
+            picture.attributes.display_window = IntegerBounds::new((1, 1), shown);
+            let mut file = Cursor::new(Vec::new());
+            picture.write().to_buffered(&mut file).unwrap();
+            crate::read(file.get_ref(), "").unwrap()
+        };
+        let whole = read((5, 4));
+        assert_eq!((whole.width, whole.height), (5, 4));
+        let lit: Vec<(usize, f32)> =
+            whole.pixels.iter().enumerate().filter(|(_, p)| p.z > 0.0).map(|(i, p)| (i, p.x)).collect();
+        assert_eq!(lit, [(5 + 2, 1.0), (5 + 3, 2.0)]);
+        // What lies beyond is not shown.
+        assert!(read((2, 2)).pixels.iter().all(|pixel| *pixel == Vec3::ZERO));
     }
 
     #[test]

@@ -38,18 +38,41 @@ pub(super) fn decode(
             }
             Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
         }
-        Raster::Float(picture, alpha) => {
-            if picture.first_non_finite().is_some() || alpha.iter().any(|a| !a.is_finite()) {
-                let message = format!("the picture `{path}` has values that are no numbers");
-                diagnostics.push(Diagnostic::error(message).code("bad-file").at(name.span));
-                return None;
+        Raster::Float(mut picture, mut alpha) => {
+            if let Some(message) = mend(&mut picture.pixels, picture.width, path) {
+                diagnostics.push(Diagnostic::warning(message).code("bad-texels").at(name.span));
             }
+            alpha.iter_mut().filter(|a| !a.is_finite()).for_each(|a| *a = 1.0);
             Some(Texture::from_floats(picture.width, picture.height, picture.pixels)?.with_opacity(alpha))
         }
     }
 }
 
-/// Returns the picture, or reports the error where the scene names it.
+/// The brightest value that a picture of half-precision numbers can have. What is infinite is clamped
+/// to it: a sun that a camera could not measure, mostly.
+const BRIGHTEST: f32 = 65_504.0;
+
+/// Makes numbers of texels that are none: 0 of NaN, the brightest of infinite ones. Returns what to say
+/// of them.
+pub(super) fn mend(texels: &mut [Vec3], width: u32, path: &str) -> Option<String> {
+    let (mut count, mut first) = (0_usize, None);
+    for (i, texel) in texels.iter_mut().enumerate().filter(|(_, texel)| !texel.is_finite()) {
+        count += 1;
+        first.get_or_insert((i, *texel));
+        *texel = texel.map(|x| if x.is_nan() { 0.0 } else { x.clamp(-BRIGHTEST, BRIGHTEST) });
+    }
+    let (i, texel) = first?;
+    let (column, row) = (i % width as usize, i / width as usize);
+    let texels =
+        if count == 1 { "one texel that is no number".into() } else { format!("{count} texels that are no numbers") };
+    let [r, g, b] = texel.to_array();
+    Some(format!(
+        "the picture `{path}` has {texels}: {r} {g} {b} in column {column} of row {row}, from the upper left; NaN counts as 0, \
+         what is infinite as {BRIGHTEST}"
+    ))
+}
+
+/// What came of reading a picture; an error is said at the place that names it.
 pub(super) fn used<T>(
     name: &FileName,
     path: &str,

@@ -1,7 +1,7 @@
 //! Files that a scene names. Each is read and decoded once.
 
 use super::Resources;
-use super::decoded::{Encoding, decode, used};
+use super::decoded::{Encoding, decode, mend, used};
 use super::kept::Origin;
 use crate::world::MeshTree;
 use durer_bvh::BuildQuality;
@@ -332,9 +332,12 @@ impl<'r> Loader<'r> {
         };
         let encoded = used(name, &name.path, Encoded::open(&bytes, &name.path), diagnostics)?;
         let picture = encoded.read_for(Environment::MAKING, self.resources.memory, image::decode_srgb);
-        let picture = used(name, &name.path, picture, diagnostics)?;
+        let mut picture = used(name, &name.path, picture, diagnostics)?;
         let (width, height) = (picture.width, picture.height);
         let (turn, scale) = written.environment_placing();
+        if let Some(message) = mend(&mut picture.pixels, width, &name.path) {
+            diagnostics.push(Diagnostic::warning(message).code("bad-texels").at(name.span));
+        }
         let environment = Environment::new(width, height, picture.pixels, turn, scale);
         if environment.is_none() {
             let message = format!("the picture `{}` around the scene is black: no light comes from there", name.path);

@@ -9,7 +9,7 @@ use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::dialect::{Compat, Highlight, Rules, Secondary};
 use durer_scene::material::checkerboard::Checkerboard;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Switch, Walls};
 use durer_scene::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Color;
 use durer_scene::scene::{self, MatrixOp, Scene};
@@ -44,7 +44,7 @@ pub(super) fn compile(
             let layers = &PrincipledMaterial { base_color, ..(**layers).clone() };
             let shown = illuminant.as_ref().map_or(Color::ONE, |curve| curve.color());
             let radiance = layers.emission_luminance * layers.emission_color * shown;
-            let textured = maps.emission.is_some();
+            let textured = maps.emission.is_some() || layers.emission_vertex_colors == Switch::On;
             let medium = media::inside(layers, loader, diagnostics);
             let tables = Tables::new(layers, measured, &mut tables);
             tables.prepare(layers);

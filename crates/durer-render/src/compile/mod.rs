@@ -164,6 +164,13 @@ pub fn compile(
         } else {
             scene.background.color
         },
+        // Under paths light is only what a scene says; Whitted's light does not come from there. A model
+        // stands before grey.
+        dark: scene.up.is_none()
+            && environment.is_none()
+            && scene.background == scene::Background::default()
+            && !scene.background_span.is_place()
+            && rules.name == Dialect::Durer.name(),
         ambient,
         lights,
         materials: compiled,

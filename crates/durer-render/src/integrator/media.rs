@@ -21,6 +21,12 @@ impl Passage {
     pub(crate) fn eta(&self) -> f32 {
         self.there / self.here
     }
+
+    /// The same where the surface counts wherever it lies, with one index inside over that outside.
+    pub(crate) fn across(self, ior: f32, leaving: bool) -> Passage {
+        let (here, there) = if leaving { (ior, 1.0) } else { (1.0, ior) };
+        Passage { here, there, hidden: false, ..self }
+    }
 }
 
 impl Default for Passage {

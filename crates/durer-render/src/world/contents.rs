@@ -21,7 +21,9 @@ pub struct Contents {
     pub frame: CameraBasis,
     /// Colour of rays that miss.
     pub background: Color,
-    /// Ambient light.
+    /// Whether paths find no light around, since the scene says nothing of it.
+    pub dark: bool,
+    /// Light that is everywhere.
     pub ambient: Color,
     /// Lights.
     pub lights: Vec<Light>,
@@ -102,7 +104,12 @@ impl World {
         self.contents.background
     }
 
-    /// Returns the ambient light.
+    /// Whether paths find no light around, since the scene says nothing of it.
+    pub fn is_dark(&self) -> bool {
+        self.contents.dark
+    }
+
+    /// Light that is everywhere.
     pub fn ambient(&self) -> Color {
         self.contents.ambient
     }

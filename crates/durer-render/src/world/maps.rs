@@ -4,6 +4,7 @@ use super::material::{Maps, Principled};
 use super::{Geometry, Interaction, World};
 use durer_scene::material::Parameters;
 use durer_scene::material::parameters::{Change, TEXTURED};
+use durer_scene::material::principled::Switch;
 use durer_scene::math::{Color, Ray, Vec2, Vec3};
 use durer_scene::shape::Shape;
 use durer_scene::texture::{Channel, Mapping, Texture};
@@ -47,7 +48,9 @@ impl World {
 
     /// Returns the factor of a texture on the emission.
     pub(super) fn emission_at(&self, own: &Principled, at: &Interaction) -> Color {
-        self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b))
+        let picture = self.texel(own.maps.emission, at).map_or(Color::ONE, |[r, g, b, _]| Color::new(r, g, b));
+        let [r, g, b, _] = at.surface.color;
+        if own.written.emission_vertex_colors == Switch::On { picture * Color::new(r, g, b) } else { picture }
     }
 
     /// Returns the opacity of a surface, from parameter, vertices and texture.
@@ -59,13 +62,14 @@ impl World {
             let channel = texture.mapping().and_then(|mapping| mapping.channel).unwrap_or(usual);
             Some(channel.of(self.texel(Some(map), at)?))
         });
-        own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0)
+        let opacity = own.written.opacity * at.surface.color[3] * alpha * share.unwrap_or(1.0);
+        own.written.opacity_cutoff.map_or(opacity, |least| f32::from(u8::from(opacity >= least)))
     }
 
     /// Returns true if a layered material may be partly transparent by opacity. Vertex colours may
     /// add opacity to any material.
     pub(super) fn is_cutout(&self, own: &Principled) -> bool {
-        own.written.opacity < 1.0 || self.has_holes(own)
+        own.written.opacity < 1.0 || own.written.opacity_cutoff.is_some() || self.has_holes(own)
     }
 
     /// Returns true if a texture defines the opacity.

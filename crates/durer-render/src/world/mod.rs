@@ -16,7 +16,7 @@ mod together;
 pub use contents::{Assets, Contents};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use durer_scene::light::{Emitter as _, Illumination, Light};
-use durer_scene::material::Pattern;
+use durer_scene::material::{Pattern, Solid};
 use durer_scene::math::{Aabb, Color, Ray64, Vec2, Vec3};
 use durer_scene::shape::{Shape as _, ShapeHit, Sphere};
 use durer_scene::source::Digest;
@@ -408,7 +408,10 @@ impl World {
             Material::Solid(solid, to_pattern, picture) => {
                 let q = to_pattern.transform_point3(at.surface.position.as_dvec3()).as_vec3();
                 let pictured = picture.map_or(1.0, |picture| self.number_at(picture, at));
-                let weight = solid.share(q, self.shading_rules().conic_rings) * pictured;
+                let weight = match solid {
+                    Solid::TwoSided(_) => f32::from(u8::from(!at.inside())),
+                    _ => solid.share(q, self.shading_rules().conic_rings) * pictured,
+                };
                 let [first, second] = solid.materials();
                 for (index, weight) in [(first, weight), (second, 1.0 - weight)] {
                     if weight != 0.0 {

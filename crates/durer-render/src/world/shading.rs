@@ -10,7 +10,7 @@ use durer_scene::bsdf::lobe::diffuse::Diffuse;
 use durer_scene::bsdf::lobe::glass::{Mirror, Refraction, Through};
 use durer_scene::bsdf::{Bsdf, Frame, fresnel};
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::{Backs, Walls};
+use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::medium::Medium;
 use durer_scene::shape::Surface;
@@ -84,20 +84,25 @@ impl World {
     pub fn shading(&self, at: &Interaction, eta: f32, lanes: &Lanes) -> Shading<'_> {
         let (dir, surface, inside) = (at.ray.dir(), &at.surface, at.inside());
         let parts = self.parts(at);
-        // In a mix, the first material with a normal or bump map determines the normal.
-        let mut maps = parts.iter().filter_map(|part| Some(&part.phong.principled.as_ref()?.maps));
-        let maps = maps.find(|maps| maps.normal.is_some() || maps.bump.is_some());
-        let n_shade = maps.and_then(|maps| self.mapped_normal(maps, at)).unwrap_or(surface.n_shade);
+        // The first of a mixture that bends normals counts for all of it.
+        let mut mapped = parts.iter().filter_map(|part| part.phong.principled.as_ref());
+        let mapped = mapped.find(|own| own.maps.normal.is_some() || own.maps.bump.is_some());
+        let n_shade = mapped.and_then(|own| self.mapped_normal(&own.maps, at)).unwrap_or(surface.n_shade);
         let [n, n_geo] = [n_shade, surface.n_geo].map(|n| if inside { -n } else { n });
         let wo = -dir.normalize_or(-n_geo);
         let n = n.normalize_or(n_geo);
-        let bent = bent(n, n_geo, wo);
+        let keeps = mapped.is_some_and(|own| own.written.normal_bending == Switch::Off);
+        let is_turned_away = keeps && n.dot(wo) <= 0.0;
+        let bent = if keeps && !is_turned_away { n } else { bent(n, n_geo, wo) };
         let frame = self.frame(&parts, at, bent);
         let normal = if bent == n { Vec3::Z } else { frame.to_local(n) };
         let wo = frame.to_local(wo);
         let wo = Vec3::new(wo.x, wo.y, wo.z.max(1e-6));
         let view = View { lanes, wo, normal, inside, eta };
         let mut shading = Shading { frame, n_geo, wo, bsdf: Bsdf::default() };
+        if is_turned_away {
+            return shading;
+        }
         let bsdf = &mut shading.bsdf;
         for part in &parts {
             if let Some(fibre) = &part.phong.fibre {
@@ -105,6 +110,7 @@ impl World {
                 continue;
             }
             match &part.phong.principled {
+                Some(own) if inside && own.written.backs == Backs::Black => {}
                 Some(own) => {
                     let here = self.parameters_at(own, at);
                     layers::scattering(bsdf, part.share, &here, &own.tables, view);
@@ -138,7 +144,7 @@ impl World {
         let emission = phong.emission.as_ref().filter(|emission| !emission.textured)?;
         let Some(own) = &phong.principled else { return Some(*emission) };
         let radiance = own.written.opacity * emission.radiance;
-        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own);
+        let chosen = radiance.max_element() > 0.0 && !self.has_holes(own) && own.written.opacity_cutoff.is_none();
         chosen.then_some(Emission { radiance, ..*emission })
     }
 
@@ -210,7 +216,16 @@ impl World {
         most.1
     }
 
-    /// Returns the opacity of a surface.
+    /// Whether glass that was hit takes its index for that over what is around it, whatever that is.
+    pub fn ignores_surroundings(&self, at: &Interaction) -> bool {
+        let own = |phong: &Phong| {
+            let principled = phong.principled.as_ref();
+            principled.is_some_and(|own| own.written.surroundings == Surroundings::Ignored)
+        };
+        self.parts(at).iter().any(|part| own(part.phong))
+    }
+
+    /// The share of a surface that is there.
     pub fn opacity(&self, at: &Interaction) -> f32 {
         let own = |phong: &Phong| match (&phong.fibre, &phong.principled) {
             // The fibre's model computes all interior scattering at the entry point.

@@ -7,6 +7,8 @@
 //! Tables are worked out by all threads, for the materials that ask for them, as a world is
 //! compiled ([`super::Tables::prepare`]); for others at their first use.
 
+mod anisotropic;
+
 use super::fresnel;
 use super::microfacet::{Ggx, fuzz_value};
 use crate::math::{Vec2, Vec3};
@@ -42,8 +44,13 @@ impl Table {
 
 /// The entry of a table below a number from 0 to 1, and how far that is on the way to the next.
 fn place(x: f32) -> (usize, f32) {
-    let x = x.clamp(0.0, 1.0) * (SIZE - 1) as f32;
-    let i = (x as usize).min(SIZE - 2);
+    place_among(x, SIZE)
+}
+
+/// The same of a table of any size.
+fn place_among(x: f32, size: usize) -> (usize, f32) {
+    let x = x.clamp(0.0, 1.0) * (size - 1) as f32;
+    let i = (x as usize).min(size - 2);
     (i, x - i as f32)
 }
 
@@ -93,14 +100,27 @@ pub fn ggx(cosine: f32, roughness: f32) -> f32 {
     let table = once(&TABLE, || {
         Table::new(|cosine, roughness| {
             let (ggx, wo) = (isotropic(roughness), direction(cosine));
-            mean(|u| {
-                let h = ggx.sample_visible(wo, u);
-                let wi = 2.0 * wo.dot(h) * h - wo;
-                if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
-            })
+            mean(|u| mirrored(ggx, wo, u))
         })
     });
     table.at(cosine, roughness)
+}
+
+/// What one facet gives back that reflects all.
+fn mirrored(ggx: Ggx, wo: Vec3, u: Vec2) -> f32 {
+    let h = ggx.sample_visible(wo, u);
+    let wi = 2.0 * wo.dot(h) * h - wo;
+    if wi.z > 0.0 { ggx.masking_shadowing(wo, wi) / ggx.masking(wo) } else { 0.0 }
+}
+
+/// [`ggx`] of a surface that may be rougher along one axis than along the other; `roughness` is that
+/// of an even one.
+pub fn facets(surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
+    static TABLE: OnceLock<anisotropic::Table> = OnceLock::new();
+    match surface.is_even() {
+        true => ggx(wo.z, roughness),
+        false => once(&TABLE, || anisotropic::Table::new(mirrored)).at(surface, wo),
+    }
 }
 
 /// What fuzz of white fibres gives back.
@@ -131,6 +151,8 @@ pub struct Dielectric {
     tables: OnceLock<[[Table; 2]; 2]>,
     /// The mean of what it reflects from outside, for each roughness of the tables.
     means: OnceLock<Vec<f32>>,
+    /// All that is not lost, from outside and from inside, where it is rougher along one axis.
+    uneven: OnceLock<[anisotropic::Table; 2]>,
 }
 
 impl PartialEq for Dielectric {
@@ -143,7 +165,7 @@ impl Dielectric {
     /// Of an index.
     pub fn new(ior: f32) -> Self {
         let smooth_mean = mean_by_cosine(|cosine| fresnel::dielectric(cosine, ior));
-        Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new() }
+        Dielectric { ior, smooth_mean, tables: OnceLock::new(), means: OnceLock::new(), uneven: OnceLock::new() }
     }
 
     /// What it reflects, and all that is not lost; from inside or from outside.
@@ -199,13 +221,34 @@ impl Dielectric {
     pub fn gain(&self, inside: bool, cosine: f32, roughness: f32) -> f32 {
         1.0 / self.tables(inside)[1].at(cosine, roughness)
     }
+
+    /// The same of a surface that may be rougher along one axis than along the other, with the
+    /// index behind it over that before it: another body around it makes that differ from its own.
+    pub fn gain_of(&self, inside: bool, eta: f32, surface: Ggx, wo: Vec3, roughness: f32) -> f32 {
+        let own = if inside { 1.0 / self.ior } else { self.ior };
+        if (eta / own - 1.0).abs() > NEAR {
+            return 1.0 / anisotropic::quick(|u| single(surface.clamped(), wo, eta, u, true));
+        }
+        if surface.is_even() {
+            return self.gain(inside, wo.z, roughness);
+        }
+        let both = once(&self.uneven, || {
+            [self.ior, 1.0 / self.ior].map(|eta| anisotropic::Table::new(|ggx, wo, u| single(ggx, wo, eta, u, true)))
+        });
+        1.0 / both[usize::from(inside)].at(surface, wo)
+    }
 }
+
+/// Relative indices that differ by less than this share, as those of glass do over the colours of
+/// light, lose alike.
+const NEAR: f32 = 0.05;
 
 /// The mean over the facets of a rough surface that are seen, of what each does at a cosine: by few
 /// points, where there are too many kinds of surfaces for tables.
-pub fn over_facets(cosine: f32, roughness: f32, value: impl Fn(f32) -> Spectrum) -> Spectrum {
+pub fn over_facets(surface: Ggx, wo: Vec3, value: impl Fn(f32) -> Spectrum) -> Spectrum {
     const FEW: usize = 16;
-    let (ggx, wo) = (isotropic(roughness), direction(cosine));
+    let (ggx, cosine) = (surface.clamped(), wo.z);
+    let wo = if ggx.is_even() { direction(cosine) } else { wo };
     let (mut sum, mut all) = (Spectrum::ZERO, 0.0);
     for u in points().take(FEW) {
         let h = ggx.sample_visible(wo, u);

@@ -16,7 +16,7 @@ use super::lobe::rough::{Facet, Rough};
 use super::lobe::rough_glass::RoughGlass;
 use super::microfacet::Ggx;
 use crate::describe::FileName;
-use crate::material::principled::Walls;
+use crate::material::principled::{Switch, Walls};
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::{Vec3, fp};
 use crate::spectrum::{Curve, Lanes, Spectrum};
@@ -66,18 +66,29 @@ impl Tables {
         if m.fuzz_weight > 0.0 {
             albedo::fuzz(1.0, 0.0);
         }
-        if rough && m.base_metalness > 0.0 || through && m.walls == Walls::Thin {
+        let facets = rough && m.base_metalness > 0.0 || through && m.walls == Walls::Thin;
+        let compensates = m.energy_compensation == Switch::On;
+        if facets && compensates {
             albedo::ggx(1.0, 0.0);
         }
         let boundaries = [
             (rough_coat && self.coat.ior != 1.0, &self.coat),
             (rough && !metal && !glass && (self.opaque.ior != 1.0 || m.thin_film_weight > 0.0), &self.opaque),
-            (through && m.walls == Walls::Solid, &self.glass),
+            (through && compensates && m.walls == Walls::Solid, &self.glass),
         ];
         boundaries.into_iter().filter(|(asked, _)| *asked).for_each(|(_, boundary)| {
             boundary.gain(false, 1.0, 0.0);
             boundary.mean(1.0);
         });
+        if m.specular_anisotropy > 0.0 && m.specular_roughness > 0.0 && compensates {
+            let uneven = Ggx::new(1.0, 0.5);
+            if facets {
+                albedo::facets(uneven, Vec3::Z, 1.0);
+            }
+            if through && m.walls == Walls::Solid {
+                self.glass.gain_of(false, self.glass.ior, uneven, Vec3::Z, 1.0);
+            }
+        }
     }
 
     /// Whether the albedo tables of the opaque base, of glass and of the coat have been built.
@@ -251,12 +262,24 @@ impl<'t> Stack<'_, 't> {
             return given;
         }
         let (facet, given) = match film {
-            Some(film) => (Facet::Film(film), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine))),
+            Some(film) => (Facet::Film(film), albedo::over_facets(ggx, self.view.wo, |cosine| film.reflected(cosine))),
             None => (Facet::Dielectric(tables.ior), Spectrum::splat(tables.reflected(false, mu, roughness))),
         };
         let rough = Rough { ggx: ggx.clamped(), facet, behind: false };
-        bsdf.push(rough, weight * tables.gain(false, mu, roughness), (weight * given).max_element());
+        let gain = if self.compensates() { tables.gain(false, mu, roughness) } else { 1.0 };
+        bsdf.push(rough, weight * gain, (weight * given).max_element());
         given
+    }
+
+    /// Whether light that facets reflect more than once is given back.
+    fn compensates(&self) -> bool {
+        self.here.energy_compensation == Switch::On
+    }
+
+    /// What a single reflection off facets that reflect all gives back, as far as the rest is to be
+    /// given back too.
+    fn facets(&self, ggx: Ggx, roughness: f32) -> f32 {
+        if self.compensates() { albedo::facets(ggx, self.view.wo, roughness) } else { 1.0 }
     }
 
     /// What a coat takes of the light on its way down and up, and what it throws back down.
@@ -278,7 +301,7 @@ impl<'t> Stack<'_, 't> {
         if weight.max_element() <= 0.0 {
             return;
         }
-        let (m, mu) = (self.here, self.view.wo.z);
+        let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
         let f82 = fresnel::F82::new(self.base, self.specular);
         let ggx = Ggx::new(roughness, m.specular_anisotropy);
         let mut weight = weight * m.specular_weight.min(1.0) * m.reflection;
@@ -290,8 +313,8 @@ impl<'t> Stack<'_, 't> {
                 let reflected = covered * film.reflected(mu);
                 bsdf.push(Mirror, reflected, reflected.max_element());
             } else {
-                let (given, color) =
-                    (albedo::ggx(mu, roughness), albedo::over_facets(mu, roughness, |cosine| film.reflected(cosine)));
+                let given = self.facets(ggx, roughness);
+                let color = albedo::over_facets(ggx, wo, |cosine| film.reflected(cosine));
                 let again = Spectrum::ONE + color * ((1.0 - given) / given);
                 let rough = Rough { ggx: ggx.clamped(), facet: Facet::Film(film), behind: false };
                 bsdf.push(rough, covered * again, (covered * color).max_element());
@@ -301,7 +324,7 @@ impl<'t> Stack<'_, 't> {
             let reflected = weight * f82.at(mu);
             return bsdf.push(Mirror, reflected, reflected.max_element());
         }
-        let given = albedo::ggx(mu, roughness);
+        let given = self.facets(ggx, roughness);
         // What is reflected again is coloured again.
         let again = Spectrum::ONE + self.base * ((1.0 - given) / given);
         let rough = Rough { ggx: ggx.clamped(), facet: Facet::Metal(f82), behind: false };
@@ -334,19 +357,23 @@ impl<'t> Stack<'_, 't> {
         let (mut up, mut down) = (self.specular, tint);
         if let Some(film) = film {
             // The film's colour is the same for all facets, such that nothing is lost.
-            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(wo.z, roughness, value);
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
             let with = mean(&|cosine| film.reflected(cosine));
             let without = mean(&|cosine| Spectrum::splat(fresnel::dielectric(cosine, eta)));
             (up, down) = (up * with / without, down * parts(Spectrum::ONE - with, Spectrum::ONE - without));
         }
         let rough = RoughGlass { ggx: ggx.clamped(), eta, reflected: up, transmitted: down };
-        bsdf.push(rough, weight * self.tables.glass.gain(inside, wo.z, roughness), weight.max_element());
+        let gain = match self.compensates() {
+            true => self.tables.glass.gain_of(inside, eta, ggx, wo, roughness),
+            false => 1.0,
+        };
+        bsdf.push(rough, weight * gain, weight.max_element());
     }
 
     /// A thin sheet: light is reflected to and fro in it, and leaves it in the direction in which
     /// it came.
     fn sheet(&self, bsdf: &mut Bsdf<'t>, roughness: f32, weight: Spectrum) {
-        let (m, mu) = (self.here, self.view.wo.z);
+        let (m, wo, mu) = (self.here, self.view.wo, self.view.wo.z);
         let (eta, ggx) = (m.specular_ior, Ggx::new(roughness, m.specular_anisotropy));
         let color = self.view.lanes.reflectance(m.transmission_color);
         // With a depth the inside has the colour, else all that passes.
@@ -363,11 +390,11 @@ impl<'t> Stack<'_, 't> {
             return bsdf.push(Through, down * through, shares.1);
         }
         if let Some(film) = film {
-            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(mu, roughness, value);
+            let mean = |value: &dyn Fn(f32) -> Spectrum| albedo::over_facets(ggx, wo, value);
             up *= parts(mean(&|cosine| faced(film, cosine).0), mean(&|cosine| sheet.at(cosine).0));
             down *= parts(mean(&|cosine| faced(film, cosine).1), mean(&|cosine| sheet.at(cosine).1));
         }
-        let gain = 1.0 / albedo::ggx(mu, roughness);
+        let gain = 1.0 / self.facets(ggx, roughness);
         let rough = |facet, behind| Rough { ggx: ggx.clamped(), facet, behind };
         bsdf.push(rough(Facet::Sheet(sheet), false), up * gain, shares.0);
         bsdf.push(rough(Facet::BehindSheet(sheet), true), down * gain, shares.1);

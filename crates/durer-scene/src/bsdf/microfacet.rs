@@ -38,6 +38,11 @@ impl Ggx {
         [mean.sqrt(), 1.0 - rest, if v > u { 0.25 } else { 0.0 }]
     }
 
+    /// Whether it is as rough along both axes.
+    pub fn is_even(&self) -> bool {
+        self.alpha.x == self.alpha.y
+    }
+
     /// Whether it is a mirror, as far as numbers can tell.
     pub fn is_smooth(&self) -> bool {
         self.alpha.max_element() < SMOOTH

@@ -162,7 +162,28 @@ pub fn lossless() -> Vec<(&'static str, PrincipledMaterial)> {
         ("coat on metal", PrincipledMaterial { coat_weight: 0.7, base_metalness: 1.0, ..white() }),
         ("fuzz", PrincipledMaterial { fuzz_weight: 1.0, ..white() }),
         ("half metal", PrincipledMaterial { base_metalness: 0.5, ..white() }),
+        ("matte under a strong boundary", PrincipledMaterial { specular_ior: 4.0, ..white() }),
+        ("matte under a weak boundary", PrincipledMaterial { specular_ior: 1.05, ..white() }),
+        ("rough coat on matte", PrincipledMaterial { coat_weight: 1.0, coat_roughness: 0.8, coat_ior: 2.5, ..white() }),
+        ("smooth coat on glass", PrincipledMaterial { coat_weight: 1.0, transmission_weight: 1.0, ..white() }),
+        (
+            "sharp fuzz on metal",
+            PrincipledMaterial { fuzz_weight: 1.0, fuzz_roughness: 0.1, base_metalness: 1.0, ..white() },
+        ),
+        ("heavy glass", PrincipledMaterial { transmission_weight: 1.0, specular_ior: 2.5, ..white() }),
     ]
+}
+
+/// Materials with facets that absorb nothing and may be rougher along one axis, with names.
+pub fn brushed() -> Vec<(String, PrincipledMaterial)> {
+    let white = || PrincipledMaterial { base_color: Vec3::ONE, ..Default::default() };
+    let glass = |ior| PrincipledMaterial { transmission_weight: 1.0, specular_ior: ior, ..white() };
+    let mut all = vec![
+        ("brushed metal".to_string(), PrincipledMaterial { base_metalness: 1.0, ..white() }),
+        ("brushed thin glass".to_string(), PrincipledMaterial { walls: Walls::Thin, ..glass(1.5) }),
+    ];
+    all.extend([1.1, 1.5, 2.5, 10.0].map(|ior| (format!("brushed glass of index {ior}"), glass(ior))));
+    all
 }
 
 /// Materials with films that absorb nothing, with names. Of rough ones what they give back in all
@@ -190,15 +211,47 @@ impl<'a> Furnace<'a> {
     /// What goes into glass counts by its flux: its radiance is denser by the square of the
     /// index.
     pub fn gives(&self, roughness: f32, cosine: f32, samples: u32) -> (f64, f64) {
-        let here = Parameters { specular_roughness: roughness, ..Parameters::of(self.material) };
-        let wo = warp::polar(cosine, 0.0);
-        given(&seen(&here, &self.tables, wo), wo, samples)
+        self.gives_to(Seen { roughness, cosine, ..Seen::default() }, samples)
+    }
+
+    /// The same seen in any way.
+    pub fn gives_to(&self, from: Seen, samples: u32) -> (f64, f64) {
+        let here = Parameters {
+            specular_roughness: from.roughness,
+            specular_anisotropy: from.anisotropy,
+            ..Parameters::of(self.material)
+        };
+        let wo = warp::polar(from.cosine, from.turn);
+        let eta = from.eta.unwrap_or(if from.inside { 1.0 / here.specular_ior } else { here.specular_ior });
+        given(&seen_through(&here, &self.tables, wo, from.inside, eta), wo, samples)
     }
 }
 
+/// How a material in a furnace is seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Seen {
+    /// Its roughness.
+    pub roughness: f32,
+    /// Its anisotropy.
+    pub anisotropy: f32,
+    /// The cosine to the normal.
+    pub cosine: f32,
+    /// The azimuth, in turns.
+    pub turn: f32,
+    /// Whether that is from inside.
+    pub inside: bool,
+    /// The index behind the boundary over that before it; `None`: that of the material in air.
+    pub eta: Option<f32>,
+}
+
 /// A material from outside.
+#[cfg(test)]
 pub(super) fn seen<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3) -> Bsdf<'a> {
-    let view = layers::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside: false, eta: here.specular_ior };
+    seen_through(here, tables, wo, false, here.specular_ior)
+}
+
+fn seen_through<'a>(here: &Parameters, tables: &'a Tables, wo: Vec3, inside: bool, eta: f32) -> Bsdf<'a> {
+    let view = layers::View { lanes: &Lanes::Rgb, wo, normal: Vec3::Z, inside, eta };
     let mut bsdf = Bsdf::default();
     layers::scattering(&mut bsdf, 1.0, here, tables, view);
     bsdf

@@ -1,7 +1,7 @@
 //! Lobes and layers: what they give back, and whether they sample what they say.
 
 use super::lobe::blinn::Blinn;
-use super::proof::{Cells, Furnace, broad, filmed, given, lossless, seen};
+use super::proof::{Cells, Furnace, Seen, broad, brushed, filmed, given, lossless, seen};
 use super::*;
 use crate::material::{Parameters, PrincipledMaterial};
 use crate::math::fp;
@@ -87,6 +87,36 @@ fn what_absorbs_nothing_is_white_in_even_light() {
     // `cargo xtask validate` does the same with more samples.
     assert_white(lossless(), &[0.0, 0.1, 0.3, 0.5, 0.8, 1.0], 0.002);
     assert_white(filmed(), &[0.0], 0.002);
+}
+
+#[test]
+fn brushed_surfaces_are_white_over_roughness_anisotropy_index_and_angle() {
+    for (name, material) in brushed() {
+        let furnace = Furnace::new(&material);
+        let sides = if material.base_metalness > 0.0 { &[false][..] } else { &[false, true] };
+        for (&inside, roughness) in sides.iter().flat_map(|side| [0.2, 0.5, 1.0].map(|roughness| (side, roughness))) {
+            for (anisotropy, cosine) in [0.3, 0.9, 1.0].into_iter().flat_map(|a| [0.999, 0.6, 0.2].map(|c| (a, c))) {
+                for turn in [0.0, 0.07, 0.2, 0.25] {
+                    let from = Seen { roughness, anisotropy, cosine, turn, inside, eta: None };
+                    let (mean, error) = furnace.gives_to(from, 1 << 12);
+                    assert!((mean - 1.0).abs() < 0.002 + 3.0 * error, "{name}, {from:?}: {mean} ± {error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn rough_glass_in_another_body_is_nearly_white() {
+    let material = PrincipledMaterial { transmission_weight: 1.0, base_color: Vec3::ONE, ..Default::default() };
+    let furnace = Furnace::new(&material);
+    for (eta, inside) in [(1.5 / 1.33, false), (1.33 / 1.5, true), (1.0 / 1.8, false), (2.4, true)] {
+        for (roughness, cosine) in [0.3, 0.6, 1.0].into_iter().flat_map(|r| [0.999, 0.6, 0.2].map(|c| (r, c))) {
+            let from = Seen { roughness, cosine, inside, eta: Some(eta), ..Seen::default() };
+            let (mean, error) = furnace.gives_to(from, 1 << 13);
+            assert!((mean - 1.0).abs() < 0.01 + 3.0 * error, "{from:?}: {mean} ± {error}");
+        }
+    }
 }
 
 #[test]

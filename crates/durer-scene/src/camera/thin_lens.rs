@@ -44,6 +44,10 @@ described! {
         shift_right: f32 = 0.0, optional, Rule::Any, ["shiftRight" in set::DURER];
         /// What is seen moves upwards by this part of half the larger side.
         shift_up: f32 = 0.0, optional, Rule::Any, ["shiftUp" in set::DURER];
+        /// Distance along the axis before which nothing is seen.
+        near: f32 = 0.0, optional, Rule::NonNegative, ["near" in set::DURER];
+        /// Distance along the axis beyond which nothing is seen.
+        far: Option<f32> = None, optional, Rule::Positive, ["far" in set::DURER];
         /// Which side of the picture is right: `left` makes a mirror image, as in coordinates of
         /// the left hand.
         handedness: Handedness = Handedness::Right, optional, Rule::Any, ["handedness" in set::DURER];
@@ -89,7 +93,11 @@ impl Projection for ThinLensCamera {
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
         let (origin, dir) = self.line(frame, sample);
-        Some(frame.ray(self.handedness.turned(origin), self.handedness.turned(dir)))
+        let ray = frame.ray(self.handedness.turned(origin), self.handedness.turned(dir));
+        // The ray's direction is as long as the focus is far along the axis.
+        let along = ray.dir.dot(frame.forward);
+        let t_max = self.far.map_or(ray.t_max, |far| far / along);
+        Some(Ray { t_min: ray.t_min.max(self.near / along), t_max, ..ray })
     }
 
     fn project(&self, frame: &CameraBasis, world: Vec3, lens: Vec2, found: &mut dyn FnMut(Vec2)) {

@@ -1,5 +1,6 @@
 //! Area lights: surfaces that emit, in world space, and how points on them are sampled.
 
+use super::closed::{Closed, ON_SURFACE};
 use crate::bsdf::{Frame, warp};
 use crate::math::{Aabb, Affine, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
@@ -38,8 +39,8 @@ pub enum EmitterShape {
     Ellipse(DVec3, [Vec3; 2], f32),
     /// A centre and a radius.
     Sphere(DVec3, f32),
-    /// The middle of one cap, the way to that of the other, and a radius.
-    Cylinder(DVec3, Vec3, f32),
+    /// A box, an ellipsoid, a cone, a cylinder or a ring.
+    Closed(Closed),
 }
 
 /// Point sampled on an emitter, as seen from a receiver.
@@ -70,13 +71,18 @@ impl EmitterShape {
             EmitterShape::Parallelogram(_, [e, f]) => e.cross(*f).length(),
             EmitterShape::Ellipse(_, [u, v], inner) => PI * u.cross(*v).length() * (1.0 - inner * inner),
             EmitterShape::Sphere(_, radius) => 4.0 * PI * radius * radius,
-            EmitterShape::Cylinder(_, way, radius) => 2.0 * PI * radius * (way.length() + radius),
+            EmitterShape::Closed(closed) => closed.area(),
         }
     }
 
     /// Whether it has normals to all sides.
     pub fn is_round(&self) -> bool {
-        matches!(self, EmitterShape::Sphere(..) | EmitterShape::Cylinder(..))
+        matches!(self, EmitterShape::Sphere(..) | EmitterShape::Closed(..))
+    }
+
+    /// Whether it is a sphere or an ellipsoid, which is sampled from the middle outwards.
+    pub fn is_ball(&self) -> bool {
+        matches!(self, EmitterShape::Sphere(..)) || matches!(self, EmitterShape::Closed(closed) if closed.is_ball())
     }
 
     /// The box around it.
@@ -92,10 +98,7 @@ impl EmitterShape {
                 Aabb { min: near(p) - reach, max: near(p) + reach }
             }
             EmitterShape::Sphere(center, radius) => Aabb { min: near(center) - radius, max: near(center) + radius },
-            EmitterShape::Cylinder(base, way, radius) => {
-                let [base, top] = [near(base), near(base) + way];
-                Aabb::around([base - radius, base + radius, top - radius, top + radius])
-            }
+            EmitterShape::Closed(closed) => closed.bounds(),
         }
     }
 
@@ -126,17 +129,7 @@ impl EmitterShape {
                 offset(p, from) + d.x * x + d.y * y
             }
             EmitterShape::Sphere(center, radius) => return cone(offset(center, from), radius, u),
-            EmitterShape::Cylinder(..) => {
-                let (point, normal, density) = self.point(normal, u)?;
-                let to = (point - from).as_vec3();
-                let distance = to.length();
-                let wi = to / distance;
-                let cosine = -wi.dot(normal);
-                let pdf = density * distance * distance / cosine.abs();
-                // The far side cannot be seen.
-                let seen = cosine > 0.0 && pdf.is_finite() && pdf > 0.0;
-                return seen.then_some(EmitterPoint { wi, distance, cosine, pdf });
-            }
+            EmitterShape::Closed(closed) => return closed.sample(from, u),
         };
         let distance = to.length();
         let wi = to / distance;
@@ -152,15 +145,12 @@ impl EmitterShape {
             EmitterShape::Sphere(center, radius) => {
                 let to = offset(center, from);
                 let (d2, r2) = (to.length_squared(), radius * radius);
-                if d2 <= r2 {
+                if is_within(d2, r2) {
                     return distance * distance / (self.area() * sphere_cosine(to, wi, distance, radius));
                 }
                 1.0 / (2.0 * PI * one_minus_cosine(r2 / d2))
             }
-            EmitterShape::Cylinder(base, way, radius) => {
-                let normal = outwards(distance * wi - offset(base, from), way, radius);
-                distance * distance / (wi.dot(normal).abs() * self.area())
-            }
+            EmitterShape::Closed(closed) => closed.pdf(from, wi, distance),
             EmitterShape::Parallelogram(p, [e, f]) => match Window::new(offset(p, from), e, f) {
                 Some(window) => 1.0 / window.solid_angle as f32,
                 None => distance * distance / (wi.dot(normal).abs() * self.area()),
@@ -185,40 +175,11 @@ impl EmitterShape {
                 let n = warp::sphere(u);
                 (center + f64::from(radius) * n.as_dvec3(), n)
             }
-            EmitterShape::Cylinder(base, way, radius) => {
-                let height = way.length();
-                let axis = way / height;
-                let frame = Frame::around(axis);
-                // First the caps, then the side.
-                let caps = radius / (height + radius);
-                let (at, n) = if u.x < caps {
-                    let share = 2.0 * u.x / caps;
-                    let (top, share) = (share >= 1.0, share.fract());
-                    let d = warp::disc(Vec2::new(share, u.y)) * radius;
-                    let on = d.x * frame.tangent + d.y * frame.bitangent;
-                    if top { (way + on, axis) } else { (on, -axis) }
-                } else {
-                    let (sin, cos) = fp::sin_cos_turn(u.y);
-                    let n = cos * frame.tangent + sin * frame.bitangent;
-                    ((u.x - caps) / (1.0 - caps) * way + radius * n, n)
-                };
-                (base + at.as_dvec3(), n)
-            }
+            EmitterShape::Closed(closed) => return closed.point(u),
         };
         let density = 1.0 / self.area();
         density.is_finite().then_some((point, normal, density))
     }
-}
-
-/// The normal of a cylinder at a point of it, as seen from the middle of its base.
-fn outwards(point: Vec3, way: Vec3, radius: f32) -> Vec3 {
-    let height = way.length();
-    let axis = way / height;
-    let along = point.dot(axis);
-    let around = point - along * axis;
-    // Whichever face is nearest.
-    let (side, base, top) = ((around.length() - radius).abs(), along.abs(), (along - height).abs());
-    if side <= base.min(top) { around.normalize_or(axis) } else { axis }
 }
 
 /// A point of the unit disc without its middle, evenly over the area.
@@ -235,8 +196,15 @@ fn offset(to: DVec3, from: DVec3) -> Vec3 {
 }
 
 /// 1 - cos of the angle whose sine's square is given, without cancellation.
-fn one_minus_cosine(sine2: f32) -> f32 {
+pub(super) fn one_minus_cosine(sine2: f32) -> f32 {
     sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt())
+}
+
+/// Whether a point is in a sphere or on it, by the squares of its distance from the centre and of the
+/// radius. Of points on the surface rounding says on which side they are, and both see the inside
+/// alone.
+fn is_within(d2: f32, r2: f32) -> bool {
+    d2 <= r2 * (1.0 + ON_SURFACE)
 }
 
 /// The cosine of a sphere's normal at a point seen from inside, where `to` leads to the centre.
@@ -250,7 +218,7 @@ fn sphere_cosine(to: Vec3, wi: Vec3, distance: f32, radius: f32) -> f32 {
 fn cone(to: Vec3, radius: f32, u: Vec2) -> Option<EmitterPoint> {
     let (d2, r2) = (to.length_squared(), radius * radius);
     let d = d2.sqrt();
-    if d2 <= r2 {
+    if is_within(d2, r2) {
         // From inside, evenly over the area.
         let at = to + radius * warp::sphere(u);
         let distance = at.length();

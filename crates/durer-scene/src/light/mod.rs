@@ -1,6 +1,7 @@
 //! Lights. One file each; the list is [`Light`].
 
 pub mod area;
+mod closed;
 pub mod directional;
 pub mod photometric;
 pub mod point;
@@ -9,6 +10,7 @@ pub mod spot;
 use crate::describe::{FileName, described_list};
 use crate::math::{Color, LUMINANCE, Vec3};
 pub use area::{EmitterPoint, EmitterShape, Placement};
+pub use closed::{Body, Closed};
 pub use directional::DirectionalLight;
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};

@@ -10,6 +10,7 @@ pub mod phong;
 pub mod presets;
 pub mod principled;
 pub mod solid_noise;
+pub mod two_sided;
 pub mod wood;
 
 use crate::describe::{Field, described_list};
@@ -40,6 +41,7 @@ described_list! {
         Marble(marble::Marble),
         Wood(wood::Wood),
         Mix(mix::Mix),
+        TwoSided(two_sided::TwoSided),
     }
 }
 
@@ -56,7 +58,8 @@ impl Solid {
 
 /// What every pattern in space can do.
 pub trait Pattern {
-    /// The share of the first material at a point of pattern space, from 0 to 1.
+    /// The share of the first material at a point of pattern space, from 0 to 1; on the front of a
+    /// surface, where that matters.
     fn weight(&self, q: Vec3) -> f32;
 
     /// Numbers of the two materials.

@@ -1,6 +1,6 @@
 //! The numbers of a material in layers at one point, and which of them pictures change.
 
-use super::principled::{PrincipledMaterial, Walls};
+use super::principled::{PrincipledMaterial, Switch, Walls};
 use crate::describe::FileName;
 use crate::math::Vec3;
 
@@ -40,6 +40,7 @@ parameters! {
     specular_anisotropy: f32,
     specular_rotation: f32,
     specular_ior: f32,
+    energy_compensation: Switch,
     transmission_weight: f32,
     transmission_color: Vec3,
     transmission_depth: f32,

@@ -13,8 +13,18 @@ described_words! {
 }
 
 described_words! {
-    /// Whether a camera sees faces that are turned away from it.
-    Backs { Shown = "shown", Hidden = "hidden" }
+    /// What the back of a surface does.
+    Backs { Shown = "shown", Hidden = "hidden", Black = "black" }
+}
+
+described_words! {
+    /// Whether something counts.
+    Switch { On = "on", Off = "off" }
+}
+
+described_words! {
+    /// Whether glass knows what it lies in.
+    Surroundings { Nested = "nested", Ignored = "ignored" }
 }
 
 described! {
@@ -77,6 +87,15 @@ described! {
             ["specularRotationTexture" in set::DURER];
         /// Index of refraction inside.
         specular_ior: f32 = 1.5, optional, Rule::Positive, ["specularIor" in set::DURER];
+        /// `nested`: glass in other glass or in water refracts by the indices of both; `ignored`:
+        /// `specularIor` is the index inside over the index outside, whatever the surface lies in, as
+        /// pbrt and Mitsuba have it.
+        surroundings: Surroundings = Surroundings::Nested, optional, Rule::Any, ["surroundings" in set::DURER];
+        /// `on`: light that a rough metal, glass or coat reflects between its facets is given back, so
+        /// that none is lost; `off`: a ray is reflected or refracted once, as pbrt and Mitsuba have it,
+        /// and the rougher the surface, the darker it is.
+        energy_compensation: Switch = Switch::On, optional, Rule::Any,
+            ["energyCompensation" in set::DURER];
         /// From 0 (matte) to 1 (glass).
         transmission_weight: f32 = 0.0, optional, Rule::Share, ["transmissionWeight" in set::DURER];
         /// A picture that multiplies `transmissionWeight`.
@@ -184,6 +203,8 @@ described! {
         emission_spectrum: Option<FileName> = None, optional, Rule::Any, ["emissionSpectrum" in set::DURER];
         /// A picture that multiplies `emissionColor`; its values are read as sRGB.
         emission_texture: Option<FileName> = None, optional, Rule::Any, ["emissionTexture" in set::DURER];
+        /// `on`: the colours of a mesh's vertices multiply `emissionColor`.
+        emission_vertex_colors: Switch = Switch::Off, optional, Rule::Any, ["emissionVertexColors" in set::DURER];
         /// A picture of normals in tangent space, as glTF has it: red and green point along u and
         /// v, blue outwards.
         normal_texture: Option<FileName> = None, optional, Rule::Any, ["normalTexture" in set::DURER];
@@ -193,16 +214,22 @@ described! {
         /// How far its white lies above its black, in units of the world; negative where white lies
         /// deep.
         bump_height: f32 = 0.01, optional, Rule::Any, ["bumpHeight" in set::DURER];
+        /// `on`: normals of pictures that are turned away from who looks are bent until mirrors show what is
+        /// outside; `off`: such places are black, as in Mitsuba.
+        normal_bending: Switch = Switch::On, optional, Rule::Any, ["normalBending" in set::DURER];
         /// Share of the surface that is there, from 0 to 1: the rest lets light through as if
         /// nothing were there.
         opacity: f32 = 1.0, optional, Rule::Share, ["opacity" in set::DURER];
         /// A picture that multiplies `opacity`: its alpha where it has one, else red.
         opacity_texture: Option<FileName> = None, optional, Rule::Any, ["opacityTexture" in set::DURER];
+        /// All is there whose opacity, by `opacity`, pictures and the alpha of vertices together, is at
+        /// least this, and nothing of the rest; where it is not given, all is there in part.
+        opacity_cutoff: Option<f32> = None, optional, Rule::NonNegative, ["opacityCutoff" in set::DURER];
         /// `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of
         /// a body.
         walls: Walls = Walls::Solid, optional, Rule::Any, ["walls" in set::DURER];
-        /// `hidden`: cameras and lights without extent look through faces that are turned away from
-        /// them; `shown`: both sides are seen.
+        /// `shown`: both sides are seen; `hidden`: cameras and lights without extent look through
+        /// faces that are turned away from them; `black`: such faces scatter no light.
         backs: Backs = Backs::Shown, optional, Rule::Any, ["backs" in set::DURER];
     }
 }

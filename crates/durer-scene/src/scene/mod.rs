@@ -35,7 +35,8 @@ pub use staging::{Axis, Staging, Studio, View};
 described! {
     /// What a ray sees that hits nothing, and the light that is everywhere.
     Background ["Background" in set::ALL] {
-        /// Colour of rays that hit nothing.
+        /// Colour of rays that hit nothing. A scene of ours without a `Background` is black around under
+        /// `path`, where light is only what a scene says.
         color: Vec3 = Vec3::splat(0.5), optional, Rule::Any, ["color" in set::ALL];
         /// Light that reaches every surface.
         ambient_light: Vec3 = Vec3::ZERO, optional, Rule::Any,

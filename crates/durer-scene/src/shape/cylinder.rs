@@ -4,10 +4,9 @@ use super::chord::Chord;
 use super::{
     Flip, INSET, MeshData, Plane, Shape, ShapeHit, Surface, Uv, disc_reach, exactly, inset, padded, tessellate,
 };
-use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{Closed, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::{DVec2, DVec3};
 
@@ -181,18 +180,7 @@ impl Shape for Cylinder {
     }
 
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        let along = self.top - self.base;
-        let frame = Frame::around(along.normalize_or(Vec3::Y));
-        let [x, y] = [frame.tangent, frame.bitangent].map(|axis| place.vector(self.radius * axis));
-        let (along, radius) = (place.vector(along), x.length());
-        // A transform may destroy the circle or the right angle, and then the surface cannot be
-        // sampled.
-        let off = x.dot(y).abs()
-            + along.normalize_or(Vec3::Y).dot(x).abs() * radius
-            + along.normalize_or(Vec3::Y).dot(y).abs() * radius
-            + (y.length() - radius).abs() * radius;
-        let round = off < 1e-5 * radius * radius && along != Vec3::ZERO;
-        round.then(|| (EmitterShape::Cylinder(place.point(self.base), along, radius), Vec3::ZERO))
+        Closed::frustum(place, [self.base, self.top], [self.radius; 2])
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

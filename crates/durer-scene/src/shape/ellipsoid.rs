@@ -3,7 +3,7 @@
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{Body, Closed, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
 
@@ -79,8 +79,9 @@ impl Shape for Ellipsoid {
         Vec::new()
     }
 
-    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
-        None
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        let axes = [self.radii.x * Vec3::X, self.radii.y * Vec3::Y, self.radii.z * Vec3::Z];
+        Closed::emitter(place, Body::Ball, self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -3,7 +3,7 @@
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{Body, Closed, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 
@@ -126,7 +126,15 @@ impl Shape for Sphere {
         let round = axes.iter().all(|axis| (axis.length() - radius).abs() < 1e-5 * radius)
             && axes[0].dot(axes[1]).abs() + axes[1].dot(axes[2]).abs() + axes[2].dot(axes[0]).abs()
                 < 1e-5 * radius * radius;
-        round.then(|| (EmitterShape::Sphere(place.point(self.center), radius), Vec3::ZERO))
+        match round {
+            true => Some((EmitterShape::Sphere(place.point(self.center), radius), Vec3::ZERO)),
+            false => Closed::emitter(
+                place,
+                Body::Ball,
+                self.center,
+                [Vec3::X, Vec3::Y, Vec3::Z].map(|axis| self.radius * axis),
+            ),
+        }
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -1,9 +1,10 @@
 //! The torus: all points at one distance from a circle.
 
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded, tessellate, turn};
+use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{EmitterShape, Placement};
+use crate::light::{Body, Closed, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -126,8 +127,11 @@ impl Shape for Torus {
         Vec::new()
     }
 
-    fn emitter(&self, _: &Placement) -> Option<(EmitterShape, Vec3)> {
-        None
+    fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
+        let axis = self.axis.normalize_or(Vec3::Y);
+        let frame = Frame::around(axis);
+        let axes = [frame.tangent, frame.bitangent, axis].map(|axis| self.major_radius * axis);
+        Closed::emitter(place, Body::Ring(self.minor_radius / self.major_radius), self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

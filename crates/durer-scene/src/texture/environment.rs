@@ -144,8 +144,14 @@ impl Environment {
         self.scale * (self.columns[self.height - 1] * PI / 2.0 / (self.width * self.height) as f32)
     }
 
-    /// Bytes per texel of construction beside the given texels: the texels with their sums, the
-    /// sums alone, and the growing list of start indices.
+    /// About the most that one direction brings, over its density: of what is least likely to be
+    /// chosen for its brightness.
+    pub fn most_of_one(&self) -> Color {
+        4.0 * PI * self.mean_above() / LEAST
+    }
+
+    /// Bytes for each texel that making it takes beside the texels that are given: those once more
+    /// where they stay with their sums, the sums alone, and the hints while they grow.
     pub const MAKING: usize = size_of::<Vec4>() + size_of::<[f32; 2]>();
 
     /// Size in memory in bytes.

@@ -49,7 +49,9 @@ pub(super) fn thick_fog(scout: &SceneProbe) -> Vec<Finding> {
         let diagnostic = diagnostic.fix_at(value, some);
         found.push(Finding::from(scout.at_value(diagnostic, span, &["extinction"])).whole(true));
     } else if fog.place.is_none() {
-        let sky = world.environment().is_some() || world.cube_map().is_some() || world.background() != Color::ZERO;
+        let sky = world.environment().is_some()
+            || world.cube_map().is_some()
+            || world.background() != Color::ZERO && !world.is_dark();
         let suns = world.lights().iter().any(|light| light.position().is_none());
         let near = world.lights().iter().any(|light| light.position().is_some())
             || world.objects().iter().any(|object| world.may_shine(object.material));

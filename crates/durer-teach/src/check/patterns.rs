@@ -76,7 +76,7 @@ pub(super) fn scale(scout: &SceneProbe) -> Vec<Finding> {
         let fine = places.iter().filter(|place| noisy(place)).count();
         let (message, effect, help) = if let Some((message, help)) = without_change(scout, &look, &written.value) {
             (message, "no pattern is seen: it is of one colour, or of few large patches", help)
-        } else if matches!(look, Look::Solid(Solid::Mix(_), ..)) {
+        } else if matches!(look, Look::Solid(Solid::Mix(_) | Solid::TwoSided(_), ..)) {
             continue;
         } else if most - least < 1e-3 {
             (

@@ -38,7 +38,9 @@ pub(super) fn is_beside_the_point(scout: &SceneProbe, code: &str) -> bool {
 
 pub(super) fn no_emitter(scout: &SceneProbe) -> Vec<Finding> {
     let world = scout.world();
-    let dark_sky = world.environment().is_none() && world.cube_map().is_none() && world.background() == Color::ZERO;
+    let dark_sky = world.environment().is_none()
+        && world.cube_map().is_none()
+        && (world.background() == Color::ZERO || world.is_dark());
     let radiance = |material: &Compiled| match material {
         Compiled::Phong(phong) => phong.emission.as_ref().map(|emission| emission.radiance),
         Compiled::Solid(..) => None,

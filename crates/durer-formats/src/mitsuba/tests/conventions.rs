@@ -5,7 +5,7 @@ use super::{clean, folder, material, objects, read, read_in};
 use durer_scene::camera::{Camera, Handedness};
 use durer_scene::describe::FileName;
 use durer_scene::light::Light;
-use durer_scene::material::principled::Walls;
+use durer_scene::material::principled::{Backs, Surroundings, Switch, Walls};
 use durer_scene::material::{HairMaterial, PrincipledMaterial};
 use durer_scene::math::{Vec2, Vec3, fp};
 use durer_scene::scene::{Material, MatrixOp, MatrixRules, Node, PictureBytes, Scene};
@@ -339,7 +339,7 @@ fn colours_of_pictures_have_a_curve_unless_they_are_raw() {
 
 #[test]
 fn glass_in_glass_has_its_own_index() {
-    // Water in glass: its index outside is that of the glass, of which rays know.
+    // What is written is a quotient across the surface, whatever that lies in.
     let body = |radius: f32, inside: &str, outside: &str| {
         let index = |name: &str, value: &str| match value.parse::<f32>() {
             Ok(value) => format!("<float name='{name}' value='{value}'/>"),
@@ -355,7 +355,7 @@ fn glass_in_glass_has_its_own_index() {
         let scene = clean(text);
         let index =
             |object: &&durer_scene::scene::Object| match &scene.materials[object.material.unwrap() as usize].value {
-                Material::Principled(layers) => layers.specular_ior,
+                Material::Principled(layers) if layers.surroundings == Surroundings::Ignored => layers.specular_ior,
                 _ => panic!(),
             };
         objects(&scene).iter().map(index).collect()
@@ -367,11 +367,56 @@ fn glass_in_glass_has_its_own_index() {
     for (glass, name) in [("1.5046", "bk7"), ("1.5", "1.5")] {
         let glass: f32 = glass.parse().unwrap();
         let outer = body(1.0, name, "air");
-        near(indices(&(outer.clone() + &body(0.5, "water", name))), &[glass / air, 1.333 / air]);
-        near(indices(&(body(0.5, "air", name) + &outer)), &[1.0, glass / air]);
+        near(indices(&(outer.clone() + &body(0.5, "water", name))), &[glass / air, 1.333 / glass]);
+        near(indices(&(body(0.5, "air", name) + &outer)), &[air / glass, glass / air]);
     }
-    // Where no such body is around, what is written is a quotient.
     near(indices(&body(1.0, "water", "1.5")), &[1.333 / 1.5]);
+}
+
+#[test]
+fn sides_and_facets_are_those_of_mitsuba() {
+    let of = |kind: &str| layers(&format!("<bsdf type='{kind}'/>"));
+    // What is not `twosided` is black from behind, but for glass and sheets.
+    for kind in ["diffuse", "conductor", "plastic", "principled"] {
+        assert_eq!(of(kind).backs, Backs::Black, "{kind}");
+        assert_eq!(layers(&format!("<bsdf type='twosided'><bsdf type='{kind}'/></bsdf>")).backs, Backs::Shown);
+    }
+    for kind in ["dielectric", "thindielectric", "principledthin"] {
+        assert_eq!(of(kind).backs, Backs::Shown, "{kind}");
+    }
+    assert!(["conductor", "dielectric", "principled"].iter().all(|kind| of(kind).energy_compensation == Switch::Off));
+    let color = |value: &str| format!("<bsdf type='diffuse'><rgb name='reflectance' value='{value}'/></bsdf>");
+    let sides = format!("<bsdf type='twosided'>{}{}</bsdf>", color("1,0,0"), color("0,1,0"));
+    let scene = clean(&format!("<shape type='rectangle'>{sides}</shape>"));
+    let Material::Solid(durer_scene::material::Solid::TwoSided(two), _) = material(&scene) else { panic!() };
+    let base = |number: u32| match &scene.materials[number as usize].value {
+        Material::Principled(layers) => layers.base_color,
+        _ => panic!(),
+    };
+    assert_eq!((base(two.material1), base(two.material2)), (Vec3::X, Vec3::Y));
+}
+
+#[test]
+fn a_depth_of_one_shows_lamps_alone() {
+    let scene = clean(
+        "<integrator type='path'><integer name='max_depth' value='1'/></integrator>\
+         <shape type='sphere'><emitter type='area'/></shape><shape type='cube'/>",
+    );
+    let shown = scene.materials.iter().map(|material| match &material.value {
+        Material::Principled(m) => (m.base_color, m.specular_weight, m.emission_luminance),
+        _ => panic!(),
+    });
+    assert_eq!(shown.collect::<Vec<_>>(), [(Vec3::ZERO, 0.0, 1.0), (Vec3::ZERO, 0.0, 0.0)]);
+}
+
+#[test]
+fn cameras_see_from_the_near_plane_to_the_far_one() {
+    let clip = "<float name='near_clip' value='2'/><float name='far_clip' value='7'/>";
+    let Camera::ThinLens(lens) = camera(&format!("type='perspective'>{LOOK}{clip}")) else { panic!() };
+    assert_eq!((lens.near, lens.far), (2.0, Some(7.0)));
+    // The usual planes cut off nothing.
+    let usual = "<float name='near_clip' value='0.01'/><float name='far_clip' value='10000'/>";
+    assert!(matches!(camera(&format!("type='perspective'>{LOOK}{usual}")), Camera::Perspective(_)));
 }
 
 #[test]

@@ -74,7 +74,7 @@ fn spheres_inside_out_have_their_indices_exchanged() {
     check(glass("thindielectric") + &sphere(flip), &[GLASS]);
     // A hollow ball of one material: inside of its glass is air.
     let radius = "<float name='radius' value='.9'/>";
-    check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0]);
+    check(glass("dielectric") + &sphere("") + &sphere(&(flip.to_string() + radius)), &[GLASS, 1.0 / GLASS]);
 }
 
 #[test]

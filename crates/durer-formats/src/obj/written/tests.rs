@@ -38,6 +38,13 @@ fn highlights_are_those_of_ks_beside_physical_words_too() {
 }
 
 #[test]
+fn colours_may_be_written_in_xyz() {
+    // The colour of the white of D65, half as bright.
+    let grey = of("Kd xyz 0.475235 0.5 0.544525").base_color;
+    assert!((grey - 0.5).abs().max_element() < 1e-3, "{grey}");
+}
+
+#[test]
 fn glass_is_what_tf_lets_through_beside_physical_words() {
     // As written by Blender.
     let glass = of("Kd 0.25 1 1\nKs 0.5 0.5 0.5\nNi 1.5\nd 1\nillum 2\nPr 0\nPm 0\nTf 1 1 1");

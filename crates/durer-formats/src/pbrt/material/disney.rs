@@ -63,8 +63,7 @@ impl Reader<'_> {
         let onwards = self.value(params, "difftrans", 1.0).clamp(0.0, 2.0);
         let thin = params.truth("thin") == Some(true);
         if !thin && distance == Color::ZERO {
-            let matte = Matte::new(m.specular_ior, roughness);
-            m.base_color = matte.base(color, matte.lost * color);
+            m.base_color = Matte::new(m.specular_ior, roughness).base(color);
         }
         if thin {
             m.walls = Walls::Thin;

@@ -12,13 +12,12 @@ use super::super::state::Reader;
 use super::{below_skin, matte};
 use crate::said::meant;
 use durer_diag::Span;
-use durer_scene::bsdf::fresnel::conductor_colors;
-use durer_scene::bsdf::fresnel::schlick_82;
+use durer_scene::bsdf::fresnel::{self, conductor_colors, schlick_82};
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
-use durer_scene::material::principled::Walls;
-use durer_scene::math::{Color, Vec3};
+use durer_scene::material::principled::{Surroundings, Switch, Walls};
+use durer_scene::math::{Color, Vec3, fp};
 use durer_scene::spectrum::SpectrumSource;
 
 const KNOWN: [&str; 12] = [
@@ -47,6 +46,19 @@ const OLD: [(&str, &str); 8] = [
     ("uber", "coateddiffuse"),
     ("translucent", "diffusetransmission"),
 ];
+
+/// What a coat of pbrt leaves of light that crosses it down and up: it loses exp(-thickness / cosine)
+/// each time, and what goes to and fro between the boundary and a matte base loses it each way.
+///
+/// Source: `LayeredBxDF` in *Physically Based Rendering*, 4th edition, section 14.3.2.
+fn crossed(thickness: f32, ior: f32, base: f32) -> f32 {
+    const STEPS: u16 = 64;
+    let at = |i: u16| (f32::from(i) + 0.5) / f32::from(STEPS);
+    // Of even light: the mean by the cosine.
+    let even = (0..STEPS).map(|i| 2.0 * at(i) * fp::exp(-thickness / at(i))).sum::<f32>() / f32::from(STEPS);
+    let back = base.clamp(0.0, 1.0) * fresnel::diffuse(1.0 / ior);
+    fp::exp(-2.0 * thickness) * (1.0 - back) / (1.0 - back * even * even)
+}
 
 impl Reader<'_> {
     /// GGX's alpha along both directions, by three parameters: of both, and of each.
@@ -173,6 +185,9 @@ impl Reader<'_> {
                 return Made::Nothing;
             }
         }
+        m.energy_compensation = Switch::Off;
+        // `eta` is a ratio across the surface, whatever that lies in.
+        m.surroundings = Surroundings::Ignored;
         self.surface(&mut m, params, "displacement");
         Made::Layers(Box::new(m), at)
     }
@@ -198,7 +213,10 @@ impl Reader<'_> {
         if params.get("albedo").is_some_and(|param| param.numbers().iter().any(|x| *x != 0.0)) {
             self.said.once(params.place("albedo"), "what is inside a coat has no counterpart: the coat is clear");
         }
-        params.known(&["thickness", "g", "maxdepth", "nsamples", "twosided"]);
+        // What crosses the coat loses by its thickness even where there is nothing in it.
+        let thickness = self.value(params, "thickness", 0.01).max(0.0);
+        m.coat_color = m.base_color.map(|base| crossed(thickness, m.coat_ior, base));
+        params.known(&["g", "maxdepth", "nsamples", "twosided"]);
     }
 
     fn conductor(

@@ -10,6 +10,7 @@ use durer_diag::Span;
 use durer_scene::bsdf::fresnel::schlick_82;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Surroundings;
 use durer_scene::math::{Color, Vec3};
 
 /// One of those that are added.
@@ -23,7 +24,7 @@ pub(super) struct Part {
 pub(super) fn glossy((color, picture): (Color, Option<FileName>), ior: f32, rough: &Rough) -> PrincipledMaterial {
     let mut m = matte(Vec3::ZERO);
     (m.specular_weight, m.specular_ior) = (1.0, ior);
-    (m.specular_color, m.specular_color_texture) = (rough.kept(ior) * color, picture);
+    (m.specular_color, m.specular_color_texture) = (color, picture);
     rough.put(&mut m);
     m
 }
@@ -54,25 +55,12 @@ pub(super) fn oren_nayar(color: Color, degrees: f32) -> (Color, f32) {
     (solved, roughness)
 }
 
-/// A metal by what it reflects at right angles and at 82 degrees, without what a rough one gives back
-/// later, on the mean over all directions.
+/// A metal by what it reflects at right angles and at 82 degrees.
 pub(super) fn metallic(f0: Color, f82: Color, rough: &Rough) -> PrincipledMaterial {
-    let kept = rough.kept_by_metal();
-    let (lost, strongest) = ((1.0 - kept) / kept, f0.max_element());
-    let weight = 1.0 / (1.0 + strongest * lost);
-    // Ours is x (1 + x lost) times the weight.
-    let ours = f0.map(|f0| match lost > 1e-4 {
-        true => ((1.0 + 4.0 * lost * f0 / weight).sqrt() - 1.0) / (2.0 * lost),
-        false => f0 / weight,
-    });
-    let ours = ours.min(Vec3::ONE);
-    let schlick = schlick_82(ours);
-    let wanted = f82 / (weight * (Vec3::ONE + ours * lost));
     let mut m = PrincipledMaterial {
         base_metalness: 1.0,
-        base_color: ours,
-        specular_color: wanted / schlick.max(Vec3::splat(1e-6)),
-        specular_weight: weight,
+        base_color: f0,
+        specular_color: f82 / schlick_82(f0).max(Vec3::splat(1e-6)),
         ..PrincipledMaterial::default()
     };
     rough.put(&mut m);
@@ -86,15 +74,14 @@ pub(super) fn glass(
     index: f32,
     rough: Option<&Rough>,
 ) -> PrincipledMaterial {
-    // Light goes in and out.
-    let kept = rough.map_or(1.0, |rough| 0.5 * (rough.kept(index) + rough.kept(1.0 / index)));
     let mut m = PrincipledMaterial {
         transmission_weight: 1.0,
-        transmission_color: kept * through,
+        transmission_color: through,
         transmission_color_texture: through_picture,
-        specular_color: kept * reflected,
+        specular_color: reflected,
         specular_color_texture: reflected_picture,
         specular_ior: index,
+        surroundings: Surroundings::Ignored,
         specular_roughness: 0.0,
         ..PrincipledMaterial::default()
     };

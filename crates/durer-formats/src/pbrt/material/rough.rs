@@ -1,11 +1,11 @@
-//! How rough pbrt-v3's materials are, and what of light rough ones lose there.
+//! How rough pbrt-v3's materials are.
 
 use super::super::params::{Kind, Params};
 use super::super::state::Reader;
-use durer_scene::bsdf::albedo;
 use durer_scene::bsdf::microfacet::Ggx;
 use durer_scene::describe::FileName;
 use durer_scene::material::PrincipledMaterial;
+use durer_scene::material::principled::Switch;
 use durer_scene::math::fp;
 
 /// How rough something is.
@@ -13,35 +13,17 @@ pub(super) struct Rough {
     picture: Option<FileName>,
     /// GGX's alpha along u and v.
     pub alphas: [f32; 2],
-    /// Our roughness; of a picture its mean.
-    mean: f32,
 }
 
 impl Rough {
     pub fn new(alphas: [f32; 2]) -> Self {
-        Rough { picture: None, alphas, mean: (alphas[0] * alphas[1]).sqrt().min(1.0).sqrt() }
+        Rough { picture: None, alphas }
     }
 
     pub fn put(&self, m: &mut PrincipledMaterial) {
+        m.energy_compensation = Switch::Off;
         m.specular_roughness_texture = self.picture.clone();
         [m.specular_roughness, m.specular_anisotropy, m.specular_rotation] = Ggx::parameters(self.alphas);
-    }
-
-    fn is_smooth(&self) -> bool {
-        self.picture.is_none() && self.alphas == [0.0; 2]
-    }
-
-    /// The share of light that it gives back at once, where it reflects all, on the mean over all
-    /// directions: pbrt-v3 leaves the rest out, and we do not.
-    pub fn kept_by_metal(&self) -> f32 {
-        const STEPS: u16 = 8;
-        let given = |i: u16| albedo::ggx(((f32::from(i) + 0.5) / f32::from(STEPS)).sqrt(), self.mean);
-        (0..STEPS).map(given).sum::<f32>() / f32::from(STEPS)
-    }
-
-    /// The same of a boundary, reflected or refracted.
-    pub fn kept(&self, index: f32) -> f32 {
-        if self.is_smooth() { 1.0 } else { albedo::single_means(index, self.mean)[1] }
     }
 }
 
@@ -68,9 +50,7 @@ impl Reader<'_> {
         };
         let picture = pictured.and_then(|name| self.changed(params, name, false, |x| alpha(x).max(0.0).sqrt()));
         if let Some(picture) = picture {
-            // What is left out is that of its mean.
-            let mean = self.mean_of_asset(&picture, params.at).unwrap_or(0.5);
-            return Rough { picture: Some(picture), alphas: [1.0; 2], mean };
+            return Rough { picture: Some(picture), alphas: [1.0; 2] };
         }
         let usual = both.map_or(usual, |name| self.value(params, name, usual));
         let alphas = EACH.map(|name| {

@@ -195,11 +195,10 @@ impl Reader<'_> {
         if (down * shine).max_element() > 0.0 {
             let what = "light that facets of `translucent` let through is not refracted here";
             self.said.once(params.at, what);
-            let kept = 0.5 * (rough.kept(1.5) + rough.kept(1.0 / 1.5));
             let mut through = super::matte(Vec3::ZERO);
             (through.specular_weight, through.specular_color) = (1.0, Vec3::ZERO);
             (through.transmission_weight, through.walls) = (1.0, Walls::Thin);
-            (through.transmission_color, through.transmission_color_texture) = (kept * down * shine, picture);
+            (through.transmission_color, through.transmission_color_texture) = (down * shine, picture);
             rough.put(&mut through);
             parts.push(Part { most: (down * shine).max_element(), layers: through });
         }

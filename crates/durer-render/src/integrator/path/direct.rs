@@ -154,6 +154,10 @@ impl Path<'_> {
         }
         let media = vertex.kind.media_behind(light.wi).unwrap_or(&state.media);
         let mut ray = vertex.kind.shadow_ray(light);
+        // What is nearer than rounding can tell, as a point of the same sphere, is not seen.
+        if ray.rounded.t_max <= ray.rounded.t_min {
+            return (Spectrum::ZERO, 0);
+        }
         let (mut left, mut sheets) = (Spectrum::ONE, 0);
         let mut numbers = state.sample.stream(state.depth, 1);
         let mut pass = |media: &Media, ray: &Ray64, to: f32| match self.world.medium(media.object()) {

@@ -281,6 +281,7 @@ impl<'w> Path<'w> {
 }
 
 mod caustic;
+mod chance;
 mod direct;
 mod emission;
 mod parameters;

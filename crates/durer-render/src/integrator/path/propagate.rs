@@ -141,7 +141,11 @@ impl Path<'_> {
     /// Passage of light through a surface; `None` if no light enters the object.
     pub(super) fn passage(&self, at: &Interaction, media: &Media, lanes: &Lanes) -> Option<Passage> {
         let ior = self.world.refracts(at, lanes)?;
-        Some(media.nested_passage(self.world, at, ior, at.inside()))
+        let passage = media.nested_passage(self.world, at, ior, at.inside());
+        Some(match self.world.ignores_surroundings(at) {
+            true => passage.across(ior, at.inside()),
+            false => passage,
+        })
     }
 
     /// Returns true if a surface only bounds a medium and does not deflect light.

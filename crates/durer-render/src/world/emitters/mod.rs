@@ -372,7 +372,7 @@ impl Emitters {
     pub fn middle(&self, light: LightId) -> Option<Vec2> {
         let source = *self.parts.get(self.first[light.object()? as usize] as usize)? as usize;
         match self.sources.get(source)? {
-            Source::Area(area) if matches!(area.form, EmitterShape::Sphere(..)) => Some(Vec2::ZERO),
+            Source::Area(area) if area.form.is_ball() => Some(Vec2::ZERO),
             _ => Some(Vec2::splat(0.5)),
         }
     }
@@ -413,6 +413,7 @@ impl Emitters {
     pub fn sky(&self, world: &World, wi: Vec3) -> (Color, f32) {
         match world.environment() {
             Some(environment) => environment.at_with_pdf(wi),
+            None if world.is_dark() => (Color::ZERO, 0.0),
             None => (world.sky(wi), 0.0),
         }
     }

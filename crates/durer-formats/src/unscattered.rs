@@ -1,0 +1,29 @@
+//! Pictures of lamps alone, which pbrt and Mitsuba make where light may not be scattered at all.
+
+use durer_scene::material::PrincipledMaterial;
+use durer_scene::math::Vec3;
+use durer_scene::scene::{Material, Scene};
+
+/// Makes all materials black that scatter light; what shines goes on shining.
+pub(super) fn blacken(scene: &mut Scene) {
+    for material in &mut scene.materials {
+        let own = match &material.value {
+            Material::Principled(m) => (**m).clone(),
+            Material::Solid(..) => continue,
+            _ => PrincipledMaterial::default(),
+        };
+        material.value = Material::Principled(Box::new(PrincipledMaterial {
+            base_color: Vec3::ZERO,
+            specular_weight: 0.0,
+            emission_luminance: own.emission_luminance,
+            emission_color: own.emission_color,
+            emission_texture: own.emission_texture,
+            emission_spectrum: own.emission_spectrum,
+            opacity: own.opacity,
+            opacity_texture: own.opacity_texture,
+            walls: own.walls,
+            backs: own.backs,
+            ..PrincipledMaterial::default()
+        }));
+    }
+}

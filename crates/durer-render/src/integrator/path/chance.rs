@@ -1,0 +1,47 @@
+//! Lamps that rays come upon by chance alone, for honest errors of what is measured.
+
+use super::{Direct, Path};
+use crate::world::emitters::emitter_of;
+use crate::world::{Material, Phong};
+use durer_scene::material::Pattern as _;
+use durer_scene::math::Color;
+use std::f32::consts::PI;
+
+impl Path<'_> {
+    /// The most that one sample of the irradiance at a point may bring of light that few samples find:
+    /// of surfaces that shine by a picture or are there in part, of solids, and of shapes without
+    /// end; where something mirrors or refracts and no photons are sent, of all surfaces that
+    /// shine; where points of lights alone are chosen, of the dimmest part of the surroundings.
+    /// `brightness` weighs colours.
+    pub fn most_by_chance(&self, brightness: impl Fn(Color) -> f32) -> f32 {
+        let shows = |phong: &Phong| phong.reflective != Color::ZERO || phong.transparent != Color::ZERO;
+        let mut phongs = self.world.materials().iter().filter_map(|material| match material {
+            Material::Phong(phong) => Some(phong),
+            Material::Solid(..) => None,
+        });
+        let mirrored = self.photons.is_none() && phongs.any(|phong| shows(phong));
+        let by_chance = self.world.objects().iter().filter(|object| {
+            let is_chosen =
+                self.world.shines_to_both_sides(object.material).is_some() && emitter_of(object, 0).is_some();
+            mirrored || !is_chosen
+        });
+        let brightest = by_chance.map(|object| self.brightest(object.material, &brightness)).fold(0.0, f32::max);
+        let sky = match self.transport.direct {
+            Direct::Lights | Direct::Middle => {
+                self.world.environment().map_or(0.0, |sky| brightness(sky.most_of_one()))
+            }
+            Direct::Both | Direct::Bsdf => 0.0,
+        };
+        // A direction is chosen by its cosine: what it finds counts pi times.
+        sky.max(PI * brightest)
+    }
+
+    fn brightest(&self, material: u32, brightness: &impl Fn(Color) -> f32) -> f32 {
+        match &self.world.materials()[material as usize] {
+            Material::Phong(phong) => phong.emission.as_ref().map_or(0.0, |emission| brightness(emission.radiance)),
+            Material::Solid(solid, ..) => {
+                solid.materials().map(|part| self.brightest(part, brightness)).into_iter().fold(0.0, f32::max)
+            }
+        }
+    }
+}

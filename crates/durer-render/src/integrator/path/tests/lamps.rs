@@ -1,0 +1,120 @@
+//! Lamps of every shape, found by their points and by chance.
+
+use super::*;
+
+const SHAPES: [&str; 8] = [
+    "Sphere { center 0 0 0 radius 0.5 }",
+    "Ellipsoid { center 0 0 0 radii 0.6 0.3 0.5 }",
+    "Box { min -0.5 -0.3 -0.4 max 0.5 0.3 0.4 }",
+    "Cone { base 0 -0.4 0 top 0.1 0.5 0 baseRadius 0.5 }",
+    "Cone { base 0 -0.4 0 top 0.1 0.5 0 baseRadius 0.2 topRadius 0.5 }",
+    "Cylinder { base 0 -0.5 0 top 0.2 0.4 0 radius 0.4 }",
+    "Torus { center 0 0 0 axis 0.2 1 0 majorRadius 0.4 minorRadius 0.15 }",
+    "Disc { center 0 0 0 normal 0 -1 0.2 radius 0.6 innerRadius 0.2 }",
+];
+
+/// As they are, scaled a little, and stretched, turned, sheared and mirrored.
+const MAPS: [&str; 3] = [
+    "Translate 0.4 1.5 0.2",
+    "Translate 0.4 1.5 0.2 Scale 1.0001 1 1",
+    "Translate 0.4 1.5 0.2 ZRotate 40 Scale -1.5 0.6 0.9 XRotate 30",
+];
+
+/// z-test of means: passed by chance once in 15,000.
+fn assert_alike(name: &str, a: (f64, f64), b: (f64, f64)) {
+    assert!((a.0 - b.0).abs() <= 4.0 * (a.1 + b.1).sqrt() + 1e-5 * a.0, "{name}: {a:?} {b:?}");
+}
+
+#[test]
+fn every_shape_under_every_map_is_found_by_its_points_as_by_directions() {
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    for (shape, map) in SHAPES.iter().flat_map(|shape| MAPS.map(|map| (shape, map))) {
+        let lamp = format!("Transform {{ {map} {shape} }}");
+        let world = over_floor("", &lamp);
+        let [both, points, directions] = by_ways(&world, to_origin(), settings, ColorMode::Rgb).map(|way| way[0]);
+        assert!(directions.0 > 0.01, "{lamp}: {directions:?}");
+        assert_alike(&lamp, both, directions);
+        assert_alike(&lamp, points, directions);
+        assert!(points.1 < directions.1, "{lamp} has less noise by its points: {points:?} {directions:?}");
+    }
+}
+
+#[test]
+fn what_is_inside_of_a_shining_shape_is_lit_by_it() {
+    // A closed furnace of radiance 1 and albedo 0.5 at both sides, whose walls are seen with light
+    // that was scattered once: 1 + 0.5.
+    let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 1 walls thin }";
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    for shape in &SHAPES[..6] {
+        for map in ["Scale 1 1 1", "ZRotate 40 Scale 1.5 0.6 0.9 XRotate 30"] {
+            let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ {map} {shape} }}"));
+            let ray = Ray::new(Vec3::new(0.03, 0.02, 0.04), Vec3::new(0.3, 0.5, -0.7).normalize());
+            for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
+                assert_alike(shape, way, (1.5, 0.0));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_lamp_far_off_is_as_bright_as_its_face_is_large() {
+    // L A / d^2: the face of a box of 0.1 x 0.1 at a distance of 6, and a cone's base.
+    for (lamp, area) in [
+        ("Box { min -0.05 6 -0.05 max 0.05 6.1 0.05 }", 0.01),
+        ("Cone { base 0 6 0 top 0 6.1 0 baseRadius 0.05 }", 0.0025 * std::f64::consts::PI),
+    ] {
+        assert_light(lamp, &over_floor("", lamp), to_origin(), 0, shown(3.0 * area / 36.0));
+    }
+}
+
+#[test]
+fn nothing_that_is_convex_lights_its_own_outside() {
+    let material = "PrincipledMaterial { baseColor 0.5 0.5 0.5 specularWeight 0 emissionLuminance 0.5 }";
+    let settings = Settings { bounces: 0, ..Job::default().settings };
+    for shape in &SHAPES[..6] {
+        let world = scene(material, "", &format!("MaterialIndex 0 Transform {{ Scale 1.1 0.9 1 {shape} }}"));
+        for y in [0.0, 0.11, 0.23] {
+            let ray = Ray::new(Vec3::new(0.05, y, 5.0), Vec3::NEG_Z);
+            // Its own light, and nothing more.
+            for way in by_ways(&world, ray, settings, ColorMode::Rgb).map(|way| way[0]) {
+                assert!((way.0 - 0.5).abs() < 1e-6, "{shape}: {way:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn without_a_background_light_is_only_what_a_scene_says() {
+    let of = |background: &str| {
+        read(&format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} {background}
+             Lights {{ PointLight {{ position 0 2 0 candela 1000 }} }} Materials {{ {MATTE} }}
+             Group {{ MaterialIndex 0 Sphere {{ center 9 -9 0 radius 1 }} }}"
+        ))
+    };
+    let lux = |world: &World| {
+        let path = Path::new(world, Job::default().settings, Transport::default());
+        let one = |i| path.irradiance(DVec3::ZERO, Vec3::Y, SampleId::new(3, (0, 0), i), &mut ());
+        let sum: Vec3 = (0..64).map(one).sum();
+        sum.dot(durer_scene::math::LUMINANCE) / 64.0
+    };
+    // I / d^2, and pi L of even surroundings beside.
+    assert!((lux(&of("")) - 250.0).abs() < 1e-3, "{}", lux(&of("")));
+    let grey = lux(&of("Background { color 0.5 0.5 0.5 }")) - 250.0;
+    assert!((grey - 0.5 * std::f32::consts::PI).abs() < 0.01, "{grey}");
+    // Whitted's pictures are before grey.
+    assert_eq!(of("").sky(Vec3::Y), Vec3::splat(0.5));
+}
+
+#[test]
+fn errors_know_of_lamps_that_are_found_by_chance() {
+    let most = |lamp: &str, direct| {
+        let world = over_floor("", lamp);
+        let transport = Transport { direct, ..Transport::default() };
+        Path::new(&world, Job::default().settings, transport).most_by_chance(|color| color.x)
+    };
+    // Pi times the radiance of 3 of what no point can be chosen of.
+    let solid = "Intersection { Box { min -1 1 -1 max 1 2 1 } Sphere { center 0 1.5 0 radius 0.6 } }";
+    assert!((most(solid, Direct::Both) - 3.0 * std::f32::consts::PI).abs() < 1e-5);
+    assert_eq!(most("Box { min -1 1 -1 max 1 2 1 }", Direct::Both), 0.0);
+}

@@ -1,0 +1,27 @@
+//! One material on the front, another on the back.
+
+use super::Pattern;
+use crate::describe::{Rule, described};
+use crate::dialect::set;
+use crate::math::Vec3;
+
+described! {
+    /// A surface whose front has one material and whose back, the side that its normal does not point
+    /// to, another.
+    TwoSided ["TwoSided" in set::DURER] {
+        /// The material of the front.
+        material1: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+        /// That of the back.
+        material2: u32 = 0, required, Rule::Any, ["materialIndex" in set::ALL];
+    }
+}
+
+impl Pattern for TwoSided {
+    fn weight(&self, _: Vec3) -> f32 {
+        1.0
+    }
+
+    fn materials(&self) -> [u32; 2] {
+        [self.material1, self.material2]
+    }
+}
