@@ -286,6 +286,10 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
     };
+    let depth = match display.depth_range {
+        Some((min, max)) if look.clamped_depths => Vec3::splat(depth.x.min(max).max(min)),
+        _ => depth,
+    };
     Vec3::splat(match look.depth {
         DepthPicture::NearWhite if !hit => 0.0,
         DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),

@@ -317,7 +317,7 @@ impl<'w> Whitted<'w> {
                     self.add_light(point, parts, (number, &seen, Color::ONE), queue, tally);
                     continue;
                 }
-                shadows[count] = self.shadow_ray(surface, &seen);
+                shadows[count] = self.shadow_ray(surface, number, &seen);
                 asked[count] = (i, seen);
                 count += 1;
             }
@@ -348,7 +348,7 @@ impl<'w> Whitted<'w> {
             if T::LISTENS {
                 let parent = queue.segment(point.segment).node;
                 let node = tally.begin(parent, || {
-                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, seen, visible));
+                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, number, seen, visible));
                     let (to_light, distance) = (seen.to_light, seen.distance);
                     TermKind::Light { light: number, to_light, distance, share, shadow }
                 });
@@ -373,7 +373,8 @@ impl<'w> Whitted<'w> {
         let from_behind = self.sees_back(at);
         let n = if from_behind && shade_back { -n_shade } else { n_shade };
         let n = if rules.unit_light { n.normalize_or(n) } else { n };
-        Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back }
+        let spoiled = rules.spoiled_normals && n.is_nan();
+        Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back || spoiled }
     }
 
     /// Whether a ray meets a surface on the side that its normal does not point to.

@@ -1,6 +1,6 @@
 //! What a world is made of, and its identity.
 
-use super::{DisplayRules, Geometry, Material, Object, ShadingRules, World};
+use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::Rules;
 use durer_scene::light::{Light, Profile};
@@ -31,6 +31,8 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// Rules of the camera and of pixels.
     pub camera_rules: CameraRules,
+    /// How an official program finds hits, where its hits are wanted.
+    pub hits: Option<HitRules>,
     /// Rules of hits and of Whitted's integrator.
     pub shading: ShadingRules,
     /// Rules of pictures of values.
@@ -77,16 +79,16 @@ impl World {
             return self.source;
         }
         let Contents { camera, frame, background, ambient, lights, materials, objects, rules, .. } = &self.contents;
-        let resolved = (self.contents.camera_rules, self.contents.shading, self.contents.display);
+        let resolved = (self.contents.camera_rules, self.contents.hits, self.contents.shading, self.contents.display);
         let mut text =
             format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules, resolved));
-        for Object { geometry, to_world, center, material, normal_length, span: _ } in objects {
+        for Object { geometry, to_world, matrices, center, material, normal_length, span: _ } in objects {
             let geometry = match geometry {
                 Geometry::Mesh(tree) => tree.mesh.digest().to_string(),
                 other => format!("{other:?}"),
             };
             // Text can always be written into text.
-            let _ = write!(text, "{:?}", (geometry, to_world, center, material, normal_length));
+            let _ = write!(text, "{:?}", (geometry, to_world, matrices, center, material, normal_length));
         }
         Digest::of(text.as_bytes())
     }
@@ -129,6 +131,11 @@ impl World {
     /// Rules of the camera and of pixels.
     pub fn camera_rules(&self) -> CameraRules {
         self.contents.camera_rules
+    }
+
+    /// How an official program finds hits, where its hits are wanted.
+    pub fn hit_rules(&self) -> Option<HitRules> {
+        self.contents.hits
     }
 
     /// Rules of hits and of Whitted's integrator.

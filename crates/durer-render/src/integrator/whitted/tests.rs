@@ -69,7 +69,8 @@ fn mirrored_directions_keep_the_angle() {
 fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     let share = |zero: bool, cosine: f32, here: f32, there: f32| {
         let d = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
-        refract(d, Vec3::Y, here / there).map(|t| fresnel_share(d, Vec3::Y, t, (here, there), zero))
+        let before = if zero { 1.0 } else { here };
+        refract(d, Vec3::Y, here / there).map(|t| fresnel_share(d, Vec3::Y, t, (here, there), before))
     };
     let close = |a: Option<f32>, b: f32| assert!((a.unwrap() - b).abs() < 1e-6, "{a:?} {b}");
     close(share(false, 1.0, 1.0, 1.5), 0.04);
@@ -81,8 +82,10 @@ fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     let outside = 1.0 - (1.0f32 - 0.5625).sqrt();
     close(share(false, inside, 1.5, 1.0), 0.04 + 0.96 * outside * outside * outside * outside * outside);
     assert_eq!(share(false, 0.7, 1.5, 1.0), None);
-    // An old program takes 0 instead of R0 on the way out.
+    // An old program takes the side that a ray comes from for air: R0 is 0 on the way out, and of
+    // glass in water that of glass in air.
     close(share(true, 1.0, 1.5, 1.0), 0.0);
+    close(share(true, 1.0, 1.33, 1.5), 0.04);
 }
 
 #[test]
