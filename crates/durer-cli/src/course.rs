@@ -198,6 +198,8 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
+    // An empty range divides zero by zero, and is black, like one that everything is behind.
+    let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = given.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > Settings::MAX_BOUNCES {
         return Err(bad(format!("-bounces: at most {}", Settings::MAX_BOUNCES)));

@@ -230,7 +230,8 @@ fn depths_of_2012_are_kept_within_the_range_before_they_become_greys() {
     // The ball is hit at 3.
     assert_eq!(grey(Dialect::F12a4, (2.0, 6.0)), 0.75);
     assert_eq!(grey(Dialect::F12a4, (4.0, 6.0)), 1.0);
-    // Within a range that runs backwards everything is its start.
+    // Of a range that runs backwards, all before its start is that, and all else its end.
     assert_eq!(grey(Dialect::F12a4, (9.0, 2.0)), 1.0);
+    assert_eq!(grey(Dialect::F12a4, (2.5, 2.0)), 0.0);
     assert_eq!(grey(Dialect::F04, (9.0, 2.0)), 0.0 + (2.0 - 3.0) / (2.0 - 9.0));
 }

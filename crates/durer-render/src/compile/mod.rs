@@ -431,7 +431,8 @@ impl SceneFlattener<'_, '_> {
             Node::Group(group) => self.group(group, to_world),
             Node::Transform(ops, inner) => {
                 self.transforms += 1;
-                let own = Matrix::of(ops, rules::matrix_rules(self.rules));
+                let vectors = rules::hit_rules(self.rules).map_or(Vectors::Vecmath, |rules| rules.vectors);
+                let own = Matrix::of(ops, rules::matrix_rules(self.rules), vectors);
                 self.matrices.iter_mut().for_each(|matrices| matrices.push(own));
                 self.object(inner, to_world * self.product(ops));
                 self.matrices.iter_mut().for_each(|matrices| _ = matrices.pop());
@@ -528,7 +529,7 @@ impl SceneFlattener<'_, '_> {
             (None, _) => vec![Matrix::from(to_world)],
             (Some(matrices), Vectors::Vecmath) => matrices.clone(),
             (Some(matrices), Vectors::Glm) => {
-                vec![matrices.iter().fold(Matrix::IDENTITY, |outer, inner| outer.times(inner))]
+                vec![matrices.iter().fold(Matrix::IDENTITY, |outer, inner| outer.times(inner, rules.vectors))]
             }
         }
     }

@@ -287,7 +287,8 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
     };
     let depth = match display.depth_range {
-        Some((min, max)) if look.clamped_depths => Vec3::splat(depth.x.min(max).max(min)),
+        Some((min, _)) if look.clamped_depths && depth.x < min => Vec3::splat(min),
+        Some((_, max)) if look.clamped_depths && depth.x > max => Vec3::splat(max),
         _ => depth,
     };
     Vec3::splat(match look.depth {

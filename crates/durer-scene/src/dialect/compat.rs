@@ -110,8 +110,9 @@ compats! {
     AddedLights = "added-lights",
     /// A face without area spoils the normals of its corners: triangles there are black.
     SpoiledNormals = "spoiled-normals",
-    /// A depth is kept below the end of the given range, then above its start, before it becomes a
-    /// grey: within a range that runs backwards everything is white.
+    /// A depth before the start of the given range becomes its start, and else one behind its end
+    /// that end, before they become greys: of a range that runs backwards what is near is white, and
+    /// all beyond is black; an empty range is black.
     ClampedDepths = "clamped-depths",
     /// `-jitter` alone writes all sub-pixels, and `-filter` alone averages three by three pixels.
     OddSizes = "odd-sizes",

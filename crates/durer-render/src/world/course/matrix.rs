@@ -16,12 +16,12 @@ impl Matrix {
         Matrix([[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]]);
 
     /// Product of the matrices of one transform.
-    pub fn of(ops: &[MatrixOp], rules: MatrixRules) -> Self {
+    pub fn of(ops: &[MatrixOp], rules: MatrixRules, vectors: Vectors) -> Self {
         let product = ops.iter().fold(Matrix::IDENTITY, |product, op| {
             let own = Matrix::from(op);
             match op {
-                MatrixOp::Matrix(_) if rules.matrix_on_left => own.times(&product),
-                _ => product.times(&own),
+                MatrixOp::Matrix(_) if rules.matrix_on_left => own.times(&product, vectors),
+                _ => product.times(&own, vectors),
             }
         });
         match () {
@@ -32,10 +32,10 @@ impl Matrix {
     }
 
     /// The product with a matrix that applies before this one.
-    pub fn times(&self, other: &Matrix) -> Matrix {
+    pub fn times(&self, other: &Matrix, vectors: Vectors) -> Matrix {
         let entry = |row: usize, column: usize| {
             let [a, b, c, d] = [0, 1, 2, 3].map(|i| self.0[i][row] * other.0[column][i]);
-            a + b + c + d
+            vectors.sum_from(a) + b + c + d
         };
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| entry(row, column))))
     }
@@ -45,7 +45,7 @@ impl Matrix {
         let row = |row: usize| {
             let [x, y, z, w] = self.0.map(|column| column[row]);
             match vectors {
-                Vectors::Vecmath => x * p.x + y * p.y + z * p.z + w,
+                Vectors::Vecmath => vectors.sum_from(x * p.x) + y * p.y + z * p.z + w,
                 Vectors::Glm => (x * p.x + y * p.y) + (z * p.z + w),
             }
         };
@@ -54,8 +54,11 @@ impl Matrix {
 
     /// A vector's image in the course's own arithmetic.
     pub fn vector(&self, v: Vec3) -> Vec3 {
-        let [x, y, z] = [0, 1, 2].map(|row| self.0[0][row] * v.x + self.0[1][row] * v.y + self.0[2][row] * v.z);
-        Vec3::new(x, y, z)
+        let row = |row: usize| {
+            let [x, y, z] = [0, 1, 2].map(|column| self.0[column][row] * v[column]);
+            Vectors::Vecmath.sum_from(x) + y + z
+        };
+        Vec3::new(row(0), row(1), row(2))
     }
 
     /// Whether all its numbers, and those of its inverse, are numbers.

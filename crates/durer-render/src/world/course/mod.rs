@@ -30,6 +30,15 @@ pub enum Vectors {
 }
 
 impl Vectors {
+    /// A sum that begins with a term: the course's own begins with 0, so that it is never -0. By the
+    /// sign of a zero a ray goes through an octree, or past it.
+    fn sum_from(self, first: f32) -> f32 {
+        match self {
+            Vectors::Vecmath => 0.0 + first,
+            Vectors::Glm => first,
+        }
+    }
+
     /// A vector of length 1, or of no numbers.
     pub fn unit(self, v: Vec3) -> Vec3 {
         match self {

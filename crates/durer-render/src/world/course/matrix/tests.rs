@@ -26,7 +26,7 @@ fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
         let ops = random_ops(&mut random);
         for dropped_shear in [false, true] {
             let rules = MatrixRules { dropped_shear, ..MatrixRules::default() };
-            close(&Matrix::of(&ops, rules), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
+            close(&Matrix::of(&ops, rules, Vectors::Glm), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
         }
     }
 }
@@ -35,9 +35,9 @@ fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
 fn both_inverses_undo_a_matrix() {
     let mut random = Random(60);
     for _ in 0..500 {
-        let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default());
+        let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), Vectors::Vecmath);
         for vectors in [Vectors::Vecmath, Vectors::Glm] {
-            close(&matrix.times(&matrix.inverse(vectors)), &Matrix::IDENTITY, 1e-3);
+            close(&matrix.times(&matrix.inverse(vectors), vectors), &Matrix::IDENTITY, 1e-3);
             let point = Vec3::from_array([0, 1, 2].map(|_| random.between(-2.0, 2.0)));
             let back = matrix.inverse(vectors).point(matrix.point(point, vectors), vectors);
             assert!((back - point).abs().max_element() < 1e-3, "{point} {back}");
@@ -51,12 +51,20 @@ fn both_inverses_undo_a_matrix() {
 #[test]
 fn a_flat_matrix_is_told_and_a_tiny_one_passed_over() {
     let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
-    assert!(!Matrix::of(&flat, MatrixRules::default()).is_regular());
+    assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
     let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };
-    assert_eq!(Matrix::of(&flat, tiny), Matrix::IDENTITY);
+    assert_eq!(Matrix::of(&flat, tiny, Vectors::Glm), Matrix::IDENTITY);
     // 0.004^3 is below the rounding of 1, 0.006^3 is not.
     let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];
-    assert_eq!(Matrix::of(&scale(0.004), tiny), Matrix::IDENTITY);
-    assert_ne!(Matrix::of(&scale(0.006), tiny), Matrix::IDENTITY);
+    assert_eq!(Matrix::of(&scale(0.004), tiny, Vectors::Glm), Matrix::IDENTITY);
+    assert_ne!(Matrix::of(&scale(0.006), tiny, Vectors::Glm), Matrix::IDENTITY);
     assert!(MatrixOp::product(&scale(0.004), tiny) == DAffine3::IDENTITY);
+}
+
+#[test]
+fn the_sign_of_a_zero_is_that_of_each_library() {
+    let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), Vectors::Vecmath);
+    let inverse = moved.inverse(Vectors::Vecmath);
+    assert!(inverse.vector(Vec3::new(-0.5, 0.9, -0.0)).z.is_sign_positive());
+    assert!((0.0_f32 - 0.0).is_sign_positive() && Vectors::Glm.sum_from(-0.0).is_sign_negative());
 }
