@@ -516,6 +516,7 @@ impl SceneFlattener<'_, '_> {
             Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Compat::RawNormals) => {
                 plane.normal.length()
             }
+            _ if to_world.is_none() && !matrices.iter().all(Matrix::is_regular) => f32::NAN,
             _ => 1.0,
         };
         Some(Object { geometry, to_world, matrices, center, material, normal_length, span: object.span })

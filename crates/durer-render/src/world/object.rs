@@ -24,8 +24,8 @@ pub struct Object {
     pub center: Vec3,
     /// Number of its material; the parts of a solid have their own.
     pub material: u32,
-    /// Length of its normals: other than 1 only under
-    /// [`ShadingRules::raw_normals`].
+    /// Length of its normals: other than 1 only under [`ShadingRules::raw_normals`]; NaN where a
+    /// transform is flat, and an official program draws it all the same.
     pub normal_length: f32,
     /// Where it is written.
     pub span: durer_diag::Span,
@@ -219,9 +219,6 @@ impl Object {
             false => to_world.normal(n),
         };
         if rules.points_on_ray {
-            if self.to_world.is_none() && !self.matrices.iter().all(Matrix::is_regular) {
-                surface.n_shade = Vec3::NAN;
-            }
             if let Some(to_world) = &self.to_world {
                 surface.n_geo = to_world.normal(surface.n_geo);
                 surface.n_shade = shading(to_world, surface.n_shade);
