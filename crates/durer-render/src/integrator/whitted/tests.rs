@@ -251,7 +251,7 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
                 all += 1;
                 let mut share = [Color::ZERO];
-                whitted.visible(&mut [whitted.shadow_ray(&surface, &seen)], &mut share, &mut ());
+                whitted.visible(&mut [whitted.shadow_ray(&surface, 0, &seen)], &mut share, &mut ());
                 dark += i32::from(share == [Color::ZERO]);
             }
         }
