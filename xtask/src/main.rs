@@ -15,6 +15,7 @@ mod lamps;
 mod long;
 mod manual;
 mod peers;
+mod prose;
 mod sheet;
 mod solids;
 mod teach;
@@ -89,6 +90,9 @@ const USAGE: &str = "Commands:
       The sample models, rendered without any option, or from the front, beside the pictures that came with them, as sheets.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
+  cargo xtask prose [--count] [PATH ...]
+      Words and patterns of xtask/prose.txt in comments, messages and documents, and comments beyond 100 columns. --count: only
+      how often. PATH: only files whose name contains it.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -120,6 +124,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("lamps") => lamps::run(),
         Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
+        Some("prose") => prose::run(&arguments[1..]),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))

@@ -102,7 +102,7 @@ impl Contents {
         self.camera_rules = camera_rules(&rules);
         self.hits = hit_rules(&rules);
         self.shading = shading_rules(&rules);
-        self.display = display_rules(&rules, self.lumens);
+        self.display = display_rules(&rules, self.display.lumens);
         self.rules = rules;
     }
 }

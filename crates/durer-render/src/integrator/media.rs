@@ -88,6 +88,11 @@ impl Media {
         Media(SmallVec::from_slice(&[medium]))
     }
 
+    /// Leaves every body.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
     /// Whether the ray runs in air.
     pub fn is_air(&self) -> bool {
         self.0.is_empty()

@@ -4,7 +4,7 @@ use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, Wo
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::Rules;
 use durer_scene::light::{Light, Profile};
-use durer_scene::math::{Color, Vec3};
+use durer_scene::math::Color;
 use durer_scene::medium::Medium;
 use durer_scene::source::Digest;
 use durer_scene::spectrum::Curve;
@@ -40,8 +40,6 @@ pub struct Contents {
     /// The dialect that all these were resolved from. Rendering does not ask it; checks, lessons
     /// and mistakes of the course do.
     pub(crate) rules: Rules,
-    /// What makes lumens of its light, by colour, where that is in watts.
-    pub lumens: Option<Vec3>,
 }
 
 /// What the files became that it names.

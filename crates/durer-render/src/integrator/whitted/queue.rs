@@ -3,7 +3,7 @@
 use crate::integrator::media::Media;
 use crate::integrator::trace::{NodeId, TraceListener};
 use crate::world::TOGETHER;
-use durer_scene::math::{Color, Ray64};
+use durer_scene::math::{Color, Ray, Ray64, Vec3};
 
 /// Parent of a camera ray.
 const CAMERA: u32 = u32::MAX;
@@ -39,20 +39,19 @@ pub(super) struct Segment {
     pub(super) secondary: NodeId,
 }
 
-impl Segment {
-    /// A camera ray, by its number.
-    pub(super) fn camera(ray: &Ray64, camera: u32, bounces: u32, node: NodeId) -> Self {
+impl Default for Segment {
+    fn default() -> Self {
         Segment {
-            ray: *ray,
-            t_min: ray.rounded.t_min,
+            ray: Ray64::from(Ray::new(Vec3::ZERO, Vec3::X)),
+            t_min: 0.0,
             media: Media::default(),
-            bounces,
+            bounces: 0,
             weight: 1.0,
-            camera,
+            camera: 0,
             parent: CAMERA,
             branch: 0,
             factor: Color::ONE,
-            node,
+            node: NodeId::NONE,
             local: Color::ZERO,
             branches: [Color::ZERO; 2],
             pending: 0,
@@ -65,7 +64,9 @@ impl Segment {
 /// level of secondary rays is under way, and no call nests.
 #[derive(Default)]
 pub(super) struct Queue {
+    /// Segments under way are among the first `used`; the others are room that was taken before.
     segments: Vec<Segment>,
+    used: u32,
     /// Numbers of segments that are done, to be used again.
     free: Vec<u32>,
     waiting: Vec<u32>,
@@ -73,7 +74,7 @@ pub(super) struct Queue {
 
 impl Queue {
     pub(super) fn clear(&mut self) {
-        self.segments.clear();
+        self.used = 0;
         self.free.clear();
         self.waiting.clear();
     }
@@ -83,20 +84,30 @@ impl Queue {
         &mut self.segments[number as usize]
     }
 
-    /// Adds a segment, to be traced next.
+    /// Adds a camera ray, to be traced next.
     #[inline]
-    pub(super) fn push(&mut self, segment: Segment) {
-        let number = match self.free.pop() {
-            Some(number) => {
-                self.segments[number as usize] = segment;
-                number
+    pub(super) fn push_camera(&mut self, ray: &Ray64, camera: u32, bounces: u32, node: NodeId) {
+        let segment = self.push(ray, node);
+        segment.media.clear();
+        (segment.bounces, segment.weight, segment.factor) = (bounces, 1.0, Color::ONE);
+        (segment.camera, segment.parent) = (camera, CAMERA);
+    }
+
+    /// Adds a segment, to be traced next. It is filled in place: a copy of one costs as much as a hit. The
+    /// caller sets what is not set here, but for the sums, which [`super::secondary`] begins.
+    #[inline]
+    pub(super) fn push(&mut self, ray: &Ray64, node: NodeId) -> &mut Segment {
+        let number = self.free.pop().unwrap_or_else(|| {
+            if self.used as usize == self.segments.len() {
+                self.segments.push(Segment::default());
             }
-            None => {
-                self.segments.push(segment);
-                self.segments.len() as u32 - 1
-            }
-        };
+            self.used += 1;
+            self.used - 1
+        });
         self.waiting.push(number);
+        let segment = &mut self.segments[number as usize];
+        (segment.ray, segment.t_min, segment.node) = (*ray, ray.rounded.t_min, node);
+        segment
     }
 
     /// Has a segment traced on.

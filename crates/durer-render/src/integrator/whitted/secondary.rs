@@ -168,14 +168,10 @@ impl Whitted<'_> {
             tally.begin(secondary, || TermKind::Ray { from, ray: (&ray).into(), weight, hit: None, bounce: None });
         let media = media(queue);
         queue.segment(parent).pending += 1;
-        queue.push(Segment {
-            media,
-            weight,
-            parent,
-            branch: usize::from(from == RayKind::Transmitted),
-            factor,
-            ..Segment::camera(&ray, camera, bounces - 1, node)
-        });
+        let segment = queue.push(&ray, node);
+        (segment.media, segment.bounces, segment.weight, segment.factor) = (media, bounces - 1, weight, factor);
+        (segment.camera, segment.parent) = (camera, parent);
+        segment.branch = usize::from(from == RayKind::Transmitted);
     }
 }
 
