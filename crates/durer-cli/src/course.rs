@@ -230,7 +230,7 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     })
 }
 
-/// What an official program makes of one of `-jitter` and `-filter` alone.
+/// The size of the picture that 2012 writes under `-jitter` or `-filter` alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum OddSize {
     /// All sub-pixels, three by three to a pixel.

@@ -71,7 +71,7 @@ pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
     }
 }
 
-/// What makes infinite light, or light that is no number, under the rules of old programs.
+/// The light or material that makes infinite light, or NaN, under the rules of old programs.
 fn cause(world: &World) -> Option<String> {
     let divides = |light: &Light| match light {
         Light::Point(lamp) => lamp.attenuation == Some(Vec3::ZERO),

@@ -95,7 +95,7 @@ pub enum MeshNormals {
     SmoothByArea,
     /// Mean of the faces around a vertex, each counting alike.
     SmoothByFace,
-    /// The same, where a face without area leaves its vertices a normal that is no number.
+    /// Like `SmoothByFace`, but a face without area makes the normals of its vertices NaN.
     SpoiledByFace,
     /// As `SmoothByArea` for meshes of more vertices than this, else flat.
     SmoothAbove(usize),
@@ -178,9 +178,9 @@ pub enum Arithmetic {
     Own,
     /// Single precision, operation by operation as the programs of Fall 2012.
     Of2012,
-    /// The same as the program of 2016.
+    /// Single precision as in the program of 2016.
     Of2016,
-    /// The same as the program of 2020, with the library glm.
+    /// Single precision as in the program of 2020, with the library glm.
     Of2020,
 }
 

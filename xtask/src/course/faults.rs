@@ -35,7 +35,7 @@ impl Scene {
         }
     }
 
-    /// What the picture was asked for with; see the list beside the scenes.
+    /// Arguments of the official picture; see the list beside the scenes.
     fn arguments(&self, depth: &Path) -> Vec<String> {
         let mut words: Vec<String> = match self.name.as_str() {
             "glassplane" => ["-size", "64", "64", "-bounces", "2"].map(String::from).to_vec(),

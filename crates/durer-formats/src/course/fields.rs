@@ -295,7 +295,7 @@ impl Reader<'_, '_> {
         value
     }
 
-    /// Whether values that mean nothing are drawn.
+    /// True under `any-values`: values that mean nothing are drawn.
     pub(super) fn any_values(&self) -> bool {
         self.options.compat & Compat::AnyValues.bit() != 0
     }

@@ -13,7 +13,7 @@ pub struct Hint {
     pub set: DialectSet,
     /// Why, as the end of a sentence.
     pub why: String,
-    /// Whether it says too little to be heard where nothing else tells the years apart.
+    /// True for hints that count only where something else tells the years apart.
     pub weak: bool,
 }
 
@@ -26,7 +26,7 @@ pub struct Guess {
     pub reasons: Vec<(String, Option<Span>)>,
     /// Other dialects that would have done as well.
     pub others: Vec<Dialect>,
-    /// Whether something else than the file's words decided.
+    /// True where hints led to another dialect than the words alone.
     pub hinted: bool,
 }
 
@@ -153,7 +153,7 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     Guess { dialect, reasons, others: candidates.collect(), hinted: by_words.is_some_and(|first| first != dialect) }
 }
 
-/// Whether some point light has no `falloff`.
+/// True if some point light has no `falloff`.
 fn lacks_falloff<'a>(text: &impl Fn(usize) -> std::borrow::Cow<'a, str>, count: usize) -> bool {
     let block = |start: usize| (start..count).map(text).take_while(|word| *word != "}");
     (0..count).any(|i| text(i) == "PointLight" && block(i).all(|word| word != "falloff"))

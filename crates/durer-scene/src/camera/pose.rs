@@ -39,14 +39,14 @@ pub enum Aim {
     ScreenPoint,
     /// d w + x u + y v in single precision, with axes made of what is written, of any length: 2012's.
     Of2012,
-    /// The same with the axes of 2016: `up` as written.
+    /// Like [`Aim::Of2012`] with the axes of 2016: `up` as written.
     Of2016,
-    /// The same with the axes of 2020: all made of length 1 by the reciprocal of their length.
+    /// Like [`Aim::Of2012`] with the axes of 2020: all scaled to length 1 by a reciprocal.
     Of2020,
 }
 
 impl Aim {
-    /// Whether rays are sums in single precision.
+    /// True if rays are sums in single precision.
     pub(super) fn is_sum(self) -> bool {
         matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
     }

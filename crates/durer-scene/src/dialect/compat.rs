@@ -36,8 +36,8 @@ compats! {
     MissingFalloff = "missing-falloff",
     /// A surface seen from behind is black, without ambient light, unless it is shaded both ways.
     BlackBacks = "black-backs",
-    /// Of the two sides of glass, R0 knows the one that is entered, and takes the other for air: a
-    /// ray that leaves glass reflects as if R0 were 0.
+    /// R0 takes the side that a ray comes from for air: a ray that leaves glass reflects as if R0
+    /// were 0.
     ExitR0 = "exit-r0",
     /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a
     /// screen at distance 1 and rounded there: far from the origin, rays are off by that rounding.
@@ -95,7 +95,7 @@ compats! {
     MovedStarts = "moved-starts",
     /// A plane is hit at the very start of a ray too.
     ClosedPlanes = "closed-planes",
-    /// Of things that are hit at the same place, a triangle that comes later wins.
+    /// A triangle wins over earlier things that are hit at the same place.
     TiedTriangles = "tied-triangles",
     /// At a plane, refraction takes the normal with the length that is written.
     RawRefraction = "raw-refraction",

@@ -82,7 +82,7 @@ impl MatrixOp {
         }
     }
 
-    /// Whether the product of the matrices of one transform counts as flat: its determinant is
+    /// True if the product of the matrices of one transform counts as flat: its determinant is
     /// within the rounding of 1 in single precision.
     pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
         is_tiny(MatrixOp::product(ops, MatrixRules { dropped_shear: false, dropped_tiny: false, ..rules }))

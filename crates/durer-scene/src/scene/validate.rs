@@ -33,8 +33,8 @@ impl Scene {
         self.validate_as(0)
     }
 
-    /// The same with some quirks: under [`Compat::AnyValues`] some values are let pass that mean
-    /// nothing.
+    /// Checks as [`Scene::validate`], but under [`Compat::AnyValues`] lets values pass that official
+    /// programs draw.
     pub fn validate_as(&self, compat: CompatSet) -> Diagnostics {
         let any = compat & Compat::AnyValues.bit() != 0;
         let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };
@@ -100,7 +100,7 @@ struct Validator {
     diagnostics: Diagnostics,
     /// How many materials the scene has.
     materials: usize,
-    /// Whether values pass that official programs draw.
+    /// True if values pass that official programs draw.
     any: bool,
 }
 

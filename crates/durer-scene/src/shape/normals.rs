@@ -150,7 +150,7 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
     Normals { values, corners: Corners::Listed(triangles) }
 }
 
-/// The same by faces of equal weight; a vertex of a face without area has NaN.
+/// Normals by faces of equal weight; NaN at the vertices of a face without area.
 fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
     let mut normals = smooth(mesh, vertices, DVec3::normalize_or_zero);
     let Corners::Listed(triangles) = &normals.corners else { unreachable!("rules list") };

@@ -61,7 +61,7 @@ impl Matrix {
         Vec3::new(row(0), row(1), row(2))
     }
 
-    /// Whether all its numbers, and those of its inverse, are numbers.
+    /// True if it and its inverse are finite.
     pub fn is_regular(&self) -> bool {
         let inverse = self.inverse(Vectors::Vecmath);
         [self, &inverse].iter().all(|matrix| matrix.0.iter().flatten().all(|x| x.is_finite()))
@@ -94,7 +94,7 @@ impl Matrix {
         Matrix([0, 1, 2, 3].map(|column| [0, 1, 2, 3].map(|row| cofactor(column, row) * reciprocal)))
     }
 
-    /// The same by the products of pairs that glm shares between cofactors.
+    /// Inverse by the products of pairs that glm shares between cofactors.
     fn inverse_by_factors(&self) -> Matrix {
         let m = &self.0;
         // Determinants of two by two, of columns i and j and rows p and q.
@@ -124,7 +124,7 @@ impl Matrix {
         Matrix(cofactors.map(|column| column.map(|x| x * reciprocal)))
     }
 
-    /// What is left of it as translation, rotation and scale: glm's `decompose`, put together again.
+    /// Translation, rotation and scale without the shear: glm's `decompose`, put together again.
     ///
     /// Source: Spencer W. Thomas, *Decomposing a Matrix into Simple Transformations*, Graphics Gems
     /// II (1991), VII.1.

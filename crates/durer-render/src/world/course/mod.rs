@@ -20,7 +20,7 @@ use shapes::{Crossing, Limits};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// Whose library of vectors the arithmetic is of.
+/// Library of vectors that the arithmetic follows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
     /// The course's own, of 2012 to 2019.
@@ -56,7 +56,7 @@ pub struct HitRules {
     pub vectors: Vectors,
     /// Triangles are solved for by the inverse of a matrix. Otherwise by plane and areas.
     pub triangle_matrix: bool,
-    /// Of things that are hit at the same place, a triangle that comes later wins.
+    /// A triangle wins over earlier things that are hit at the same place.
     pub tied_triangles: bool,
     /// A plane is hit at the very start of a ray too.
     pub closed_planes: bool,
@@ -82,7 +82,7 @@ struct Thing {
     walk: Option<Arc<Walk>>,
 }
 
-/// Which triangles of a mesh are tested, and in which order.
+/// Order in which triangles of a mesh are tested.
 #[derive(Debug)]
 enum Walk {
     /// All that a ray may meet; the order does not matter.
@@ -92,7 +92,7 @@ enum Walk {
 }
 
 impl CourseHits {
-    /// Of the objects of a world.
+    /// Prepares the objects of a world.
     pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
         // Objects share meshes.
         let mut walks: HashMap<*const MeshTree, Arc<Walk>> = HashMap::new();

@@ -46,7 +46,7 @@ struct Span {
 }
 
 impl Octree {
-    /// Of the boxes of a mesh's triangles.
+    /// Builds the tree from the boxes of a mesh's triangles.
     pub fn new(boxes: Vec<Aabb>) -> Self {
         let bounds = boxes.iter().copied().reduce(Aabb::union).unwrap_or(Aabb::EMPTY);
         let mut octree = Octree { bounds, cells: vec![Cell::Whole(0..0)], triangles: Vec::new() };

@@ -4,7 +4,7 @@ use super::HitRules;
 use durer_scene::math::{Ray, Vec2, Vec3};
 use durer_scene::shape::{Plane, Sphere};
 
-/// Where a ray meets a thing.
+/// A ray's crossing with a thing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
     /// Position along the ray.
@@ -13,7 +13,7 @@ pub(super) struct Crossing {
     pub uv: Vec2,
 }
 
-/// Which hits count.
+/// Interval in which hits count.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Limits {
     /// Hits lie beyond this.
@@ -25,7 +25,7 @@ pub(super) struct Limits {
 }
 
 impl Limits {
-    /// Whether a hit counts; with `ties` also at the place of the best. Never NaN.
+    /// True if a hit counts; with `ties` also at the place of the best. False for NaN.
     pub fn takes(&self, t: f32, ties: bool) -> bool {
         t > self.t_min && self.is_nearer(t, ties)
     }
@@ -94,7 +94,7 @@ fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some((t, Vec2::new(beta, gamma)))
 }
 
-/// Where the ray meets the plane, and the areas of the three triangles around that point.
+/// The crossing with the plane, and the areas of the three triangles around that point.
 fn by_areas([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
     let n = (b - a).cross(c - a);
     let t = n.dot(a - ray.origin) / n.dot(ray.dir);

@@ -19,7 +19,7 @@ fn visited(octree: &Octree, ray: &Ray) -> Vec<u32> {
     found
 }
 
-/// Whether a ray meets the middle half of a box, well inside of it.
+/// True if a ray meets the middle half of a box, well inside of it.
 fn goes_through(ray: &Ray, b: &Aabb) -> bool {
     let inner = Aabb { min: b.min + 0.25 * b.size(), max: b.max - 0.25 * b.size() };
     let [near, far] = [inner.min, inner.max].map(|p| (p - ray.origin) / ray.dir);
