@@ -1,5 +1,7 @@
 //! Compares our pictures with the official ones.
 
+mod faults;
+
 use anyhow::{Context, Result, bail};
 use durer::image::{Image8, read8};
 use std::collections::HashMap;
@@ -54,18 +56,27 @@ const fn reason(picture: &'static str, most: f64, words: &'static str) -> Reason
     Reason { picture, most, words }
 }
 
-/// Rows that are known to differ. None of them counts as passed.
-const REASONS: &[Reason] = &[
-    reason("output5_03.png", 15.0, "the official camera was not the scene's: see docs/course.md"),
-    reason("output6_18a.png", 91.0, BOARD),
-    reason(
-        "output7_02e.png",
-        0.17,
-        "at the horizon fields are far smaller than a pixel: single-precision rounding of the old program decides",
-    ),
-];
+/// Rows that are known not to agree. None of them counts as passed.
+const REASONS: &[Reason] = &[reason(
+    "output7_02e.png",
+    0.17,
+    "at the horizon fields are far smaller than a pixel: single-precision rounding of the old program decides",
+)];
 
-const BOARD: &str = "the cells of this board are swapped, and those of the same scene in output7_04a are not";
+/// Pictures that were made of their scene after it was edited: what was written, and what instead.
+const AMENDED: &[(&str, &[(&str, &str)])] = &[
+    // Found from the picture: 5 of its 40,000 pixels are others.
+    (
+        "output5_03.png",
+        &[
+            ("center 0 3 10", "center 2.0375281 5.9800980 9.3264785"),
+            ("direction 0 0 -1", "direction -0.2045029 -0.2860005 -0.9361529"),
+            ("size 5", "size 5.00053"),
+        ],
+    ),
+    // The board's two materials are exchanged: those of the same scene in output7_04a are not.
+    ("output6_18a.png", &[("materialIndex 3\n\tmaterialIndex 6", "materialIndex 6\n\tmaterialIndex 3")]),
+];
 
 pub fn run(arguments: &[String]) -> Result<ExitCode> {
     let value = |name| crate::value(arguments, name);
@@ -113,6 +124,13 @@ pub fn run(arguments: &[String]) -> Result<ExitCode> {
             remark.trim()
         );
     }
+    let small = corpus.join("faults/course");
+    let (durer, scenes) = (bench.durer, bench.course.join("scenes"));
+    let wrong = match small.canonicalize() {
+        Ok(folder) if !guess => faults::run(&durer, &folder, &scenes, &out, only.map(String::as_str))?,
+        _ => 0,
+    };
+    failed += wrong;
     if keep.is_none() {
         std::fs::remove_dir_all(&out)?;
     }
@@ -202,7 +220,19 @@ impl Bench {
             command.args(["--compat", "exit-r0"]);
         }
         let words: Vec<&str> = row.arguments.split_whitespace().collect();
+        let amended = AMENDED.iter().find(|(picture, _)| row.picture.ends_with(picture));
         for (i, word) in words.iter().enumerate() {
+            if let (Some((_, edits)), Some(&"-input")) = (amended, i.checked_sub(1).map(|i| &words[i])) {
+                let scene = self.course.join("scenes").join(&row.dialect).join(word);
+                let text = std::fs::read_to_string(&scene)?.replace('\r', "");
+                let path = folder.join(word);
+                if let Some((from, _)) = edits.iter().find(|(from, _)| !text.contains(from)) {
+                    bail!("{word} has no `{from}` to be edited");
+                }
+                std::fs::write(&path, edits.iter().fold(text, |text, (from, to)| text.replacen(from, to, 1)))?;
+                command.arg(path).arg("--allow-outside").arg("--assets").arg(scene.parent().unwrap_or(&scene));
+                continue;
+            }
             let is_output = files(&words).any(|(_, at)| at == i);
             if is_output {
                 command.arg(folder.join(word))

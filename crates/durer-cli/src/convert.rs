@@ -64,7 +64,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let loaded = loaded.ok_or(Failure::Input(None))?;
     // What the text that is written would name is not lost either.
     loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
-    if let Some(guess) = &loaded.guess {
+    if let Some(guess) = loaded.guess.as_ref().filter(|guess| guess.hinted) {
         report::note(&guess.note());
     }
     if as_scene.is_some() {

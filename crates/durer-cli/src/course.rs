@@ -18,8 +18,8 @@ use durer::camera::{Projection, Raster};
 use durer::compile::AccelKind;
 use durer::dialect::{Compat, Dialect};
 use durer::film::aov::Aov;
-use durer::film::course::CourseFilter;
-use durer::image::{Destination, Format, Layer, Transfer, format_for};
+use durer::film::course::{CourseFilter, average_3x3};
+use durer::image::{Destination, Format, Image, Layer, Transfer, format_for};
 use durer::integrator::Settings;
 use durer::options::memory::Memory;
 use durer::render::{Control, Job, RenderError, Sampling};
@@ -83,9 +83,13 @@ pub fn run(arguments: Vec<String>, program_name: Option<&'static Program>) -> Re
     if control.cancel.load(Relaxed) {
         return Err(failed(RenderError::Cancelled));
     }
-    rejected(&rendered.statistics, quiet);
+    rejected(&rendered.statistics, Some(world), quiet);
     if given.has("-stats") {
         stats(&opened, &control);
+    }
+    let mut rendered = rendered;
+    if odd_size(&given, &opened) == Some(OddSize::Third) {
+        rendered.pictures.iter_mut().filter(|layer| layer.name == "color").try_for_each(third)?;
     }
     let layers = grid.iter().chain(&rendered.pictures).chain(diagrams.iter().flatten());
     let mut files = Vec::new();
@@ -180,11 +184,22 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
     if width == 0 || height == 0 {
         return Err(bad("-size: a picture has at least one pixel"));
     }
+    let odd = odd_size(given, opened);
+    let (width, height) = match odd {
+        Some(OddSize::Threefold) => (width.saturating_mul(3), height.saturating_mul(3)),
+        _ => (width, height),
+    };
+    if odd == Some(OddSize::Third) && (width < 3 || height < 3) {
+        return Err(bad("-filter without -jitter makes one pixel of three by three, and there are not so many"));
+    }
     let depth = given.numbers::<f32>("-depth", 2)?;
     let depth_range = depth.map(|range| (range[0], range[1]));
-    if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
+    let clamped = opened.world.display_rules().clamped_depths;
+    if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && (min != max || clamped))) {
         return Err(bad("-depth needs two different numbers"));
     }
+    // An empty range divides zero by zero, and is black, like one that everything is behind.
+    let depth_range = depth_range.map(|range| if range.0 == range.1 { (-2.0, -1.0) } else { range });
     let bounces = given.number("-bounces")?.unwrap_or(rules.bounces);
     if bounces > Settings::MAX_BOUNCES {
         return Err(bad(format!("-bounces: at most {}", Settings::MAX_BOUNCES)));
@@ -195,7 +210,10 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         width,
         height,
         seed: given.number("--seed")?.unwrap_or(0),
-        sampling: sampling(given, opened.loaded.dialect)?,
+        sampling: match odd {
+            Some(OddSize::Threefold) => Sampling::Course2004 { sampler: Sampler::Random, samples: 1, filter: None },
+            _ => sampling(given, opened.loaded.dialect)?,
+        },
         settings: Settings {
             bounces,
             shadows: given.has("-shadows") || rules.shadows,
@@ -210,6 +228,33 @@ fn job(given: &Given, opened: &Opened) -> Result<Job, Failure> {
         depth_range,
         ..Job::default()
     })
+}
+
+/// The size of the picture that 2012 writes under `-jitter` or `-filter` alone.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum OddSize {
+    /// All sub-pixels, three by three to a pixel.
+    Threefold,
+    /// Three by three pixels averaged.
+    Third,
+}
+
+fn odd_size(given: &Given, opened: &Opened) -> Option<OddSize> {
+    let is_odd = opened.loaded.rules.has(Compat::OddSizes);
+    match (given.has("-jitter"), given.has("-filter")) {
+        (true, false) if is_odd => Some(OddSize::Threefold),
+        (false, true) if is_odd => Some(OddSize::Third),
+        _ => None,
+    }
+}
+
+/// Averages three by three pixels of a picture.
+fn third(layer: &mut Layer) -> Result<(), Failure> {
+    let &Image { width, height, ref pixels } = &*layer.image;
+    let pixels = average_3x3(pixels, width, height);
+    layer.image = Arc::new(Image::from_pixels(width / 3, height / 3, pixels).map_err(|error| bad(error.to_string()))?);
+    layer.coverage = None;
+    Ok(())
 }
 
 fn sampling(given: &Given, dialect: Dialect) -> Result<Sampling, Failure> {

@@ -205,6 +205,7 @@ impl Counted {
                 bvh.memory_usage()
             }
             Accel::Grid { grid, parts } => grid.memory_usage() + size_of_val(&**parts),
+            Accel::Course(hits) => hits.memory_usage(),
             Accel::None => 0,
         };
         count

@@ -96,7 +96,7 @@ pub fn render(
         None => return Ok(saved?),
     };
     wrote(place, args.quiet);
-    rejected(&statistics, args.quiet);
+    rejected(&statistics, None, args.quiet);
     match hash {
         Some(hash) if args.hash => say(&hash.to_string()),
         None if args.hash => {

@@ -49,7 +49,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
     let target = Target::new(&args.output, &names, &mut guard)?;
     let whole = merge(&parts).map_err(|error| bad(error.to_string()))?;
     drop(parts);
-    rejected(&whole.statistics(), args.quiet);
+    rejected(&whole.statistics(), None, args.quiet);
     let display = args.display.display()?;
     if target.save_colors(&whole, display, args.quiet)?.is_none() {
         output::save(&target.files(&whole.pictures().map_err(failed)?, display)?, args.quiet)?;

@@ -44,7 +44,8 @@ impl Read {
     /// Compiles it, and prints what was found.
     pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<Opened, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
-        if let (Some(guess), false, true) = (&self.loaded.guess, self.quiet, world.is_some()) {
+        let told = self.loaded.guess.as_ref().filter(|guess| guess.hinted);
+        if let (Some(guess), false, true) = (told, self.quiet, world.is_some()) {
             report::note(&guess.note());
         }
         report::print(&self.files, &self.diagnostics, self.quiet);

@@ -158,7 +158,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     })
     .map_err(failed)?;
     stages.ends("rendering");
-    rejected(&part.statistics(), args.quiet);
+    rejected(&part.statistics(), Some(&opened.world), args.quiet);
     let finished = match &stop {
         RenderOutcome::Finished => true,
         RenderOutcome::OutOfTime => part.is_finished(),

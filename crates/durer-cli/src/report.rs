@@ -7,8 +7,11 @@ use codespan_reporting::files::{self, SimpleFiles};
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use codespan_reporting::term::{Config, emit_to_write_style};
 use durer::diag::{Diagnostic, Diagnostics, ERROR_LIMIT, Files, Severity, Span};
+use durer::light::{Emitter as _, Light};
+use durer::math::Vec3;
 use durer::render::Statistics;
 use durer::source::SourceError;
+use durer::world::{Material, World};
 use std::io::IsTerminal;
 use std::ops::Range;
 
@@ -56,15 +59,37 @@ pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
 
-/// Says which samples were left out.
-pub fn rejected(statistics: &Statistics, quiet: bool) {
+/// Says which samples were left out, and why, where the world is at hand that they are of.
+pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
     if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
         let count = statistics.rejected;
+        let cause = world.and_then(cause).map(|cause| format!(": {cause}")).unwrap_or_default();
         note(&Diagnostic::warning(format!(
-            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
+            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {}){cause}",
             first.x, first.y, first.sample
         )));
     }
+}
+
+/// The light or material that makes infinite light, or NaN, under the rules of old programs.
+fn cause(world: &World) -> Option<String> {
+    let divides = |light: &Light| match light {
+        Light::Point(lamp) => lamp.attenuation == Some(Vec3::ZERO),
+        light => light.color().is_nan(),
+    };
+    if let Some(number) = world.lights().iter().position(divides) {
+        let why = match &world.lights()[number] {
+            Light::Point(_) => "the falloff of light {} is missing or 0, and it divides by that",
+            _ => "the direction of light {} is 0 0 0, and it divides by its length",
+        };
+        return Some(why.replace("{}", &number.to_string()));
+    }
+    let below = |material: &Material| match material {
+        Material::Phong(phong) => phong.highlight.is_some_and(|highlight| highlight.1 < 0.0),
+        Material::Solid(..) => false,
+    };
+    let number = world.materials().iter().position(below)?;
+    Some(format!("the shininess of material {number} is below 0, and its highlight grows without end"))
 }
 
 /// A scene file that cannot be read.

@@ -160,6 +160,22 @@ impl Field {
     pub fn spelling(&self, dialect: Dialect) -> Option<&'static str> {
         self.spellings.iter().find(|(_, set)| dialect.is_in(*set)).map(|(word, _)| *word)
     }
+
+    /// The value that official programs draw with, of a thing by its keyword, where the written one
+    /// breaks the rule: see [`Compat::AnyValues`]. `None`: they draw nothing sensible either.
+    ///
+    /// [`Compat::AnyValues`]: crate::dialect::Compat::AnyValues
+    pub fn drawn_anyway(&self, keyword: &str, value: &Value) -> Option<Value> {
+        match (keyword, self.name, value) {
+            // The square of the radius is asked for, and nothing is as small as this.
+            ("Sphere", "radius", Value::Float(r)) => Some(Value::Float(r.abs().max(f32::MIN_POSITIVE))),
+            ("PhongMaterial" | "Material", "shininess", Value::Float(x)) => Some(Value::Float(*x)),
+            ("PerspectiveCamera", "angle", Value::Float(180.0)) => Some(Value::Float(180.0)),
+            ("DirectionalLight", "direction", Value::Vec3(Vec3::ZERO)) => Some(Value::Vec3(Vec3::ZERO)),
+            _ => None,
+        }
+        .filter(Value::is_finite)
+    }
 }
 
 /// A thing whose parameters are stated once.

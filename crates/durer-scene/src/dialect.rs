@@ -4,6 +4,10 @@
 //! are the known bugs of that year's official program, which hold only where the dialect was asked
 //! for.
 
+mod compat;
+
+use compat::bits;
+pub use compat::{Compat, CompatSet};
 use serde::{Deserialize, Serialize};
 
 /// A year's scene language. The discriminants are bits of a [`DialectSet`].
@@ -91,6 +95,8 @@ pub enum MeshNormals {
     SmoothByArea,
     /// Mean of the faces around a vertex, each counting alike.
     SmoothByFace,
+    /// Like `SmoothByFace`, but a face without area makes the normals of its vertices NaN.
+    SpoiledByFace,
     /// As `SmoothByArea` for meshes of more vertices than this, else flat.
     SmoothAbove(usize),
     /// Mean by angle over those faces around a vertex that meet at less than this many degrees.
@@ -165,6 +171,19 @@ pub enum PathBase {
     Assets(&'static str),
 }
 
+/// How camera rays are aimed and hits are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Arithmetic {
+    /// Dürer's own.
+    Own,
+    /// Single precision, operation by operation as the programs of Fall 2012.
+    Of2012,
+    /// Single precision as in the program of 2016.
+    Of2016,
+    /// Single precision as in the program of 2020, with the library glm.
+    Of2020,
+}
+
 /// What the words of a dialect mean.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Rules {
@@ -193,6 +212,8 @@ pub struct Rules {
     pub secondary: Secondary,
     /// Least `t` of secondary rays; `None`: none is needed, rays start at an error-bounded offset.
     pub epsilon: Option<f32>,
+    /// How camera rays are aimed and hits are found.
+    pub arithmetic: Arithmetic,
     /// Normals as colours.
     pub normals_picture: NormalsPicture,
     /// Depth as grey.
@@ -210,125 +231,6 @@ pub struct Rules {
     pub transparent_shadows: bool,
     /// Bugs of the official program.
     pub compat: CompatSet,
-}
-
-/// Some compatibilities, as bits.
-pub type CompatSet = u64;
-
-macro_rules! compats {
-    ($($(#[doc = $doc:literal])+ $variant:ident = $name:literal,)+) => {
-        /// A named bug or quirk, of an official program where nothing else is said. Off unless
-        /// its dialect, or it by name, is asked for.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        #[repr(u8)]
-        pub enum Compat { $($(#[doc = $doc])+ $variant,)+ }
-
-        impl Compat {
-            /// All of them, with name and meaning.
-            pub const ALL: &'static [(Compat, &'static str, &'static str)] =
-                &[$((Compat::$variant, $name, concat!($($doc, "\n"),+)),)+];
-        }
-    };
-}
-
-compats! {
-    /// Pixel centres of the first and last column and row lie on the picture's border.
-    BorderPixels = "border-pixels",
-    /// The picture of a camera is stretched over a picture that is not square.
-    Stretch = "stretch",
-    /// The camera's `up` is used as written: not made perpendicular, not normalised.
-    RawUp = "raw-up",
-    /// The camera's `up` is normalised, but not made perpendicular.
-    SkewUp = "skew-up",
-    /// The highlight of a light appears also where the surface faces away from it.
-    HighlightBehind = "highlight-behind",
-    /// Shininess 0 makes the highlight 1 everywhere: 0 to the power of 0 is 1.
-    PowZero = "pow-zero",
-    /// A point light without falloff divides by zero, and its light is black.
-    MissingFalloff = "missing-falloff",
-    /// A surface seen from behind is black, without ambient light, unless it is shaded both ways.
-    BlackBacks = "black-backs",
-    /// A ray that leaves glass reflects as if R0 were 0.
-    ExitR0 = "exit-r0",
-    /// A perspective ray is aimed at a point in the world, reckoned from the lower left corner of a
-    /// screen at distance 1 and rounded there: far from the origin, rays are off by that rounding.
-    ScreenPoint = "screen-point",
-    /// A triangle reaches a little beyond its edges: to barycentric coordinates of -0.00001.
-    LooseTriangles = "loose-triangles",
-    /// Which side of a surface is seen is judged by its interpolated normal.
-    ShadedSides = "shaded-sides",
-    /// A mesh's triangle is missed where (b - a) x (c - a) · d is less than 0.000001: a small one,
-    /// seen from its side.
-    ThinTriangles = "thin-triangles",
-    /// On a texture, ambient light is that of the pixel shaded before, in rows from the bottom.
-    StaleTexels = "stale-texels",
-    /// A light is blocked only where the nearest thing towards it is seen from its front. Off where
-    /// `exit-r0` is asked for, the quirk of an earlier version of the same program.
-    ShadowFronts = "shadow-fronts",
-    /// A `Matrix` is multiplied on the left of everything before it.
-    MatrixOnLeft = "matrix-on-left",
-    /// The matrices of one transform lose the shear of their product: it is taken apart into
-    /// moving, turning and stretching. Shear between nested transforms stays.
-    DroppedShear = "dropped-shear",
-    /// A plane's normal keeps the length that is written, for light, mirrors and pictures of
-    /// normals; not inside a transform.
-    RawNormals = "raw-normals",
-    /// Light falls on normals of length 1, also where `raw-normals` holds.
-    UnitLight = "unit-light",
-    /// Only meshes show textures.
-    MeshTextures = "mesh-textures",
-    /// Ambient light meets the diffuse colour only where that is written.
-    WrittenAmbient = "written-ambient",
-    /// A camera ray is taken to run in air, also where the camera is inside glass.
-    AirAtEye = "air-at-eye",
-    /// The last line of an `.obj` is lost where no end of line follows it.
-    LostLastLine = "lost-last-line",
-    /// A face of an `.obj` has three corners: the others are passed over.
-    ThreeCorners = "three-corners",
-    /// Normals of an `.obj` belong to the vertices, number by number, whatever its faces say.
-    NormalsByVertex = "normals-by-vertex",
-    /// The sky's face `back` is mirrored, left for right, and `down` stands on its head, so that
-    /// neither meets its neighbours.
-    MirroredBack = "mirrored-back",
-    /// The background is black in depth pictures even where far is white.
-    BlackSky = "black-sky",
-    /// Where nothing is hit, a picture of normals shows the normal hit last, in rows from the
-    /// bottom.
-    StaleNormals = "stale-normals",
-    /// The range of a depth picture is cut to whole numbers.
-    WholeDepths = "whole-depths",
-    /// Rings of wood are cones, whose grain is stretched along the axis: the first material's share
-    /// is the square of sin(frequency (r + y / 20) + amplitude N(x, y / 5, z)) + 1/2, kept between
-    /// 0 and 1.
-    ConicRings = "conic-rings",
-    /// A checkerboard of two solid materials has its cells swapped, as in one official picture of
-    /// 2004 (`output6_18a`). On in no dialect: another picture of the same scene does not have it.
-    SwappedBoards = "swapped-boards",
-    /// Shading normals are transformed by the matrix itself, not by its inverse transpose. On in no
-    /// dialect: a usual mistake, which the lecture shows.
-    MovedNormals = "moved-normals",
-}
-
-impl Compat {
-    /// Its bit.
-    pub const fn bit(self) -> CompatSet {
-        1 << self as u8
-    }
-
-    /// The one of a name.
-    pub fn from_name(name: &str) -> Option<Compat> {
-        Compat::ALL.iter().find(|row| row.1 == name).map(|row| row.0)
-    }
-}
-
-const fn bits(list: &[Compat]) -> CompatSet {
-    let mut set = 0;
-    let mut i = 0;
-    while i < list.len() {
-        set |= list[i].bit();
-        i += 1;
-    }
-    set
 }
 
 impl Rules {
@@ -355,6 +257,7 @@ impl Rules {
             bounces: if self.bounces > 0 || self.secondary == Secondary::Colors { ours.bounces } else { 0 },
             file_normals: true,
             epsilon: None,
+            arithmetic: Arithmetic::Own,
             srgb_textures: true,
             paths: PathBase::SceneFile,
             ambient_textured: true,
@@ -381,6 +284,7 @@ const F04: Rules = Rules {
     falloff: Falloff::OnePlus,
     secondary: Secondary::Colors,
     epsilon: Some(1e-4),
+    arithmetic: Arithmetic::Own,
     normals_picture: NormalsPicture::Abs,
     depth_picture: DepthPicture::NearWhite,
     srgb_textures: false,
@@ -407,6 +311,7 @@ const F12A4: Rules = Rules {
     highlight: Highlight::Phong,
     falloff: Falloff::None,
     secondary: Secondary::None,
+    arithmetic: Arithmetic::Of2012,
     compat: bits(&[
         BorderPixels,
         ShadedSides,
@@ -419,6 +324,9 @@ const F12A4: Rules = Rules {
         MeshTextures,
         LostLastLine,
         ThreeCorners,
+        TiedTriangles,
+        ClampedDepths,
+        AnyValues,
     ]),
     ..F04
 };
@@ -448,6 +356,11 @@ const F12A5: Rules = Rules {
         LostLastLine,
         ThreeCorners,
         MirroredBack,
+        TiedTriangles,
+        RawRefraction,
+        OctreeHoles,
+        OddSizes,
+        AnyValues,
     ]),
     ..F12A4
 };
@@ -462,6 +375,7 @@ const F16: Rules = Rules {
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearBlack,
     paths: PathBase::SceneFile,
+    arithmetic: Arithmetic::Of2016,
     compat: bits(&[
         BorderPixels,
         ShadedSides,
@@ -476,6 +390,13 @@ const F16: Rules = Rules {
         LostLastLine,
         ThreeCorners,
         MirroredBack,
+        MovedStarts,
+        ClosedPlanes,
+        LongMirrors,
+        OctreeHoles,
+        AddedLights,
+        SpoiledNormals,
+        AnyValues,
     ]),
     ..F12A4
 };
@@ -488,6 +409,7 @@ const F23: Rules = Rules {
     falloff: Falloff::Bare(Some(20.0)),
     ambient_alone: false,
     paths: PathBase::Assets("assets/assignment4"),
+    arithmetic: Arithmetic::Of2020,
     compat: bits(&[
         BorderPixels,
         ShadedSides,
@@ -504,6 +426,12 @@ const F23: Rules = Rules {
         ThreeCorners,
         MirroredBack,
         NormalsByVertex,
+        MovedStarts,
+        ClosedPlanes,
+        MissingFalloff,
+        OctreeHoles,
+        TinyTransforms,
+        AnyValues,
     ]),
     ..F16
 };
@@ -521,6 +449,7 @@ const DURER: Rules = Rules {
     falloff: Falloff::OnePlus,
     secondary: Secondary::ByKeyword,
     epsilon: None,
+    arithmetic: Arithmetic::Own,
     normals_picture: NormalsPicture::Half,
     depth_picture: DepthPicture::NearWhite,
     srgb_textures: true,

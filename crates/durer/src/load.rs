@@ -151,8 +151,8 @@ pub fn load_text(
     let mut guess = None;
     let dialect = options.dialect.unwrap_or_else(|| {
         let found = match &json {
-            // The JSON document states its dialect.
-            Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new() },
+            // Nobody asked for it; the scene says it.
+            Some(json) => Guess { dialect: json.dialect(), reasons: Vec::new(), others: Vec::new(), hinted: false },
             None => course::guess(&bytes, file, &options.hints, &|name| source.contains(name)),
         };
         guess.insert(found).dialect

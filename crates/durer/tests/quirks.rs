@@ -280,27 +280,3 @@ fn meshes_are_read_as_each_program_read_them() {
     };
     assert_eq!((light(true), light(false)), (0.0, 1.0));
 }
-
-#[test]
-fn a_board_of_solids_has_its_cells_swapped_where_that_is_asked_for() {
-    let scene = |first: &str| {
-        format!(
-            "{CAMERA} Lights {{ numLights 0 }} Background {{ color 0 0 0 ambientLight 1 1 1 }}
-             Materials {{ numMaterials 5
-               PhongMaterial {{ diffuseColor 1 0 0 }} PhongMaterial {{ diffuseColor 0 1 0 }}
-               Wood {{ materialIndex 0 materialIndex 0 octaves 1 frequency 1 amplitude 0 }}
-               Wood {{ materialIndex 1 materialIndex 1 octaves 1 frequency 1 amplitude 0 }}
-               Checkerboard {{ materialIndex {first} materialIndex 3 }} }}
-             Group {{ numObjects 1 MaterialIndex 4 Plane {{ normal 0 1 0 offset 0.5 }} }}"
-        )
-    };
-    let at = |first: &str, swapped: bool| {
-        let compat = vec![(Compat::SwappedBoards, swapped)];
-        seen(&world_with(Path::new("."), &scene(first), Dialect::F04, compat, true), [0.5, 5.0, 0.5], DOWN)
-    };
-    let (plain, swapped) = (at("2", false), at("2", true));
-    assert_ne!(plain, swapped);
-    close(plain + swapped, [1.0, 1.0, 0.0]);
-    // A board with a missing material stays as it is.
-    assert_eq!(at("0", false), at("0", true));
-}

@@ -163,13 +163,14 @@ impl Given {
             .options
             .iter()
             .filter(|(row, _)| row.2 != set::ALL)
-            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0) })
+            .map(|(row, _)| Hint { set: row.2, why: format!("`{}` is an option of that year", row.0), weak: false })
             .collect();
         let extension = self.text("-output").and_then(|name| Path::new(name).extension()?.to_str());
+        let wanted = |set: DialectSet, format: &str| Hint { set, why: format!("it wants a {format} file"), weak: true };
         hints.extend(match extension {
-            Some("bmp") => Some(Hint { set: set::F12A4 | set::F12A5, why: "it wants a BMP file".into() }),
-            Some("png") => Some(Hint { set: set::F16 | set::F23, why: "it wants a PNG file".into() }),
-            Some("tga") => Some(Hint { set: set::OLD, why: "it wants a TGA file".into() }),
+            Some("bmp") => Some(wanted(set::F12A4 | set::F12A5, "BMP")),
+            Some("png") => Some(wanted(set::F16 | set::F23, "PNG")),
+            Some("tga") => Some(wanted(set::OLD, "TGA")),
             _ => None,
         });
         hints

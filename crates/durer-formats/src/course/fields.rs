@@ -6,7 +6,7 @@ use super::words::begins_block;
 use crate::report::shown;
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::describe::{DescribedList, Field, FileName, Kind, Rule, Value};
-use durer_scene::dialect::{Dialect, DialectSet};
+use durer_scene::dialect::{Compat, Dialect, DialectSet};
 use durer_scene::math::Vec3;
 
 /// Whether the old parsers wanted the fields in the order in which they are listed.
@@ -70,7 +70,7 @@ impl Reader<'_, '_> {
                 self.diagnostics.push(warning.related(first, "first given here"));
             }
             given[index] = Some(span);
-            if let Some(value) = self.value(field, &word, span) {
+            if let Some(value) = self.value(thing.keyword(Dialect::Durer), field, &word, span) {
                 thing.set(index, value);
             } else {
                 self.skip_values();
@@ -123,7 +123,10 @@ impl Reader<'_, '_> {
     /// Whether the token so many further on is a number.
     fn number_ahead(&self, count: usize) -> bool {
         let token = self.ahead(count).filter(|t| t.kind == TokenKind::Word);
-        token.is_some_and(|t| self.text(t.span).parse::<f32>().is_ok())
+        token.is_some_and(|t| {
+            let text = self.text(t.span);
+            text.parse::<f32>().is_ok() || hexadecimal(&text).is_some()
+        })
     }
 
     /// Whether the same thing goes on after the block or the number that comes next.
@@ -171,7 +174,7 @@ impl Reader<'_, '_> {
     }
 
     /// Reads a value of a field's kind and checks its rule.
-    fn value(&mut self, field: &Field, word: &str, keyword: Span) -> Option<Value> {
+    fn value(&mut self, thing: &str, field: &Field, word: &str, keyword: Span) -> Option<Value> {
         let start = self.peek().map_or(keyword, |t| t.span);
         let value = match field.kind {
             Kind::Float => Value::Float(self.number(word, 1, 1)?),
@@ -194,6 +197,11 @@ impl Reader<'_, '_> {
             && let Err(violation) = field.rule.validate(&value)
         {
             let span = start.to(self.last_span());
+            if let Some(drawn) = self.any_values().then(|| field.drawn_anyway(thing, &value)).flatten() {
+                let warning = Diagnostic::warning(format!("`{word}` {violation}")).code("bad-value").at(span);
+                self.diagnostics.push(warning.effect("drawn all the same, as by the official program"));
+                return Some(drawn);
+            }
             let error = Diagnostic::error(format!("`{word}` {violation}")).code("bad-value").at(span);
             // Where only the sign is wrong, it is clear what was meant.
             self.error(match value {
@@ -287,11 +295,23 @@ impl Reader<'_, '_> {
         value
     }
 
+    /// True under `any-values`: values that mean nothing are drawn.
+    pub(super) fn any_values(&self) -> bool {
+        self.options.compat & Compat::AnyValues.bit() != 0
+    }
+
     /// The i-th of `count` finite numbers.
     pub(super) fn number(&mut self, word: &str, i: usize, count: usize) -> Option<f32> {
         let text = self.peek_word().unwrap_or_default();
         // Rust also parses words such as `inf` and `nan`: a number has a digit first.
         let numeric = text.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
+        // C's `scanf`, which reads all years before 2020, knows hexadecimal numbers.
+        if let Some(value) = hexadecimal(&text).filter(|_| self.any_values() && self.options.dialect != Dialect::F23) {
+            let span = self.advance();
+            let warning = Diagnostic::warning(format!("{} is a hexadecimal number", shown(text.as_bytes()))).at(span);
+            self.diagnostics.push(warning.effect(format!("read as {value}, as by the official program")));
+            return Some(value);
+        }
         match text.parse::<f32>() {
             Ok(value) if numeric && value.is_finite() => {
                 self.advance();
@@ -418,4 +438,29 @@ fn example(field: &str) -> Option<&'static str> {
         "obj_file" => "cube.obj",
         _ => return None,
     })
+}
+
+/// A finite number in hexadecimal digits, with a power of two behind `p`: 0x1.8p-3.
+fn hexadecimal(text: &str) -> Option<f32> {
+    let (sign, rest) = match text.strip_prefix(['-', '+']) {
+        Some(rest) => (if text.starts_with('-') { -1.0 } else { 1.0 }, rest),
+        None => (1.0, text),
+    };
+    let digits = rest.strip_prefix("0x").or_else(|| rest.strip_prefix("0X"))?;
+    let (digits, power) = match digits.split_once(['p', 'P']) {
+        Some((digits, power)) => (digits, power.parse::<i32>().ok()?),
+        None => (digits, 0),
+    };
+    let (whole, part) = digits.split_once('.').unwrap_or((digits, ""));
+    if whole.len() + part.len() == 0 || whole.len() + part.len() > 12 {
+        return None;
+    }
+    let mut value = 0.0_f64;
+    for digit in whole.chars().chain(part.chars()) {
+        value = 16.0 * value + f64::from(digit.to_digit(16)?);
+    }
+    let power = power.clamp(-1100, 1000) - 4 * part.len() as i32;
+    let factor = if power < 0 { 0.5 } else { 2.0 };
+    let value = (0..power.abs()).fold(sign * value, |value, _| value * factor) as f32;
+    value.is_finite().then_some(value)
 }

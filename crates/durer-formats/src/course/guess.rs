@@ -13,6 +13,8 @@ pub struct Hint {
     pub set: DialectSet,
     /// Why, as the end of a sentence.
     pub why: String,
+    /// True for hints that count only where something else tells the years apart.
+    pub weak: bool,
 }
 
 /// A guess and its reasons.
@@ -24,6 +26,8 @@ pub struct Guess {
     pub reasons: Vec<(String, Option<Span>)>,
     /// Other dialects that would have done as well.
     pub others: Vec<Dialect>,
+    /// True where hints led to another dialect than the words alone.
+    pub hinted: bool,
 }
 
 impl Guess {
@@ -120,11 +124,18 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
         let keep = if nodes { set::F23 } else { 0 };
         narrow(keep, "it has comments, which the course's language lacks".into(), Some(comment.span));
     }
+    // The year that divides by a missing number would show black: it is not what is meant.
+    let sane = left & !if lacks_falloff(&text, tokens.len()) { set::F16 } else { 0 };
+    if sane != 0 {
+        left = sane;
+    }
+    let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
+    let by_words = first(left);
     for hint in hints {
         // What contradicts the file and the hints before it tells nothing: options may be another
         // year's.
         let keep = left & hint.set;
-        if keep != 0 && keep != left {
+        if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
             reasons.push((hint.set, hint.why.clone(), None));
         }
@@ -139,7 +150,13 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     let reasons = reasons.into_iter().map(|(_, why, span)| (why, span)).collect();
     let mut candidates = PREFERENCE.into_iter().filter(|d| d.is_in(left));
     let dialect = candidates.next().unwrap_or(Dialect::Durer);
-    Guess { dialect, reasons, others: candidates.collect() }
+    Guess { dialect, reasons, others: candidates.collect(), hinted: by_words.is_some_and(|first| first != dialect) }
+}
+
+/// True if some point light has no `falloff`.
+fn lacks_falloff<'a>(text: &impl Fn(usize) -> std::borrow::Cow<'a, str>, count: usize) -> bool {
+    let block = |start: usize| (start..count).map(text).take_while(|word| *word != "}");
+    (0..count).any(|i| text(i) == "PointLight" && block(i).all(|word| word != "falloff"))
 }
 
 fn names(set: DialectSet) -> String {

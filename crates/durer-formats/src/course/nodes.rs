@@ -48,7 +48,11 @@ impl Reader<'_, '_> {
     /// Rules of products of matrices, by the quirks that are asked for.
     fn matrix_rules(&self) -> MatrixRules {
         let has = |compat: Compat| self.options.compat & compat.bit() != 0;
-        MatrixRules { matrix_on_left: has(Compat::MatrixOnLeft), dropped_shear: has(Compat::DroppedShear) }
+        MatrixRules {
+            matrix_on_left: has(Compat::MatrixOnLeft),
+            dropped_shear: has(Compat::DroppedShear),
+            dropped_tiny: has(Compat::TinyTransforms),
+        }
     }
 
     fn root_node(&mut self, keyword: Span) {

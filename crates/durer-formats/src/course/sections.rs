@@ -7,7 +7,7 @@ use super::words::{OURS, SECTIONS, camera_of, home_of, is_section};
 use durer_diag::{Diagnostic, Span, did_you_mean};
 use durer_scene::camera::Camera;
 use durer_scene::describe::{DescribedList, FileName};
-use durer_scene::dialect::{Dialect, DialectSet, set};
+use durer_scene::dialect::{Compat, Dialect, DialectSet, set};
 use durer_scene::light::Light;
 use durer_scene::material::presets;
 use durer_scene::material::{ColorNoise, HairMaterial, PhongMaterial, PrincipledMaterial, Solid};
@@ -185,7 +185,10 @@ impl Reader<'_, '_> {
             lights.push(Spanned { value: light, span });
             true
         });
-        self.scene.lights = Some(lights);
+        let added = self.options.compat & Compat::AddedLights.bit() != 0;
+        let mut known = self.scene.lights.take().filter(|_| added).unwrap_or_default();
+        known.extend(lights);
+        self.scene.lights = Some(known);
     }
 
     fn textures(&mut self, keyword: Span) {

@@ -69,7 +69,12 @@ impl Reader<'_, '_> {
     /// Complains of a matrix that flattens space, by its own.
     pub(super) fn check_flat(&mut self, op: Option<MatrixOp>, span: Span) {
         if let Some(error) = op.and_then(flat) {
-            self.error(error.at(span.to(self.last_span())));
+            let at = span.to(self.last_span());
+            if self.any_values() {
+                let warning = Diagnostic::warning(error.message).code("flat-transform").at(at);
+                return self.diagnostics.push(warning.effect("done all the same, as by the official program"));
+            }
+            self.error(error.at(at));
         }
     }
 

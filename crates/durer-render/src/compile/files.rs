@@ -8,7 +8,7 @@ use durer_bvh::BuildQuality;
 use durer_diag::{Diagnostic, Diagnostics, Severity, at_least, at_most};
 use durer_image::{self as image, Encoded};
 use durer_scene::describe::FileName;
-use durer_scene::dialect::{Compat, Rules};
+use durer_scene::dialect::{Compat, MeshNormals, Rules};
 use durer_scene::light::{Emitter as _, Light, Profile};
 use durer_scene::math::Aabb;
 use durer_scene::medium::DensityGrid;
@@ -106,7 +106,11 @@ impl<'r> Loader<'r> {
             }
             let by_vertex =
                 self.rules.has(Compat::NormalsByVertex) && Arc::make_mut(&mut data).give_normals_by_vertex();
-            let mesh = Mesh::new(data, self.rules.mesh_normals, self.rules.file_normals || by_vertex);
+            let normals = match self.rules.mesh_normals {
+                MeshNormals::SmoothByFace if self.rules.has(Compat::SpoiledNormals) => MeshNormals::SpoiledByFace,
+                rule => rule,
+            };
+            let mesh = Mesh::new(data, normals, self.rules.file_normals || by_vertex);
             let mesh = self.centered(mesh);
             // The official program takes smaller determinants for zero.
             let least_volume = if self.rules.has(Compat::ThinTriangles) { 1e-6 } else { 0.0 };

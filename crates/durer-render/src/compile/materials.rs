@@ -8,9 +8,8 @@ use durer_diag::Diagnostics;
 use durer_scene::bsdf::Tables;
 use durer_scene::bsdf::lobe::hair::Fibre;
 use durer_scene::dialect::{Compat, Highlight, Rules, Secondary};
-use durer_scene::material::checkerboard::Checkerboard;
 use durer_scene::material::principled::{Switch, Walls};
-use durer_scene::material::{ColorNoise, Parameters, Pattern, PhongMaterial, PrincipledMaterial, Solid};
+use durer_scene::material::{ColorNoise, Parameters, PhongMaterial, PrincipledMaterial, Solid};
 use durer_scene::math::Color;
 use durer_scene::scene::{self, MatrixOp, Scene};
 use std::sync::Arc;
@@ -34,7 +33,7 @@ pub(super) fn compile(
                 Solid::Mix(mix) => mix.share_texture.as_ref().and_then(|name| loader.number_map(name, diagnostics)),
                 _ => None,
             };
-            Material::Solid(meant(solid, scene, rules), to_pattern, picture)
+            Material::Solid(solid.clone(), to_pattern, picture)
         }
         scene::Material::Principled(layers) => {
             let maps = loader.maps(layers, diagnostics);
@@ -78,20 +77,6 @@ pub(super) fn compile(
         }
     };
     scene.materials.iter().map(&mut one).collect()
-}
-
-/// Swaps a pattern's materials if the dialect's program does.
-fn meant(solid: &Solid, scene: &Scene, rules: &Rules) -> Solid {
-    let is_solid =
-        |i: u32| matches!(scene.materials.get(i as usize).map(|m| &m.value), Some(scene::Material::Solid(..)));
-    match solid {
-        Solid::Checkerboard(board)
-            if rules.has(Compat::SwappedBoards) && solid.materials().into_iter().all(is_solid) =>
-        {
-            Checkerboard { material1: board.material2, material2: board.material1 }.into()
-        }
-        _ => solid.clone(),
-    }
 }
 
 fn phong_of(m: &PhongMaterial, noise: Option<ColorNoise>, texture: Option<u32>, rules: &Rules) -> Phong {

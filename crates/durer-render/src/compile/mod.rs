@@ -12,7 +12,7 @@ mod solids;
 #[doc(hidden)]
 pub mod testing;
 
-use crate::world::{Accel, Assets, Contents, Few, Geometry, Object, Phong, World};
+use crate::world::{Accel, Assets, Contents, CourseHits, Few, Geometry, Matrix, Object, Phong, Vectors, World};
 use durer_bvh::{Bvh, Grid, PrimitivePacks};
 use durer_diag::{Diagnostic, Diagnostics, Files, Span};
 use durer_scene::asset::AssetDecoder;
@@ -91,7 +91,7 @@ pub fn compile(
         }));
         return None;
     };
-    let invalid = scene.validate();
+    let invalid = scene.validate_as(rules.compat);
     if invalid.has_errors() {
         diagnostics.extend(invalid);
         return None;
@@ -107,6 +107,7 @@ pub fn compile(
         plain_needed: false,
         bare: None,
         transforms: 0,
+        matrices: Some(Vec::new()),
         open_edges: HashMap::new(),
     };
     match &scene.root {
@@ -176,6 +177,7 @@ pub fn compile(
         materials: compiled,
         objects,
         camera_rules: rules::camera_rules(rules),
+        hits: rules::hit_rules(rules),
         shading: rules::shading_rules(rules),
         display: rules::display_rules(rules, scene.lumens),
         rules: rules.clone(),
@@ -192,6 +194,12 @@ pub fn compile(
 /// Builds the acceleration structure over a world's objects, also after they have moved.
 pub fn rebuild(world: &mut World, kind: AccelKind) -> Result<(), Box<Diagnostic>> {
     let objects = world.objects();
+    if let Some(rules) = world.hit_rules() {
+        let accel = Accel::Course(CourseHits::new(rules, objects));
+        (world.packs, world.few, world.loose) = (PrimitivePacks::default(), None, Vec::new());
+        (world.accel, world.spheres) = (accel, Vec::new());
+        return Ok(());
+    }
     let mut boxes: Vec<Option<Aabb>> = objects.iter().map(Object::bounds).collect();
     let bounded = || objects.iter().zip(&boxes).filter(|(_, bounds)| bounds.is_some());
     let (simple, others): (Vec<u32>, Vec<u32>) =
@@ -356,14 +364,22 @@ fn lights(scene: &Scene, rules: &Rules, diagnostics: &mut Diagnostics) -> (Vec<L
             let message = "this light reaches nothing: its color is 0 0 0";
             diagnostics.push(Diagnostic::warning(message).code("black-light").at(light.span));
         }
-        let missing = matches!(&light.value, Light::Point(point) if point.falloff.is_none());
-        if missing && rules.has(Compat::MissingFalloff) {
-            let message = "this light has no `falloff`, and divides by zero as the official program does";
-            let warning = Diagnostic::warning(message).code("no-falloff").at(light.span);
-            diagnostics.push(warning.help("the picture will be black; write `falloff 1`, say"));
+    }
+    let compiled: Vec<Light> = written.iter().map(|light| rules::light(&light.value, rules)).collect();
+    for (light, written) in compiled.iter().zip(written) {
+        let Light::Point(lamp) = light else { continue };
+        if lamp.attenuation == Some(Vec3::ZERO) && rules.has(Compat::MissingFalloff) {
+            let word = if is_nodes(rules) { "attenuation" } else { "falloff" };
+            let message = match &written.value {
+                Light::Point(lamp) if lamp.falloff.is_some() => format!("the `{word}` of this light is 0"),
+                _ => format!("this light has no `{word}`"),
+            };
+            let message = format!("{message}, and it divides by zero as the official program does");
+            let warning = Diagnostic::warning(message).code("no-falloff").at(written.span);
+            diagnostics.push(warning.help(format!("the picture will be black; write `{word} 1`, say")));
         }
     }
-    (written.iter().map(|light| rules::light(&light.value, rules)).collect(), scene.background.ambient_light)
+    (compiled, scene.background.ambient_light)
 }
 
 /// Flattens nested groups and transforms into a list.
@@ -379,7 +395,10 @@ struct SceneFlattener<'a, 'r> {
     bare: Option<(Span, usize)>,
     /// Number of transforms around the current object.
     transforms: u32,
-    /// An open edge of each checked mesh, by path; `None` for closed meshes.
+    /// Their matrices as an official program multiplies them, the outermost first; `None` inside a
+    /// solid, which the course has not.
+    matrices: Option<Vec<Matrix>>,
+    /// An edge at which a mesh is open, if there is one, by its path.
     open_edges: HashMap<String, Option<[Vec3; 2]>>,
 }
 
@@ -416,10 +435,18 @@ impl SceneFlattener<'_, '_> {
             Node::Group(group) => self.group(group, to_world),
             Node::Transform(ops, inner) => {
                 self.transforms += 1;
+                let vectors = rules::hit_rules(self.rules).map_or(Vectors::Vecmath, |rules| rules.vectors);
+                let own = Matrix::of(ops, rules::matrix_rules(self.rules), vectors);
+                self.matrices.iter_mut().for_each(|matrices| matrices.push(own));
                 self.object(inner, to_world * self.product(ops));
+                self.matrices.iter_mut().for_each(|matrices| _ = matrices.pop());
                 self.transforms -= 1;
             }
-            Node::Solid(operation, parts) => self.solid(object.span, *operation, parts, to_world),
+            Node::Solid(operation, parts) => {
+                let around = self.matrices.take();
+                self.solid(object.span, *operation, parts, to_world);
+                self.matrices = around;
+            }
             _ => {
                 let shape = self.shape(object, to_world);
                 self.objects.extend(shape);
@@ -459,12 +486,19 @@ impl SceneFlattener<'_, '_> {
             }
             other => (other, Vec3::ZERO),
         };
+        let matrices = self.matrices_around(to_world);
         let to_world = to_world * DAffine3::from_translation(center.as_dvec3());
         let to_world = match to_world == DAffine3::IDENTITY {
             true => None,
             false => match Affine::new(to_world) {
                 Some(affine) if affine.is_identity() => None,
                 Some(affine) => Some(affine),
+                None if self.rules.has(Compat::AnyValues) && !matrices.is_empty() => {
+                    let message = "the transforms around this object flatten space";
+                    let warning = Diagnostic::warning(message).code("flat-transform").at(object.span);
+                    self.diagnostics.push(warning.effect("rays are divided by zero, as by the official program"));
+                    None
+                }
                 None => {
                     let message = "the transforms around this object flatten space, or leave the range of numbers";
                     self.diagnostics.push(Diagnostic::error(message).code("flat-transform").at(object.span));
@@ -486,9 +520,23 @@ impl SceneFlattener<'_, '_> {
             Node::Primitive(Primitive::Plane(plane)) if self.transforms == 0 && self.rules.has(Compat::RawNormals) => {
                 plane.normal.length()
             }
+            _ if to_world.is_none() && !matrices.iter().all(Matrix::is_regular) => f32::NAN,
             _ => 1.0,
         };
-        Some(Object { geometry, to_world, center, material, normal_length, span: object.span })
+        Some(Object { geometry, to_world, matrices, center, material, normal_length, span: object.span })
+    }
+
+    /// The matrices around an object, where an official program's arithmetic is wanted: each, or
+    /// with glm their product.
+    fn matrices_around(&self, to_world: DAffine3) -> Vec<Matrix> {
+        let Some(rules) = rules::hit_rules(self.rules) else { return Vec::new() };
+        match (&self.matrices, rules.vectors) {
+            (None, _) => vec![Matrix::from(to_world)],
+            (Some(matrices), Vectors::Vecmath) => matrices.clone(),
+            (Some(matrices), Vectors::Glm) => {
+                vec![matrices.iter().fold(Matrix::IDENTITY, |outer, inner| outer.times(inner, rules.vectors))]
+            }
+        }
     }
 }
 

@@ -1,10 +1,10 @@
 //! What a scene's dialect means to each part of the renderer. Dialects end here: everything behind
 //! this module sees plain values.
 
-use crate::world::{Contents, DisplayRules, ShadingRules};
-use durer_scene::camera::{CameraRules, UpRule};
-use durer_scene::dialect::{Compat, Falloff, Rules};
-use durer_scene::light::{Emitter as _, Light, PointLight};
+use crate::world::{Contents, DisplayRules, Epsilon, HitRules, ShadingRules, Vectors};
+use durer_scene::camera::{Aim, CameraRules, UpRule};
+use durer_scene::dialect::{Arithmetic, Compat, Falloff, Rules};
+use durer_scene::light::{DirectionalLight, Emitter as _, Light, PointLight};
 use durer_scene::math::Vec3;
 use durer_scene::scene::MatrixRules;
 
@@ -17,7 +17,13 @@ pub fn camera_rules(rules: &Rules) -> CameraRules {
     };
     CameraRules {
         up,
-        screen_point: rules.has(Compat::ScreenPoint),
+        aim: match rules.arithmetic {
+            Arithmetic::Own if rules.has(Compat::ScreenPoint) => Aim::ScreenPoint,
+            Arithmetic::Own => Aim::Own,
+            Arithmetic::Of2012 => Aim::Of2012,
+            Arithmetic::Of2016 => Aim::Of2016,
+            Arithmetic::Of2020 => Aim::Of2020,
+        },
         border_pixels: rules.has(Compat::BorderPixels),
         stretch: rules.has(Compat::Stretch),
     }
@@ -25,21 +31,48 @@ pub fn camera_rules(rules: &Rules) -> CameraRules {
 
 /// Rules of products of matrices.
 pub fn matrix_rules(rules: &Rules) -> MatrixRules {
-    MatrixRules { matrix_on_left: rules.has(Compat::MatrixOnLeft), dropped_shear: rules.has(Compat::DroppedShear) }
+    MatrixRules {
+        matrix_on_left: rules.has(Compat::MatrixOnLeft),
+        dropped_shear: rules.has(Compat::DroppedShear),
+        dropped_tiny: rules.has(Compat::TinyTransforms),
+    }
+}
+
+/// How an official program finds hits; `None` where our own ways do.
+pub fn hit_rules(rules: &Rules) -> Option<HitRules> {
+    let vectors = match rules.arithmetic {
+        Arithmetic::Own => return None,
+        Arithmetic::Of2012 | Arithmetic::Of2016 => Vectors::Vecmath,
+        Arithmetic::Of2020 => Vectors::Glm,
+    };
+    Some(HitRules {
+        vectors,
+        triangle_matrix: rules.arithmetic == Arithmetic::Of2012,
+        tied_triangles: rules.has(Compat::TiedTriangles),
+        closed_planes: rules.has(Compat::ClosedPlanes),
+        far_spheres: rules.arithmetic == Arithmetic::Of2016,
+        octree: rules.has(Compat::OctreeHoles),
+    })
 }
 
 /// Rules of hits and of Whitted's integrator.
 pub fn shading_rules(rules: &Rules) -> ShadingRules {
     let official = rules.is_official();
     ShadingRules {
-        epsilon: rules.epsilon,
+        epsilon: rules.epsilon.map(match rules.has(Compat::MovedStarts) {
+            true => Epsilon::Along,
+            false => Epsilon::Least,
+        }),
         points_on_ray: official,
         one_medium: official,
         weight_by_length: official,
         shaded_sides: rules.has(Compat::ShadedSides),
         black_backs: rules.has(Compat::BlackBacks),
+        spoiled_normals: rules.has(Compat::SpoiledNormals),
         unit_light: rules.has(Compat::UnitLight),
         raw_normals: rules.has(Compat::RawNormals),
+        raw_refraction: rules.has(Compat::RawRefraction),
+        long_mirrors: rules.has(Compat::LongMirrors),
         exit_r0: rules.has(Compat::ExitR0),
         shadow_fronts: rules.has(Compat::ShadowFronts),
         air_at_eye: rules.has(Compat::AirAtEye),
@@ -58,6 +91,7 @@ pub fn display_rules(rules: &Rules, lumens: Option<Vec3>) -> DisplayRules {
         whole_depths: rules.has(Compat::WholeDepths),
         black_sky: rules.has(Compat::BlackSky),
         stale_normals: rules.has(Compat::StaleNormals),
+        clamped_depths: rules.has(Compat::ClampedDepths),
         lumens,
     }
 }
@@ -66,6 +100,7 @@ impl Contents {
     /// Resolves other rules; the camera's axes, lights, materials and objects stay as they are.
     pub fn set_rules(&mut self, rules: Rules) {
         self.camera_rules = camera_rules(&rules);
+        self.hits = hit_rules(&rules);
         self.shading = shading_rules(&rules);
         self.display = display_rules(&rules, self.display.lumens);
         self.rules = rules;
@@ -77,6 +112,10 @@ pub(super) fn light(light: &Light, rules: &Rules) -> Light {
     match light {
         Light::Point(lamp) if lamp.candela.or(lamp.lumens).is_none() => {
             PointLight { attenuation: attenuation(lamp, rules), falloff: None, ..lamp.clone() }.into()
+        }
+        // Its direction becomes no number, and so does all light from there.
+        Light::Directional(sun) if sun.direction == Vec3::ZERO => {
+            DirectionalLight { color: Vec3::NAN, ..sun.clone() }.into()
         }
         light => light.in_units(),
     }

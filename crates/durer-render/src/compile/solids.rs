@@ -61,7 +61,8 @@ impl SceneFlattener<'_, '_> {
             return;
         }
         let geometry = Geometry::Solid(Arc::new(Csg::new(piece)));
-        self.objects.push(Object { geometry, to_world: None, center: Vec3::ZERO, material, normal_length: 1.0, span });
+        let (to_world, matrices, center) = (None, Vec::new(), Vec3::ZERO);
+        self.objects.push(Object { geometry, to_world, matrices, center, material, normal_length: 1.0, span });
     }
 
     fn check_count(&mut self, span: Span, operation: Operation, parts: &[scene::Object]) {

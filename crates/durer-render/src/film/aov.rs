@@ -285,6 +285,11 @@ fn depth_picture(depth: Vec3, hit: bool, display: &Display) -> Color {
         Some(range) => range,
         None => (least, if greatest > least { greatest } else { least + 1.0 }),
     };
+    let depth = match display.depth_range {
+        Some((min, _)) if look.clamped_depths && depth.x < min => Vec3::splat(min),
+        Some((_, max)) if look.clamped_depths && depth.x > max => Vec3::splat(max),
+        _ => depth,
+    };
     Vec3::splat(match look.depth {
         DepthPicture::NearWhite if !hit => 0.0,
         DepthPicture::NearWhite => ((max - depth.x) / (max - min)).clamp(0.0, 1.0),

@@ -8,7 +8,8 @@
 //!
 //! [`Shape::centered`]: durer_scene::shape::Shape::centered
 
-use durer_scene::math::{Ray64, Side, Vec3, gamma};
+use crate::world::Epsilon;
+use durer_scene::math::{Ray, Ray64, Side, Vec3, gamma};
 use durer_scene::shape::Surface;
 use glam::DVec3;
 
@@ -18,9 +19,13 @@ use glam::DVec3;
 /// `epsilon` do not count. Without it, the ray starts off the surface by a bound on the point's
 /// error, and every hit counts.
 #[inline(always)]
-pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>) -> Ray64 {
-    if let Some(epsilon) = epsilon {
-        return Ray64::new(surface.point(), dir, epsilon, t_max);
+pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<Epsilon>) -> Ray64 {
+    match epsilon {
+        Some(Epsilon::Least(t_min)) => return Ray64::new(surface.point(), dir, t_min, t_max),
+        Some(Epsilon::Along(way)) => {
+            return Ray { t_max, ..Ray::new(surface.position + way * dir, dir) }.into();
+        }
+        None => {}
     }
     from(surface, Vec3::ZERO, dir, t_max, dir.dot(surface.n_geo) < 0.0)
 }
@@ -30,7 +35,7 @@ pub fn spawn_ray(surface: &Surface, dir: Vec3, t_max: f32, epsilon: Option<f32>)
 /// light. If the triangle itself faces away, it occludes the ray: no light leaks in along the
 /// terminator.
 #[inline(always)]
-pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<f32>) -> Ray64 {
+pub fn to_light(surface: &Surface, dir: Vec3, distance: f32, epsilon: Option<Epsilon>) -> Ray64 {
     match epsilon {
         Some(_) => spawn_ray(surface, dir, distance, epsilon),
         None => from_bent_surface(surface, dir, distance, dir.dot(surface.n_shade) < 0.0),

@@ -312,7 +312,7 @@ impl<'w> Whitted<'w> {
                 if (dark || seen.color == Color::ZERO) && !T::LISTENS {
                     continue;
                 }
-                shadows[count] = self.shadow_ray(surface, &seen);
+                shadows[count] = self.shadow_ray(surface, number, &seen);
                 lit[count] = (i, seen);
                 count += 1;
             }
@@ -349,7 +349,7 @@ impl<'w> Whitted<'w> {
             if T::LISTENS {
                 let parent = queue.segment(point.segment).node;
                 let node = tally.begin(parent, || {
-                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, seen, visible));
+                    let shadow = self.settings.shadows.then(|| self.shadow(&point.at.surface, number, seen, visible));
                     let (to_light, distance) = (seen.to_light, seen.distance);
                     TermKind::Light { light: number, to_light, distance, share, shadow }
                 });
@@ -374,7 +374,8 @@ impl<'w> Whitted<'w> {
         let from_behind = self.sees_back(at);
         let n = if from_behind && shade_back { -n_shade } else { n_shade };
         let n = if rules.unit_light { n.normalize_or(n) } else { n };
-        Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back }
+        let spoiled = rules.spoiled_normals && n.is_nan();
+        Side { n, from_behind, black: from_behind && rules.black_backs && !shade_back || spoiled }
     }
 
     /// Returns true if a ray hits the back of a surface.

@@ -1,6 +1,6 @@
 //! Contents of a world, and its identity.
 
-use super::{DisplayRules, Geometry, Material, Object, ShadingRules, World};
+use super::{DisplayRules, Geometry, HitRules, Material, Object, ShadingRules, World};
 use durer_scene::camera::{Camera, CameraBasis, CameraRules};
 use durer_scene::dialect::Rules;
 use durer_scene::light::{Light, Profile};
@@ -33,6 +33,8 @@ pub struct Contents {
     pub objects: Vec<Object>,
     /// Rules of the camera and the raster.
     pub camera_rules: CameraRules,
+    /// How an official program finds hits, where its hits are wanted.
+    pub hits: Option<HitRules>,
     /// Rules of hits and of Whitted's integrator.
     pub shading: ShadingRules,
     /// Rules for displaying AOVs.
@@ -75,16 +77,16 @@ impl World {
             return self.source;
         }
         let Contents { camera, frame, background, ambient, lights, materials, objects, rules, .. } = &self.contents;
-        let resolved = (self.contents.camera_rules, self.contents.shading, self.contents.display);
+        let resolved = (self.contents.camera_rules, self.contents.hits, self.contents.shading, self.contents.display);
         let mut text =
             format!("{:?}", (self.source, camera, frame, background, ambient, lights, materials, rules, resolved));
-        for Object { geometry, to_world, center, material, normal_length, span: _ } in objects {
+        for Object { geometry, to_world, matrices, center, material, normal_length, span: _ } in objects {
             let geometry = match geometry {
                 Geometry::Mesh(tree) => tree.mesh.digest().to_string(),
                 other => format!("{other:?}"),
             };
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{:?}", (geometry, to_world, center, material, normal_length));
+            // Text can always be written into text.
+            let _ = write!(text, "{:?}", (geometry, to_world, matrices, center, material, normal_length));
         }
         Digest::of(text.as_bytes())
     }
@@ -134,7 +136,12 @@ impl World {
         self.contents.camera_rules
     }
 
-    /// Returns the rules of hits and of Whitted's integrator.
+    /// How an official program finds hits, where its hits are wanted.
+    pub fn hit_rules(&self) -> Option<HitRules> {
+        self.contents.hits
+    }
+
+    /// Rules of hits and of Whitted's integrator.
     pub fn shading_rules(&self) -> &ShadingRules {
         &self.contents.shading
     }

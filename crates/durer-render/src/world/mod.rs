@@ -1,6 +1,7 @@
 //! The compiled scene: immutable, with indices instead of names, for queries from many threads.
 
 mod contents;
+mod course;
 pub mod csg;
 pub mod emitters;
 mod interaction;
@@ -14,6 +15,7 @@ pub mod solid;
 mod together;
 
 pub use contents::{Assets, Contents};
+pub use course::{CourseHits, HitRules, Matrix, Vectors};
 use durer_bvh::{Bvh, Grid, PrimitivePacks, TraversalCounter};
 use durer_scene::light::{Emitter as _, Illumination, Light};
 use durer_scene::material::{Pattern, Solid};
@@ -26,7 +28,7 @@ use glam::DVec3;
 pub use interaction::Interaction;
 pub use material::{Emission, HighlightModel, Map, Maps, Material, MaterialMix, Phong, Principled, WeightedMaterial};
 pub use object::{Geometry, MeshTree, Object};
-pub use rules::{DisplayRules, ShadingRules};
+pub use rules::{DisplayRules, Epsilon, ShadingRules};
 pub use shading::Shading;
 use std::sync::OnceLock;
 pub(crate) use together::{Few, TOGETHER};
@@ -76,6 +78,8 @@ pub enum Accel {
     },
     /// Brute force.
     None,
+    /// Every object is tested as an official program does.
+    Course(CourseHits),
 }
 
 /// A hit of a ray.
@@ -223,6 +227,7 @@ impl World {
                     ray.rounded.t_max
                 });
             }
+            Accel::Course(hits) => best = hits.closest(self.objects(), ray, counter),
             Accel::None => {
                 for (i, object) in self.objects().iter().enumerate().filter(|(_, o)| o.bounds().is_some()) {
                     for part in 0..object.parts() {
@@ -282,6 +287,7 @@ impl World {
                 found |= self.objects()[object as usize].part((object, part), ray, counter).is_some();
                 if found { f32::NEG_INFINITY } else { t_max }
             }),
+            Accel::Course(hits) => found = hits.closest(self.objects(), ray, counter).is_some(),
             Accel::None => {
                 found = self
                     .objects()

@@ -1,12 +1,12 @@
 //! Objects of a world, and their intersection with rays.
 
-use super::ShadingRules;
 use super::csg::Csg;
+use super::{Matrix, ShadingRules};
 use durer_bvh::{BuildQuality, PrimitivePacks, TraversalCounter, TriangleBvh};
 use durer_scene::dialect::MeshNormals;
 use durer_scene::math::{Aabb, Affine, Line, Ray, Ray64, Vec2, Vec3, gamma};
 use durer_scene::shape::{Axis, Mesh, Primitive, Shape, ShapeHit, Sphere, Surface, Uv};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use std::sync::{Arc, OnceLock};
 
 /// An object of the world.
@@ -16,7 +16,10 @@ pub struct Object {
     pub geometry: Geometry,
     /// Transform from object to world space; `None` for the identity.
     pub to_world: Option<Affine>,
-    /// Offset by which its geometry was moved to the origin of object space; [`Object::to_world`]
+    /// The transforms around it as an official program multiplies them, the outermost first; empty
+    /// where nobody asks for its arithmetic. That of a flat one has no `to_world`.
+    pub matrices: Vec<Matrix>,
+    /// How far its geometry was moved to lie about the origin of object space; [`Object::to_world`]
     /// moves it back.
     pub center: Vec3,
     /// Index of its material; the parts of a solid have their own.
@@ -147,7 +150,17 @@ impl Object {
         }
     }
 
-    /// Transforms a point from object to world space.
+    /// Places it anew in the world.
+    pub fn place_at(&mut self, place: DAffine3) {
+        // What was moved about the origin is moved back first.
+        let centered = place * DAffine3::from_translation(self.center.as_dvec3());
+        self.to_world = Affine::new(centered).filter(|affine| !affine.is_identity());
+        if !self.matrices.is_empty() {
+            self.matrices = vec![Matrix::from(place)];
+        }
+    }
+
+    /// A point of object space in world space.
     pub fn world_point(&self, p: Vec3) -> Vec3 {
         self.to_world.as_ref().map_or(p, |to_world| to_world.point(p))
     }
@@ -182,7 +195,13 @@ impl Object {
             Geometry::Primitive(Primitive::Sphere(sphere)) => *surface = sphere.surface(point, crossing),
             Geometry::Primitive(Primitive::Plane(plane)) => *surface = plane.surface(point, crossing),
             Geometry::Primitive(shape) => *surface = shape.surface(point, crossing),
-            Geometry::Mesh(tree) => *surface = tree.mesh.surface(part, crossing),
+            Geometry::Mesh(tree) => {
+                *surface = tree.mesh.surface(part, crossing);
+                let mixed = || tree.mesh.mixed_normal(part, crossing.uv);
+                if rules.spoiled_normals && mixed().is_some_and(Vec3::is_nan) {
+                    surface.n_shade = Vec3::NAN;
+                }
+            }
             Geometry::Solid(solid) => *surface = solid.surface(ray, crossing, part, rules),
         }
     }
@@ -203,6 +222,7 @@ impl Object {
                 surface.n_shade = shading(to_world, surface.n_shade);
             }
             surface.position = ray.rounded.at(crossing.t);
+            surface.rest = Vec3::ZERO;
             surface.n_shade *= self.normal_length;
             if rules.mesh_textures && matches!(self.geometry, Geometry::Primitive(_)) {
                 surface.uv = Uv::None;

@@ -4,13 +4,22 @@ use durer_scene::dialect::{DepthPicture, NormalsPicture};
 use durer_scene::math::Vec3;
 use serde::{Deserialize, Serialize};
 
-/// Rules of hits and of Whitted's integrator. Plain values for the whole world; the default is our
-/// own, without the bugs of old programs.
+/// How an official program keeps a secondary ray off the surface that it leaves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Epsilon {
+    /// Hits count beyond this `t`.
+    Least(f32),
+    /// The ray starts this many times its direction along.
+    Along(f32),
+}
+
+/// How rays meet surfaces and how Whitted's integrator shades them. Plain values, the same for all
+/// of a world; the default is our own, without the bugs of old programs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShadingRules {
-    /// Minimum `t` of secondary rays. `None`: rays start off the surface by a bound on its error,
-    /// and every hit counts.
-    pub epsilon: Option<f32>,
+    /// How secondary rays are kept off surfaces. `None`: they start beside the surface, by the
+    /// bound on its error, and every hit counts.
+    pub epsilon: Option<Epsilon>,
     /// A hit's position is the rounded point of the ray, without a bound on its error.
     pub points_on_ray: bool,
     /// A ray carries one index of refraction, and behind glass is air. Otherwise media nest.
@@ -22,11 +31,17 @@ pub struct ShadingRules {
     pub shaded_sides: bool,
     /// A surface seen from behind is black, unless it is shaded on both sides.
     pub black_backs: bool,
-    /// Lighting uses normals of unit length, whatever the length of the shading normal.
+    /// A surface whose normal is no number is black.
+    pub spoiled_normals: bool,
+    /// Light falls on normals of unit length, whatever length the shading normal has.
     pub unit_light: bool,
     /// Shading normals may not be unit length, so reflected directions are normalised.
     pub raw_normals: bool,
-    /// A ray that leaves glass reflects as if R0 were 0.
+    /// Such a normal is taken as it is for refraction.
+    pub raw_refraction: bool,
+    /// Mirrored directions are not normalised.
+    pub long_mirrors: bool,
+    /// R0 takes the side of glass that a ray comes from for air.
     pub exit_r0: bool,
     /// Only a blocker seen from its front casts a shadow.
     pub shadow_fronts: bool,
@@ -59,7 +74,10 @@ pub struct DisplayRules {
     /// For misses, a picture of normals shows the previous hit's normal, in rows from the bottom.
     #[serde(default)]
     pub stale_normals: bool,
-    /// Luminous efficacy by colour channel, if light is in watts.
+    /// A depth is kept within the given range before it becomes a grey.
+    #[serde(default)]
+    pub clamped_depths: bool,
+    /// What makes lumens of light, by colour, where that is in watts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lumens: Option<Vec3>,
 }

@@ -221,7 +221,9 @@ fn footprints_are_areas() {
 #[test]
 fn rays_side_by_side_are_those_one_by_one() {
     all(8, |camera, random| {
-        for rules in [CameraRules::default(), CameraRules { screen_point: true, ..CameraRules::default() }] {
+        for rules in [Aim::Own, Aim::ScreenPoint, Aim::Of2012, Aim::Of2016, Aim::Of2020]
+            .map(|aim| CameraRules { aim, ..CameraRules::default() })
+        {
             let frame = CameraBasis::of(camera, rules);
             let samples: [CameraSample; 8] = std::array::from_fn(|_| looked(camera, random).0);
             let alone = samples.each_ref().map(|sample| camera.ray(&frame, sample));

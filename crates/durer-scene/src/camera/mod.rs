@@ -33,7 +33,7 @@ pub use eyes::Eyes;
 pub use handedness::Handedness;
 pub use orthographic::OrthographicCamera;
 pub use perspective::PerspectiveCamera;
-pub use pose::{CameraBasis, CameraRules, Pose, UpRule};
+pub use pose::{Aim, CameraBasis, CameraRules, Pose, UpRule};
 pub use raster::Raster;
 pub use ray_cone::RayCone;
 pub use thin_lens::ThinLensCamera;

@@ -7,7 +7,7 @@
 //!
 //! The solid angle of an area dx dy in the plane at distance D is D |u v w| dx dy / |direction|³.
 
-use super::pose::{unit_or, units_or};
+use super::pose::{Aim, unit_or, units_or};
 use super::{CameraBasis, CameraSample, CameraSamples, Pose, Projection};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
@@ -53,7 +53,7 @@ impl Projection for PerspectiveCamera {
     }
 
     fn ray(&self, frame: &CameraBasis, sample: &CameraSample) -> Option<Ray> {
-        if !frame.screen_point {
+        if frame.aim != Aim::ScreenPoint {
             let mut found = None;
             self.rays::<1>(frame, &(*sample).into(), |_, ray| found = ray);
             return found;
@@ -72,8 +72,16 @@ impl Projection for PerspectiveCamera {
         samples: &CameraSamples<N>,
         mut take: impl FnMut(usize, Option<Ray>),
     ) {
-        if frame.screen_point {
+        if frame.aim == Aim::ScreenPoint {
             return (0..N).for_each(|i| take(i, self.ray(frame, &samples.sample(i))));
+        }
+        if frame.aim.is_sum() {
+            let distance = frame.aim.distance(self.angle);
+            let [x, y] = &samples.points;
+            return (0..N).for_each(|i| {
+                let dir = distance * frame.forward + x[i] * frame.right + y[i] * frame.up;
+                take(i, Some(Ray::new(frame.eye, frame.aim.unit_or(dir, frame.forward))));
+            });
         }
         let forward = frame.forward / frame.half_width as f32;
         let [x, y] = &samples.points;

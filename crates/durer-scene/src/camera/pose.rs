@@ -1,8 +1,10 @@
 //! Where a camera stands and how it is turned.
 
 use super::Projection;
-use crate::math::{Ray, Vec3};
+use crate::math::{Ray, Vec3, fp};
 use glam::{DMat3, DVec3};
+use std::f32::consts::PI;
+use std::f64::consts::PI as PI_F64;
 
 /// Where a camera stands and how it is turned, as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,13 +29,56 @@ pub enum UpRule {
     Skew,
 }
 
+/// The arithmetic that perspective rays are aimed with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Aim {
+    /// Our own.
+    #[default]
+    Own,
+    /// At points of the world on a screen at distance 1, rounded to `f32` there: 2004's.
+    ScreenPoint,
+    /// d w + x u + y v in single precision, with axes made of what is written, of any length: 2012's.
+    Of2012,
+    /// Like [`Aim::Of2012`] with the axes of 2016: `up` as written.
+    Of2016,
+    /// Like [`Aim::Of2012`] with the axes of 2020: all scaled to length 1 by a reciprocal.
+    Of2020,
+}
+
+impl Aim {
+    /// True if rays are sums in single precision.
+    pub(super) fn is_sum(self) -> bool {
+        matches!(self, Aim::Of2012 | Aim::Of2016 | Aim::Of2020)
+    }
+
+    /// The distance of the screen that spans an angle, in degrees.
+    pub(super) fn distance(self, angle: f32) -> f32 {
+        let tan = |x: f32| fp::tan_f64(f64::from(x)) as f32;
+        let radians = (PI_F64 * f64::from(angle) / 180.0) as f32;
+        match self {
+            Aim::Of2020 => 1.0 / tan(angle / 180.0 * PI / 2.0),
+            Aim::Of2016 => 1.0 / tan(radians / 2.0),
+            _ => (1.0 / fp::tan_f64(f64::from(radians) / 2.0)) as f32,
+        }
+    }
+
+    /// A vector's direction.
+    pub(super) fn unit_or(self, v: Vec3, fallback: Vec3) -> Vec3 {
+        if self != Aim::Of2020 {
+            return unit_or(v, fallback);
+        }
+        let unit = v * (1.0 / v.dot(v).sqrt());
+        if unit.is_finite() && unit != Vec3::ZERO { unit } else { unit_or(v, fallback) }
+    }
+}
+
 /// Rules of a camera, resolved from a scene's dialect when it is compiled. The default is our own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CameraRules {
     /// The picture's up.
     pub up: UpRule,
-    /// Rays are aimed at points of the world on a screen at distance 1, rounded to `f32` there.
-    pub screen_point: bool,
+    /// The arithmetic of perspective rays.
+    pub aim: Aim,
     /// Centres of the first and last column and row lie on the picture's border.
     pub border_pixels: bool,
     /// The camera's square is stretched over a picture that is not square.
@@ -54,8 +99,8 @@ pub struct CameraBasis {
     pub right: Vec3,
     /// Upwards in the picture.
     pub up: Vec3,
-    /// See [`CameraRules::screen_point`].
-    pub screen_point: bool,
+    /// See [`CameraRules::aim`].
+    pub aim: Aim,
     /// The camera's [`Projection::half_width`], worked out once.
     pub half_width: f64,
 }
@@ -107,19 +152,27 @@ impl CameraBasis {
     }
 
     /// The axes of a pose: right = norm(direction x up), up = right x direction.
-    pub(super) fn new(pose: Pose, CameraRules { up, screen_point, .. }: CameraRules) -> Self {
-        let unit = if screen_point { scaled_or } else { unit_or };
+    pub(super) fn new(pose: Pose, CameraRules { up, aim, .. }: CameraRules) -> Self {
+        let screen_point = aim == Aim::ScreenPoint;
+        let unit = |v, fallback| if screen_point { scaled_or(v, fallback) } else { aim.unit_or(v, fallback) };
         let forward = unit(pose.direction, Vec3::NEG_Z);
-        let right = unit(forward.cross(pose.up), forward.any_orthonormal_vector());
+        // What `up` is crossed with: in some years the direction of any length.
+        let (along, over) = match aim {
+            Aim::Of2012 | Aim::Of2016 => (pose.direction, pose.up),
+            Aim::Of2020 => (forward, aim.unit_or(pose.up, Vec3::Y)),
+            Aim::Own | Aim::ScreenPoint => (forward, pose.up),
+        };
+        let right = unit(along.cross(over), forward.any_orthonormal_vector());
         let up = match up {
             UpRule::Raw => pose.up,
+            UpRule::Skew if aim == Aim::Of2020 => over,
             UpRule::Skew => pose.up.normalize_or(Vec3::Y),
-            UpRule::Perpendicular => {
-                let up = right.cross(forward);
-                if screen_point { scaled_or(up, up) } else { up }
-            }
+            UpRule::Perpendicular => match (right.cross(along), aim) {
+                (up, Aim::Own) => up,
+                (up, _) => unit(up, right.cross(forward)),
+            },
         };
-        CameraBasis { eye: pose.center, forward, right, up, screen_point, half_width: 1.0 }
+        CameraBasis { eye: pose.center, forward, right, up, aim, half_width: 1.0 }
     }
 
     /// The axes as columns, in double precision: from the camera's space to the world's.

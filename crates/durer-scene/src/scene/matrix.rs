@@ -33,6 +33,8 @@ pub struct MatrixRules {
     /// The product of one transform loses its shear: it is taken apart into translation, rotation
     /// and scale.
     pub dropped_shear: bool,
+    /// A transform whose determinant is all but 0 is passed over.
+    pub dropped_tiny: bool,
 }
 
 impl MatrixOp {
@@ -73,8 +75,22 @@ impl MatrixOp {
             MatrixOp::Matrix(_) if rules.matrix_on_left => op.matrix() * product,
             _ => product * op.matrix(),
         });
-        if rules.dropped_shear { without_shear(product) } else { product }
+        match () {
+            () if rules.dropped_tiny && is_tiny(product) => DAffine3::IDENTITY,
+            () if rules.dropped_shear => without_shear(product),
+            () => product,
+        }
     }
+
+    /// True if the product of the matrices of one transform counts as flat: its determinant is
+    /// within the rounding of 1 in single precision.
+    pub fn is_tiny(ops: &[MatrixOp], rules: MatrixRules) -> bool {
+        is_tiny(MatrixOp::product(ops, MatrixRules { dropped_shear: false, dropped_tiny: false, ..rules }))
+    }
+}
+
+fn is_tiny(map: DAffine3) -> bool {
+    map.matrix3.determinant().abs() < f64::from(f32::EPSILON)
 }
 
 /// A map whose axes are made perpendicular, one after the other: what is left of it as translation,

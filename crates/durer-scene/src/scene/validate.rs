@@ -7,7 +7,7 @@
 use super::{Background, Group, Material, MatrixOp, NamedTexture, Node, Object, Scene, Spanned};
 use crate::camera::Projection;
 use crate::describe::{DescribedList, Value};
-use crate::dialect::Dialect;
+use crate::dialect::{Compat, CompatSet, Dialect};
 use crate::light::Emitter;
 use crate::material::Pattern;
 use crate::medium::Fog;
@@ -30,7 +30,14 @@ impl Scene {
     /// An object read from a file may have the number of a material that does not exist: readers
     /// warn of it, and the object is drawn in plain grey, as by the course's programs.
     pub fn validate(&self) -> Diagnostics {
-        let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len() };
+        self.validate_as(0)
+    }
+
+    /// Checks as [`Scene::validate`], but under [`Compat::AnyValues`] lets values pass that official
+    /// programs draw.
+    pub fn validate_as(&self, compat: CompatSet) -> Diagnostics {
+        let any = compat & Compat::AnyValues.bit() != 0;
+        let mut found = Validator { diagnostics: Diagnostics::default(), materials: self.materials.len(), any };
         if let Some(camera) = &self.camera {
             found.thing(camera, self.camera_span, Projection::validate);
         }
@@ -93,6 +100,8 @@ struct Validator {
     diagnostics: Diagnostics,
     /// How many materials the scene has.
     materials: usize,
+    /// True if values pass that official programs draw.
+    any: bool,
 }
 
 impl Validator {
@@ -113,6 +122,9 @@ impl Validator {
         for (at, field) in thing.fields().iter().enumerate() {
             let Some(value) = thing.get(at) else { continue };
             if let Err(violation) = field.rule.validate(&value) {
+                if self.any && field.drawn_anyway(name, &value).as_ref() == Some(&value) {
+                    continue;
+                }
                 is_valid = false;
                 self.error(format!("{name}: {}{} {violation}", field.name, shown(&value)), span);
             }

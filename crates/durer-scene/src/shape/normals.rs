@@ -118,6 +118,7 @@ fn by_rule(mesh: &impl Triangles, vertices: &[[u32; 3]], rule: MeshNormals, by_v
         MeshNormals::SmoothAbove(count) if mesh.vertices() <= count => None,
         MeshNormals::SmoothByArea | MeshNormals::SmoothAbove(_) => Some(smooth(mesh, vertices, |cross| cross)),
         MeshNormals::SmoothByFace => Some(smooth(mesh, vertices, DVec3::normalize_or_zero)),
+        MeshNormals::SpoiledByFace => Some(spoiled(mesh, vertices)),
         // Triangles that share no vertex have no neighbours to be smooth with.
         MeshNormals::Crease(_) if !shares_vertices(mesh) => None,
         MeshNormals::Crease(degrees) => Some(creased(mesh, degrees, by_vertex)),
@@ -147,6 +148,18 @@ fn smooth(mesh: &impl Triangles, vertices: &[[u32; 3]], weigh: impl Fn(DVec3) ->
     }
     let values = sums.into_iter().map(|sum| sum.normalize_or_zero().as_vec3()).collect();
     Normals { values, corners: Corners::Listed(triangles) }
+}
+
+/// Normals by faces of equal weight; NaN at the vertices of a face without area.
+fn spoiled(mesh: &impl Triangles, vertices: &[[u32; 3]]) -> Normals {
+    let mut normals = smooth(mesh, vertices, DVec3::normalize_or_zero);
+    let Corners::Listed(triangles) = &normals.corners else { unreachable!("rules list") };
+    for (i, triangle) in triangles.iter().enumerate() {
+        if cross(mesh, i).normalize_or_zero() == DVec3::ZERO {
+            triangle.iter().for_each(|&vertex| normals.values[vertex as usize] = Vec3::NAN);
+        }
+    }
+    normals
 }
 
 /// Whether some vertex belongs to two triangles.

@@ -12,7 +12,7 @@ use durer_render::integrator::media::Passage;
 use durer_render::integrator::spawn::{spawn_ray, to_light};
 use durer_render::integrator::whitted::secondary::{Blend, fresnel_share};
 use durer_render::integrator::{Settings, Whitted, refract};
-use durer_render::world::{Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
+use durer_render::world::{Epsilon, Geometry, HighlightModel, Hit, Interaction, Phong, WeightedMaterial, World};
 use durer_scene::light::{Emitter, Illumination, Light};
 use durer_scene::math::{Color, Ray, Ray64, Vec2, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
@@ -195,6 +195,9 @@ impl<'w> Pupil<'w> {
         let turned = from_behind && (self.settings.shade_back || habits.faced);
         let n = if turned { -surface.n_shade } else { surface.n_shade };
         let n = if world.shading_rules().unit_light { n.normalize_or(n) } else { n };
+        if world.shading_rules().spoiled_normals && n.is_nan() {
+            return Color::ZERO;
+        }
         let parts = world.parts(at);
         let (mut color, mut blocked) = (Color::ZERO, false);
         if !black || habits.faced {
@@ -215,7 +218,7 @@ impl<'w> Pupil<'w> {
             for (number, light) in world.lights().iter().enumerate() {
                 let seen = self.illuminated(light, surface.point());
                 let casts = habits.shadows.only_light.is_none_or(|only| only == number);
-                let visible = if casts { self.visible(surface, &seen, path.first) } else { Color::ONE };
+                let visible = if casts { self.visible(surface, number, &seen, path.first) } else { Color::ONE };
                 let visible = if habits.shadows.later_too && blocked { Color::ZERO } else { visible };
                 blocked |= visible == Color::ZERO;
                 let visible = visible.max(Color::splat(habits.shadows.left));
@@ -378,21 +381,26 @@ impl<'w> Pupil<'w> {
         color * seen.color
     }
 
-    /// Returns the share of a light that arrives.
-    fn visible(&self, surface: &Surface, seen: &Illumination, first: bool) -> Color {
+    /// The share of a light that arrives.
+    fn visible(&self, surface: &Surface, light: usize, seen: &Illumination, first: bool) -> Color {
         let habits = self.habits.shadows;
         let unshadowed = self.habits.bounces.unshadowed && !first;
         if !self.settings.shadows || unshadowed || seen.color == Color::ZERO {
             return Color::ONE;
         }
         let rules = self.world.shading_rules();
+        let way = rules.epsilon.and_then(|_| self.world.course_way(light, surface.position));
+        let seen = match way {
+            Some((to_light, distance)) => &Illumination { to_light, distance, color: seen.color },
+            None => seen,
+        };
         let reach = match (habits.endless, rules.epsilon.is_some()) {
             (true, _) => f32::INFINITY,
             (false, true) => seen.distance,
             (false, false) => seen.distance * (1.0 - gamma(16)),
         };
         let reach = if habits.short && seen.distance.is_infinite() { 1.0 } else { reach };
-        let epsilon = habits.epsilon.or(rules.epsilon);
+        let epsilon = habits.epsilon.map(Epsilon::Least).or(rules.epsilon);
         let way = match habits.way {
             ShadowWay::Light => seen.to_light,
             ShadowWay::Away => -seen.to_light,
@@ -424,8 +432,8 @@ impl<'w> Pupil<'w> {
         Color::ZERO
     }
 
-    /// Returns black if an opaque object occludes the light; transparent ones do not.
-    fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<f32>) -> Color {
+    /// Whether only things that let light through are in the way.
+    fn visible_through_glass(&self, mut ray: Ray64, epsilon: Option<Epsilon>) -> Color {
         for _ in 0..64 {
             let Some((hit, _)) = self.closest(&ray) else { return Color::ONE };
             let blocker = self.world.interaction(ray, hit);
@@ -461,16 +469,19 @@ impl<'w> Pupil<'w> {
             Mirror::Along => ray.dir() - ray.dir().dot(n) * n,
             Mirror::Plus => ray.dir() + 2.0 * ray.dir().dot(n) * n,
         };
-        let (mirrored, n) = match self.world.shading_rules().raw_normals {
-            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
-            false => (mirrored, n),
-        };
+        let rules = self.world.shading_rules();
+        let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
+        let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
         let transmitted = match (transparent == Color::ZERO, habits.glass) {
             (true, _) => None,
             (false, Glass::Straight) => Some(ray.dir()),
             (false, Glass::RootAdded) => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, Glass::Outward) if leaving => refract(ray.dir(), n, eta).map(|t| t - 2.0 * t.dot(n) * n),
             (false, _) => refract(ray.dir(), n, eta),
+        };
+        let transmitted = match rules.raw_refraction {
+            true => transmitted.map(|through| through.normalize_or(ray.dir())),
+            false => transmitted,
         };
         let divided = fresnel && self.settings.reflection && self.settings.refraction;
         if divided && habits.fresnel != Fresnel::None {
@@ -491,9 +502,9 @@ impl<'w> Pupil<'w> {
                     r0 + (1.0 - r0) * rest * rest * rest * rest * rest
                 }
                 _ => {
-                    let zero = leaving && self.world.shading_rules().exit_r0;
                     let indices = if habits.glass == Glass::Exchanged { (there, here) } else { (here, there) };
-                    fresnel_share(ray.dir(), n, t, indices, zero)
+                    let before = if rules.exit_r0 { 1.0 } else { indices.0 };
+                    fresnel_share(ray.dir(), n, t, indices, before)
                 }
             };
             let r = transmitted.map_or(1.0, schlick);
@@ -528,7 +539,7 @@ impl<'w> Pupil<'w> {
         if total < self.settings.least_weight {
             return Color::ZERO;
         }
-        let epsilon = self.habits.bounces.epsilon.or(self.world.shading_rules().epsilon);
+        let epsilon = self.habits.bounces.epsilon.map(Epsilon::Least).or(self.world.shading_rules().epsilon);
         let ray = spawn_ray(surface, dir, f32::INFINITY, epsilon);
         weight * self.trace(&ray, Path { bounces: path.bounces - 1, weight: total, first: false, ..path })
     }

@@ -11,7 +11,7 @@ use durer_scene::camera::{Camera, CameraBasis, CameraSample, Projection, Raster}
 use durer_scene::dialect::{Compat, Highlight, Rules};
 use durer_scene::light::Light;
 use durer_scene::material::PhongMaterial;
-use durer_scene::math::{Affine, Color, Ray, Vec2};
+use durer_scene::math::{Color, Ray, Vec2};
 use durer_scene::scene::{self, Group, MatrixOp, MatrixRules, Node, Scene};
 use durer_scene::shape::{Primitive, Triangle};
 use glam::DAffine3;
@@ -200,9 +200,7 @@ impl<'s> Variant<'s> {
         }
         for (object, place) in self.world.edit().objects.iter_mut().zip(places) {
             if !matches!(object.geometry, Geometry::Solid(_)) {
-                // Objects moved to the origin must be moved back first.
-                let place = place * DAffine3::from_translation(object.center.as_dvec3());
-                object.to_world = Affine::new(place).filter(|affine| !affine.is_identity());
+                object.place_at(place);
             }
         }
         self.rebuild();

@@ -107,7 +107,7 @@ fn telling_words_decide_the_guess() {
     )
     .note();
     assert_eq!(note.message, "read as f12a5: `refractionIndex` is a word of f12a5");
-    let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into() };
+    let hint = Hint { set: Dialect::F16 as u8, why: "the output is a PNG file".into(), weak: false };
     let guess = guess(b"PerspectiveCamera { }", 0, &[hint], &|_| false);
     assert_eq!((guess.dialect, guess.others.len()), (Dialect::F16, 0));
     assert!(guess.note().message.ends_with("the output is a PNG file"));

@@ -13,19 +13,23 @@ use durer_scene::shape::Surface;
 const MOST_LAYERS: u32 = 64;
 
 impl Whitted<'_> {
-    /// Returns the shadow ray to a light, for listeners.
-    pub(super) fn shadow(&self, surface: &Surface, seen: &Illumination, share: Color) -> Shadow {
-        let ray = self.shadow_ray(surface, seen);
+    /// The shadow ray to a light, for listeners.
+    pub(super) fn shadow(&self, surface: &Surface, light: usize, seen: &Illumination, share: Color) -> Shadow {
+        let ray = self.shadow_ray(surface, light, seen);
         let blocker = self.world.closest(&ray, &mut ()).map(|hit| (hit.object, hit.t));
         Shadow { ray: (&ray).into(), blocker, share: share.into() }
     }
 
     #[inline(always)]
-    pub(super) fn shadow_ray(&self, surface: &Surface, seen: &Illumination) -> Ray64 {
+    pub(super) fn shadow_ray(&self, surface: &Surface, light: usize, seen: &Illumination) -> Ray64 {
         let epsilon = self.world.shading_rules().epsilon;
-        // Objects exactly at the light do not occlude it.
-        let reach = if epsilon.is_some() { seen.distance } else { seen.distance * (1.0 - gamma(16)) };
-        to_light(surface, seen.to_light, reach, epsilon)
+        if epsilon.is_none() {
+            // What stands exactly at the light does not block it.
+            return to_light(surface, seen.to_light, seen.distance * (1.0 - gamma(16)), None);
+        }
+        let way = self.world.course_way(light, surface.position);
+        let (dir, distance) = way.unwrap_or((seen.to_light, seen.distance));
+        to_light(surface, dir, distance, epsilon)
     }
 
     /// Computes the visibility of lights along shadow rays: 0 if occluded, or the transmittance of

@@ -42,7 +42,8 @@ impl Whitted<'_> {
             return queue.finish(number, point.color, colors, tally);
         }
         let blend = blend();
-        if !blend.is_some() {
+        let spoiled = self.world.shading_rules().spoiled_normals && point.n.is_nan();
+        if !blend.is_some() || spoiled {
             return queue.finish(number, point.color, colors, tally);
         }
         let parted = self.parted(&point.at, blend, &point.passage);
@@ -80,21 +81,21 @@ impl Whitted<'_> {
         // Without `shade_back`, a mirror reflects about the unflipped normal; the direction is the
         // same.
         let mirrored = reflect(dir, n);
-        // A normal that is not unit length changes the direction.
-        let (mirrored, n) = match rules.raw_normals {
-            true => (mirrored.normalize_or(n_geo), n.normalize_or(n_geo)),
-            false => (mirrored, n),
-        };
+        // About a normal that is not of length 1 it is another one.
+        let mirrored = if rules.raw_normals && !rules.long_mirrors { mirrored.normalize_or(n_geo) } else { mirrored };
+        let n = if rules.raw_normals && !rules.raw_refraction { n.normalize_or(n_geo) } else { n };
         let transmitted = match transparent == Color::ZERO {
             true => None,
+            // About a normal that is not of length 1 it is neither.
+            false if rules.raw_refraction => refract(dir, n, here / there).map(|through| through.normalize_or(dir)),
             false => refract(dir, n, here / there),
         };
         // If one of the two is switched off, the other gets all the light.
         let divides = fresnel && self.settings.reflection && self.settings.refraction;
         let share = divides.then(|| {
-            // Total reflection has weight 1.
-            let zero = leaving && rules.exit_r0;
-            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), zero))
+            // Total reflection weighs 1.
+            let before = if rules.exit_r0 { 1.0 } else { here };
+            transmitted.map_or(1.0, |through| fresnel_share(dir, n, through, (here, there), before))
         });
         if let Some(share) = share {
             reflective *= share;
@@ -217,9 +218,9 @@ impl Blend {
 /// c is the cosine on the side of the lower index. Source: Schlick, *An Inexpensive BRDF Model for
 /// Physically-based Rendering*, Eurographics 1994.
 #[inline(always)]
-pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), zero: bool) -> f32 {
-    let ratio = (there - here) / (there + here);
-    let r0 = if zero { 0.0 } else { ratio * ratio };
+pub fn fresnel_share(dir: Vec3, n: Vec3, transmitted: Vec3, (here, there): (f32, f32), before: f32) -> f32 {
+    let ratio = (there - before) / (there + before);
+    let r0 = ratio * ratio;
     let cosine = if here <= there { dir.dot(n).abs() } else { transmitted.dot(n).abs() };
     let rest = 1.0 - cosine;
     let square = rest * rest;

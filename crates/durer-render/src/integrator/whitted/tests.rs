@@ -69,7 +69,8 @@ fn mirrored_directions_keep_the_angle() {
 fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     let share = |zero: bool, cosine: f32, here: f32, there: f32| {
         let d = Vec3::new((1.0 - cosine * cosine).sqrt(), -cosine, 0.0);
-        refract(d, Vec3::Y, here / there).map(|t| fresnel_share(d, Vec3::Y, t, (here, there), zero))
+        let before = if zero { 1.0 } else { here };
+        refract(d, Vec3::Y, here / there).map(|t| fresnel_share(d, Vec3::Y, t, (here, there), before))
     };
     let close = |a: Option<f32>, b: f32| assert!((a.unwrap() - b).abs() < 1e-6, "{a:?} {b}");
     close(share(false, 1.0, 1.0, 1.5), 0.04);
@@ -83,6 +84,7 @@ fn schlicks_share_is_r0_straight_on_and_one_at_grazing() {
     assert_eq!(share(false, 0.7, 1.5, 1.0), None);
     // An old program uses 0 for R0 when leaving.
     close(share(true, 1.0, 1.5, 1.0), 0.0);
+    close(share(true, 1.0, 1.33, 1.5), 0.04);
 }
 
 #[test]
@@ -249,7 +251,7 @@ fn a_coarse_smooth_ball_has_no_shadow_on_itself_where_its_normals_face_the_light
             if surface.position.y < 1.0 && surface.n_shade.dot(seen.to_light) > 1e-3 {
                 all += 1;
                 let mut share = [Color::ZERO];
-                whitted.visible(&mut [whitted.shadow_ray(&surface, &seen)], &mut share, &mut ());
+                whitted.visible(&mut [whitted.shadow_ray(&surface, 0, &seen)], &mut share, &mut ());
                 dark += i32::from(share == [Color::ZERO]);
             }
         }

@@ -1,0 +1,70 @@
+use super::*;
+use durer_scene::math::random::Random;
+
+fn random_ops(random: &mut Random) -> Vec<MatrixOp> {
+    let mut vector = |low: f32, high: f32| Vec3::from_array([0, 1, 2].map(|_| random.between(low, high)));
+    vec![
+        MatrixOp::Translate(vector(-5.0, 5.0)),
+        MatrixOp::XRotate(vector(-180.0, 180.0).x),
+        MatrixOp::Scale(vector(0.2, 3.0) * Vec3::new(1.0, -1.0, 1.0)),
+        MatrixOp::Rotate(vector(0.1, 1.0), vector(-180.0, 180.0).y),
+        MatrixOp::ZRotate(vector(-180.0, 180.0).z),
+        MatrixOp::UniformScale(vector(0.5, 2.0).x),
+    ]
+}
+
+fn close(a: &Matrix, b: &Matrix, most: f32) {
+    for (p, q) in a.0.iter().flatten().zip(b.0.iter().flatten()) {
+        assert!((p - q).abs() <= most, "{a:?} is not {b:?}");
+    }
+}
+
+#[test]
+fn products_and_what_is_left_without_shear_are_those_of_double_precision() {
+    let mut random = Random(59);
+    for _ in 0..500 {
+        let ops = random_ops(&mut random);
+        for dropped_shear in [false, true] {
+            let rules = MatrixRules { dropped_shear, ..MatrixRules::default() };
+            close(&Matrix::of(&ops, rules, Vectors::Glm), &Matrix::from(MatrixOp::product(&ops, rules)), 2e-4);
+        }
+    }
+}
+
+#[test]
+fn both_inverses_undo_a_matrix() {
+    let mut random = Random(60);
+    for _ in 0..500 {
+        let matrix = Matrix::of(&random_ops(&mut random), MatrixRules::default(), Vectors::Vecmath);
+        for vectors in [Vectors::Vecmath, Vectors::Glm] {
+            close(&matrix.times(&matrix.inverse(vectors), vectors), &Matrix::IDENTITY, 1e-3);
+            let point = Vec3::from_array([0, 1, 2].map(|_| random.between(-2.0, 2.0)));
+            let back = matrix.inverse(vectors).point(matrix.point(point, vectors), vectors);
+            assert!((back - point).abs().max_element() < 1e-3, "{point} {back}");
+        }
+    }
+    for vectors in [Vectors::Vecmath, Vectors::Glm] {
+        assert_eq!(Matrix::IDENTITY.inverse(vectors), Matrix::IDENTITY);
+    }
+}
+
+#[test]
+fn a_flat_matrix_is_told_and_a_tiny_one_passed_over() {
+    let flat = [MatrixOp::Scale(Vec3::new(1.0, 0.0, 1.0))];
+    assert!(!Matrix::of(&flat, MatrixRules::default(), Vectors::Vecmath).is_regular());
+    let tiny = MatrixRules { dropped_tiny: true, ..MatrixRules::default() };
+    assert_eq!(Matrix::of(&flat, tiny, Vectors::Glm), Matrix::IDENTITY);
+    // 0.004^3 is below the rounding of 1, 0.006^3 is not.
+    let scale = |s: f32| [MatrixOp::Translate(Vec3::X), MatrixOp::UniformScale(s)];
+    assert_eq!(Matrix::of(&scale(0.004), tiny, Vectors::Glm), Matrix::IDENTITY);
+    assert_ne!(Matrix::of(&scale(0.006), tiny, Vectors::Glm), Matrix::IDENTITY);
+    assert!(MatrixOp::product(&scale(0.004), tiny) == DAffine3::IDENTITY);
+}
+
+#[test]
+fn the_sign_of_a_zero_is_that_of_each_library() {
+    let moved = Matrix::of(&[MatrixOp::Translate(Vec3::ONE)], MatrixRules::default(), Vectors::Vecmath);
+    let inverse = moved.inverse(Vectors::Vecmath);
+    assert!(inverse.vector(Vec3::new(-0.5, 0.9, -0.0)).z.is_sign_positive());
+    assert!((0.0_f32 - 0.0).is_sign_positive() && Vectors::Glm.sum_from(-0.0).is_sign_negative());
+}

@@ -1,0 +1,252 @@
+//! Hits as the course's programs of 2012 to 2023 find them: thing after thing, in single precision,
+//! operation by operation. What is far away, seen at a grazing angle or as large as the ground
+//! depends on the last bit of these.
+//!
+//! Sources: the starter code of the assignments, whose spheres, groups, cameras and octree the
+//! official programs share; pictures of these programs for the rest.
+
+mod matrix;
+mod octree;
+mod shapes;
+
+use super::{Geometry, Hit, MeshTree, Object, World};
+use durer_bvh::{Bvh, TraversalCounter};
+use durer_scene::light::{Emitter as _, Light};
+use durer_scene::math::{Aabb, Ray, Ray64, Vec3};
+use durer_scene::shape::Primitive;
+pub use matrix::Matrix;
+use octree::Octree;
+use shapes::{Crossing, Limits};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Library of vectors that the arithmetic follows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// The course's own, of 2012 to 2019.
+    Vecmath,
+    /// glm, since 2020.
+    Glm,
+}
+
+impl Vectors {
+    /// A sum that begins with a term: the course's own begins with 0, so that it is never -0. By the
+    /// sign of a zero a ray goes through an octree, or past it.
+    fn sum_from(self, first: f32) -> f32 {
+        match self {
+            Vectors::Vecmath => 0.0 + first,
+            Vectors::Glm => first,
+        }
+    }
+
+    /// A vector of length 1, or of no numbers.
+    pub fn unit(self, v: Vec3) -> Vec3 {
+        match self {
+            Vectors::Vecmath => v / v.length(),
+            Vectors::Glm => v * (1.0 / v.dot(v).sqrt()),
+        }
+    }
+}
+
+/// How an official program finds hits, resolved from a scene's dialect when it is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HitRules {
+    /// The arithmetic of rays in transforms and of directions to lights. Under glm, every object
+    /// moves rays, also under the identity: as a difference of two points.
+    pub vectors: Vectors,
+    /// Triangles are solved for by the inverse of a matrix. Otherwise by plane and areas.
+    pub triangle_matrix: bool,
+    /// A triangle wins over earlier things that are hit at the same place.
+    pub tied_triangles: bool,
+    /// A plane is hit at the very start of a ray too.
+    pub closed_planes: bool,
+    /// A sphere whose crossings cannot be told is hit at 10000, as in the starter of 2016.
+    pub far_spheres: bool,
+    /// Meshes are walked by an octree that loses the far half of cells.
+    pub octree: bool,
+}
+
+/// All objects of a world, as an official program meets them.
+#[derive(Clone, Debug)]
+pub struct CourseHits {
+    rules: HitRules,
+    things: Vec<Thing>,
+}
+
+/// One of them.
+#[derive(Clone, Debug)]
+struct Thing {
+    /// Inverses of the transforms around it, from the outermost to the innermost.
+    inverses: Vec<Matrix>,
+    /// How a mesh is walked.
+    walk: Option<Arc<Walk>>,
+}
+
+/// Order in which triangles of a mesh are tested.
+#[derive(Debug)]
+enum Walk {
+    /// All that a ray may meet; the order does not matter.
+    Boxes(Bvh),
+    /// Those of the cells that the starter's octree visits.
+    Octree(Octree),
+}
+
+impl CourseHits {
+    /// Prepares the objects of a world.
+    pub(crate) fn new(rules: HitRules, objects: &[Object]) -> Self {
+        // Objects share meshes.
+        let mut walks: HashMap<*const MeshTree, Arc<Walk>> = HashMap::new();
+        let things = objects.iter().map(|object| {
+            let walk = match &object.geometry {
+                Geometry::Mesh(tree) => {
+                    let make = || Arc::new(Walk::new(rules, tree));
+                    Some(walks.entry(Arc::as_ptr(tree)).or_insert_with(make).clone())
+                }
+                _ => None,
+            };
+            let inverses = object.matrices.iter().map(|matrix| matrix.inverse(rules.vectors)).collect();
+            Thing { inverses, walk }
+        });
+        CourseHits { rules, things: things.collect() }
+    }
+
+    /// The first hit in a ray's interval.
+    pub(crate) fn closest<T: TraversalCounter>(&self, objects: &[Object], ray: &Ray64, counter: &mut T) -> Option<Hit> {
+        let mut best: Option<Hit> = None;
+        for (number, (thing, object)) in (0..).zip(self.things.iter().zip(objects)) {
+            let local = self.local(thing, &ray.rounded);
+            let limits = Limits { t_min: ray.rounded.t_min, t_max: ray.rounded.t_max, best: best.map(|hit| hit.t) };
+            let mut offer = |crossing: Option<Crossing>, part: u32| {
+                if let Some(Crossing { t, uv }) = crossing {
+                    best = Some(Hit { t, uv, object: number, part });
+                }
+            };
+            match &object.geometry {
+                Geometry::Primitive(Primitive::Sphere(sphere)) => {
+                    counter.work(0, 1);
+                    offer(shapes::sphere(sphere, &local, limits, self.rules.far_spheres), 0);
+                }
+                Geometry::Primitive(Primitive::Plane(plane)) => {
+                    counter.work(0, 1);
+                    offer(shapes::plane(plane, &local, limits, self.rules.closed_planes), 0);
+                }
+                Geometry::Primitive(Primitive::Triangle(triangle)) => {
+                    counter.work(0, 1);
+                    offer(shapes::triangle(triangle.corners(), &local, limits, self.rules), 0);
+                }
+                Geometry::Mesh(tree) => {
+                    if let Some((crossing, part)) = thing.mesh(tree, &local, limits, self.rules, counter) {
+                        offer(Some(crossing), part);
+                    }
+                }
+                // The course has no such shapes.
+                Geometry::Primitive(_) | Geometry::Solid(_) => {
+                    let found = object.closest(number, ray, false, counter);
+                    let found = found.filter(|(crossing, _)| limits.takes(crossing.t, false));
+                    if let Some((crossing, part)) = found {
+                        offer(Some(Crossing { t: crossing.t, uv: crossing.uv }), part);
+                    }
+                }
+            }
+        }
+        best
+    }
+
+    /// A ray in the space of a thing.
+    fn local(&self, thing: &Thing, ray: &Ray) -> Ray {
+        let mut local = *ray;
+        match self.rules.vectors {
+            Vectors::Vecmath => {
+                for inverse in &thing.inverses {
+                    local.origin = inverse.point(local.origin, Vectors::Vecmath);
+                    local.dir = inverse.vector(local.dir);
+                }
+            }
+            Vectors::Glm => {
+                let inverse = thing.inverses.first().unwrap_or(&Matrix::IDENTITY);
+                local.origin = inverse.point(ray.origin, Vectors::Glm);
+                local.dir = inverse.point(ray.origin + ray.dir, Vectors::Glm) - local.origin;
+            }
+        }
+        local
+    }
+
+    /// Bytes in memory.
+    pub fn memory_usage(&self) -> usize {
+        let walk = |thing: &Thing| match thing.walk.as_deref() {
+            Some(Walk::Boxes(bvh)) => bvh.memory_usage(),
+            Some(Walk::Octree(octree)) => octree.memory_usage(),
+            None => 0,
+        };
+        self.things.iter().map(|thing| size_of::<Thing>() + walk(thing)).sum()
+    }
+}
+
+impl Thing {
+    /// The first hit of a mesh, and its triangle.
+    fn mesh<T: TraversalCounter>(
+        &self,
+        tree: &MeshTree,
+        ray: &Ray,
+        mut limits: Limits,
+        rules: HitRules,
+        counter: &mut T,
+    ) -> Option<(Crossing, u32)> {
+        let mut best: Option<(Crossing, u32)> = None;
+        match self.walk.as_deref()? {
+            Walk::Octree(octree) => octree.walk(ray, &mut |part| {
+                counter.work(0, 1);
+                if let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) {
+                    limits.best = Some(crossing.t);
+                    best = Some((crossing, part));
+                }
+            }),
+            Walk::Boxes(bvh) => bvh.traverse(ray, counter, |item, t_max, _| {
+                let part = bvh.primitive_indices()[item];
+                let Some(crossing) = shapes::triangle(tree.mesh.corners(part), ray, limits, rules) else {
+                    return t_max;
+                };
+                // As if all were tested in the order of the file.
+                let wins = best.is_none_or(|(hit, known)| {
+                    crossing.t < hit.t || crossing.t == hit.t && (part > known) == rules.tied_triangles
+                });
+                if wins {
+                    best = Some((crossing, part));
+                }
+                t_max.min(crossing.t.next_up())
+            }),
+        }
+        best
+    }
+}
+
+impl Walk {
+    fn new(rules: HitRules, tree: &MeshTree) -> Self {
+        let corners = |part| tree.mesh.corners(part);
+        let boxes = (0..tree.mesh.len() as u32).map(|part| Aabb::around(corners(part)));
+        if rules.octree {
+            return Walk::Octree(Octree::new(boxes.collect()));
+        }
+        // The triangle's own arithmetic may meet it a little beside its box.
+        let whole = tree.bvh.bounds();
+        let pad = 1e-5 * (whole.min.abs().max(whole.max.abs()) + whole.size());
+        let padded: Vec<Aabb> = boxes.map(|b| Aabb { min: b.min - pad, max: b.max + pad }).collect();
+        Walk::Boxes(Bvh::build(&padded))
+    }
+}
+
+impl World {
+    /// The direction to a light and the way there, as the official program has them; `None` where
+    /// the world has an arithmetic of its own, or the light is none of the course's.
+    pub fn course_way(&self, light: usize, point: Vec3) -> Option<(Vec3, f32)> {
+        let vectors = self.hit_rules()?.vectors;
+        match &self.lights()[light] {
+            Light::Point(lamp) => {
+                let way = lamp.position - point;
+                Some((vectors.unit(way), way.length()))
+            }
+            Light::Directional(sun) => Some((-vectors.unit(sun.direction().unwrap_or(Vec3::NEG_Y)), f32::MAX)),
+            _ => None,
+        }
+    }
+}

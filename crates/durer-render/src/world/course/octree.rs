@@ -1,0 +1,159 @@
+//! The octree of the course's starter code, which loses hits.
+//!
+//! A ray goes through the eight children of a cell by the `t` at which it crosses the cell's planes
+//! and middle planes. Where a component of its direction is exactly 0 these are infinite, their
+//! mean is NaN, and a comparison with NaN is false: the children behind a middle plane of that axis
+//! are never visited.
+//!
+//! Source: Revelles, Ureña, Lastra, *An Efficient Parametric Algorithm for Octree Traversal*, WSCG
+//! 2000; the constants are the starter code's.
+
+use durer_scene::math::{Aabb, Ray, Vec3};
+use std::ops::Range;
+
+/// A cell of more triangles is divided.
+const MOST: usize = 7;
+/// Cells of this level are divided still.
+const LAST_LEVEL: u32 = 8;
+/// No more is divided where cells hold so many triangles in all, beside so many times those of the
+/// mesh: large triangles that cross each other would fill memory.
+const PLENTY: usize = 1 << 20;
+const TIMES: usize = 64;
+
+/// A tree of cells over the boxes of triangles.
+#[derive(Debug)]
+pub(super) struct Octree {
+    bounds: Aabb,
+    cells: Vec<Cell>,
+    /// Triangles of undivided cells.
+    triangles: Vec<u32>,
+}
+
+#[derive(Clone, Debug)]
+enum Cell {
+    /// The first of eight cells: the bits 4, 2 and 1 of a child's place say that it lies in the
+    /// upper half along x, y and z.
+    Divided(u32),
+    /// A range of triangles.
+    Whole(Range<u32>),
+}
+
+/// The `t` at which a ray enters and leaves a cell along each axis.
+#[derive(Clone, Copy)]
+struct Span {
+    enter: [f32; 3],
+    leave: [f32; 3],
+}
+
+impl Octree {
+    /// Builds the tree from the boxes of a mesh's triangles.
+    pub fn new(boxes: Vec<Aabb>) -> Self {
+        let bounds = boxes.iter().copied().reduce(Aabb::union).unwrap_or(Aabb::EMPTY);
+        let mut octree = Octree { bounds, cells: vec![Cell::Whole(0..0)], triangles: Vec::new() };
+        octree.fill(0, bounds, (0..boxes.len() as u32).collect(), &boxes, 0);
+        octree
+    }
+
+    /// Bytes in memory.
+    pub fn memory_usage(&self) -> usize {
+        size_of_val(&*self.cells) + size_of_val(&*self.triangles)
+    }
+
+    fn fill(&mut self, cell: usize, bounds: Aabb, triangles: Vec<u32>, boxes: &[Aabb], level: u32) {
+        let plenty = self.triangles.len() > PLENTY + TIMES * boxes.len();
+        if triangles.len() <= MOST || level > LAST_LEVEL || plenty {
+            let start = self.triangles.len() as u32;
+            self.triangles.extend(triangles);
+            self.cells[cell] = Cell::Whole(start..self.triangles.len() as u32);
+            return;
+        }
+        let first = self.cells.len();
+        self.cells[cell] = Cell::Divided(first as u32);
+        self.cells.extend(vec![Cell::Whole(0..0); 8]);
+        let middle = (bounds.min + bounds.max) / 2.0;
+        for child in 0..8_usize {
+            let pick = |upper: Vec3, lower: Vec3| {
+                let half = |axis: usize| if child & (4 >> axis) != 0 { upper[axis] } else { lower[axis] };
+                Vec3::new(half(0), half(1), half(2))
+            };
+            let own = Aabb { min: pick(middle, bounds.min), max: pick(bounds.max, middle) };
+            let touches = |b: &Aabb| b.min.cmple(own.max).all() && own.min.cmple(b.max).all();
+            let inside = triangles.iter().copied().filter(|&i| touches(&boxes[i as usize])).collect();
+            self.fill(first + child, own, inside, boxes, level + 1);
+        }
+    }
+
+    /// Offers the triangles of the cells that a ray visits, in that order; some more than once.
+    pub fn walk(&self, ray: &Ray, offer: &mut impl FnMut(u32)) {
+        // A ray that runs backwards along an axis is mirrored, and so are the children.
+        let (mut origin, mut dir, mut mirrored) = (ray.origin, ray.dir, 0);
+        for axis in 0..3 {
+            if dir[axis] < 0.0 {
+                origin[axis] = (self.bounds.max + self.bounds.min)[axis] - origin[axis];
+                dir[axis] = -dir[axis];
+                mirrored |= 4 >> axis;
+            }
+        }
+        let at = |planes: Vec3| [0, 1, 2].map(|axis| (planes[axis] - origin[axis]) * (1.0 / dir[axis]));
+        let span = Span { enter: at(self.bounds.min), leave: at(self.bounds.max) };
+        // The comparisons of C++: with NaN, the first stays.
+        let larger = |a: f32, b: f32| if a < b { b } else { a };
+        let smaller = |a: f32, b: f32| if b < a { b } else { a };
+        let [x, y, z] = span.enter;
+        let [u, v, w] = span.leave;
+        if larger(larger(x, y), z) <= smaller(smaller(u, v), w) {
+            self.visit(0, mirrored, span, offer);
+        }
+    }
+
+    fn visit(&self, cell: usize, mirrored: usize, Span { enter, leave }: Span, offer: &mut impl FnMut(u32)) {
+        if leave.iter().any(|&t| t < 0.0) {
+            return;
+        }
+        let children = match &self.cells[cell] {
+            Cell::Whole(range) => {
+                return self.triangles[range.start as usize..range.end as usize].iter().for_each(|&i| offer(i));
+            }
+            Cell::Divided(first) => *first as usize,
+        };
+        let middle = [0, 1, 2].map(|axis| 0.5 * (enter[axis] + leave[axis]));
+        let mut child = first_child(enter, middle);
+        loop {
+            let is_upper = [0, 1, 2].map(|axis| child & (4 >> axis) != 0);
+            let own = Span {
+                enter: [0, 1, 2].map(|axis| if is_upper[axis] { middle[axis] } else { enter[axis] }),
+                leave: [0, 1, 2].map(|axis| if is_upper[axis] { leave[axis] } else { middle[axis] }),
+            };
+            self.visit(children + (child ^ mirrored), mirrored, own, offer);
+            // Out through the plane that comes first, and no child is behind an outer one.
+            let axis = first_plane(own.leave);
+            if is_upper[axis] {
+                return;
+            }
+            child |= 4 >> axis;
+        }
+    }
+}
+
+/// The child that a ray enters first.
+fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
+    // The axis of the plane that is crossed last on the way in.
+    let (axis, t) = match () {
+        () if x > y && x > z => (0, x),
+        () if !(x > y) && y > z => (1, y),
+        () => (2, z),
+    };
+    (0..3).filter(|&other| other != axis && middle[other] < t).map(|other| 4 >> other).sum()
+}
+
+/// The axis of the plane that a ray leaves through.
+fn first_plane([x, y, z]: [f32; 3]) -> usize {
+    match () {
+        () if x < y && x < z => 0,
+        () if !(x < y) && y < z => 1,
+        () => 2,
+    }
+}
+
+#[cfg(test)]
+mod tests;

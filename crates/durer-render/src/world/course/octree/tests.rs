@@ -1,0 +1,73 @@
+use super::*;
+use durer_scene::math::random::Random;
+
+/// Boxes of small triangles in a cube from -1 to 1.
+fn boxes(count: usize, random: &mut Random) -> Vec<Aabb> {
+    let mut point = |by: f32| Vec3::from_array([0, 1, 2].map(|_| random.between(-by, by)));
+    let corner = |middle: Vec3, off: Vec3| middle + off;
+    (0..count)
+        .map(|_| {
+            let middle = point(0.9);
+            Aabb::around([0, 1, 2].map(|_| corner(middle, point(0.1))))
+        })
+        .collect()
+}
+
+fn visited(octree: &Octree, ray: &Ray) -> Vec<u32> {
+    let mut found = Vec::new();
+    octree.walk(ray, &mut |i| found.push(i));
+    found
+}
+
+/// True if a ray meets the middle half of a box, well inside of it.
+fn goes_through(ray: &Ray, b: &Aabb) -> bool {
+    let inner = Aabb { min: b.min + 0.25 * b.size(), max: b.max - 0.25 * b.size() };
+    let [near, far] = [inner.min, inner.max].map(|p| (p - ray.origin) / ray.dir);
+    near.min(far).max_element().max(0.0) <= near.max(far).min_element()
+}
+
+#[test]
+fn a_ray_visits_every_box_that_it_goes_through() {
+    let mut random = Random(7);
+    for count in [1, 7, 8, 200, 3000] {
+        let boxes = boxes(count, &mut random);
+        let octree = Octree::new(boxes.clone());
+        for _ in 0..300 {
+            let origin = 3.0 * random.direction();
+            let aim = Vec3::from_array([0, 1, 2].map(|_| random.between(-0.8, 0.8)));
+            let ray = Ray::new(origin, (aim - origin).normalize());
+            let found = visited(&octree, &ray);
+            for (i, b) in boxes.iter().enumerate().filter(|(_, b)| goes_through(&ray, b)) {
+                assert!(found.contains(&(i as u32)), "{count}: {ray:?} misses {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_ray_along_an_axis_loses_the_far_half_of_divided_cells() {
+    // Eight small boxes at the corners of a cube, and as many again, so that the root is divided.
+    let at = |i: u32| Vec3::from_array([4, 2, 1].map(|bit| if i & bit != 0 { 1.0 } else { -1.0 }));
+    let small = |i: u32| Aabb { min: at(i) - 0.1, max: at(i) + 0.1 };
+    let octree = Octree::new((0..16).map(|i| small(i % 8)).collect());
+    let down = |x: f32, y: f32, dir: Vec3| visited(&octree, &Ray::new(Vec3::new(x, y, 5.0), dir));
+    // The middle plane of x is NaN, and what is behind it is never asked for.
+    let lost = down(1.0, 1.0, Vec3::NEG_Z);
+    assert!(!lost.contains(&7) && !lost.contains(&6), "{lost:?}");
+    assert!(down(-1.0, -1.0, Vec3::NEG_Z).contains(&1));
+    // A direction that is a little inclined loses nothing.
+    let found = down(1.0, 1.0, Vec3::new(-1e-6, -1e-6, -1.0));
+    assert!(found.contains(&7) && found.contains(&6), "{found:?}");
+    // Seven are never divided, and none is lost.
+    let few = Octree::new((0..7).map(|i| small(7 - i)).collect());
+    assert_eq!(visited(&few, &Ray::new(Vec3::new(1.0, 1.0, 5.0), Vec3::NEG_Z)).len(), 7);
+}
+
+#[test]
+fn large_boxes_that_all_overlap_end_somewhere() {
+    let whole = Aabb { min: Vec3::ZERO, max: Vec3::ONE };
+    let octree = Octree::new(vec![whole; 40]);
+    assert!(octree.memory_usage() < 100 << 20, "{} bytes", octree.memory_usage());
+    let found = visited(&octree, &Ray::new(Vec3::new(0.3, 0.4, 5.0), Vec3::new(0.01, 0.02, -1.0)));
+    assert!((0..40).all(|i| found.contains(&i)));
+}

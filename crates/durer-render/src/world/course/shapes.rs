@@ -1,0 +1,107 @@
+//! Spheres, planes and triangles in the arithmetic of the course.
+
+use super::HitRules;
+use durer_scene::math::{Ray, Vec2, Vec3};
+use durer_scene::shape::{Plane, Sphere};
+
+/// A ray's crossing with a thing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Crossing {
+    /// Position along the ray.
+    pub t: f32,
+    /// The second and third barycentric coordinate on a triangle.
+    pub uv: Vec2,
+}
+
+/// Interval in which hits count.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Hits lie beyond this.
+    pub t_min: f32,
+    /// Hits lie before this.
+    pub t_max: f32,
+    /// The nearest hit so far.
+    pub best: Option<f32>,
+}
+
+impl Limits {
+    /// True if a hit counts; with `ties` also at the place of the best. False for NaN.
+    pub fn takes(&self, t: f32, ties: bool) -> bool {
+        t > self.t_min && self.is_nearer(t, ties)
+    }
+
+    fn is_nearer(&self, t: f32, ties: bool) -> bool {
+        t < self.t_max && self.best.is_none_or(|best| t < best || ties && t == best)
+    }
+}
+
+/// |o + t d - c|^2 = r^2 by the usual formula, with all its cancellation.
+pub(super) fn sphere(sphere: &Sphere, ray: &Ray, limits: Limits, far: bool) -> Option<Crossing> {
+    let Ray { dir, t_min, .. } = *ray;
+    let origin = ray.origin - sphere.center;
+    let a = dir.dot(dir);
+    let b = 2.0 * dir.dot(origin);
+    let c = origin.dot(origin) - sphere.radius * sphere.radius;
+    let discriminant = b * b - 4.0 * a * c;
+    if discriminant < 0.0 {
+        return None;
+    }
+    let root = discriminant.sqrt();
+    let [near, later] = [(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)];
+    if later < t_min && near < t_min {
+        return None;
+    }
+    let t = match () {
+        () if near > t_min => near,
+        () if later > t_min && (near < t_min || !far) => later,
+        // One crossing is exactly where the ray starts, or none is a number.
+        () if far => 10_000.0,
+        () => return None,
+    };
+    limits.takes(t, false).then_some(Crossing { t, uv: Vec2::ZERO })
+}
+
+/// n·(o + t d) = offset, with n as written.
+pub(super) fn plane(plane: &Plane, ray: &Ray, limits: Limits, closed: bool) -> Option<Crossing> {
+    let n = plane.normal;
+    let t = (plane.offset - n.dot(ray.origin)) / n.dot(ray.dir);
+    let begins = t > limits.t_min || closed && t == limits.t_min;
+    (begins && limits.is_nearer(t, false)).then_some(Crossing { t, uv: Vec2::ZERO })
+}
+
+/// A triangle, whichever side is seen.
+pub(super) fn triangle(corners: [Vec3; 3], ray: &Ray, limits: Limits, rules: HitRules) -> Option<Crossing> {
+    let (t, uv) = if rules.triangle_matrix { by_matrix(corners, ray)? } else { by_areas(corners, ray)? };
+    limits.takes(t, rules.tied_triangles).then_some(Crossing { t, uv })
+}
+
+/// The solution of a - o = beta (a - b) + gamma (a - c) + t d, by the inverse of the matrix of the
+/// three columns.
+fn by_matrix([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
+    let [x, y, z] = [a - b, a - c, ray.dir];
+    let to = a - ray.origin;
+    // Rows of the matrix of cofactors are rows of the inverse times the determinant.
+    let minor = |p: f32, q: f32, r: f32, s: f32| p * s - q * r;
+    let cofactors = [
+        [minor(y.y, z.y, y.z, z.z), -minor(y.x, z.x, y.z, z.z), minor(y.x, z.x, y.y, z.y)],
+        [-minor(x.y, z.y, x.z, z.z), minor(x.x, z.x, x.z, z.z), -minor(x.x, z.x, x.y, z.y)],
+        [minor(x.y, y.y, x.z, y.z), -minor(x.x, y.x, x.z, y.z), minor(x.x, y.x, x.y, y.y)],
+    ];
+    let determinant = x.x * cofactors[0][0] + y.x * cofactors[1][0] + z.x * cofactors[2][0];
+    let reciprocal = 1.0 / determinant;
+    let [beta, gamma, t] =
+        cofactors.map(|[p, q, r]| p * reciprocal * to.x + q * reciprocal * to.y + r * reciprocal * to.z);
+    (beta >= 0.0 && gamma >= 0.0 && beta + gamma <= 1.0).then_some((t, Vec2::new(beta, gamma)))
+}
+
+/// The crossing with the plane, and the areas of the three triangles around that point.
+fn by_areas([a, b, c]: [Vec3; 3], ray: &Ray) -> Option<(f32, Vec2)> {
+    let n = (b - a).cross(c - a);
+    let t = n.dot(a - ray.origin) / n.dot(ray.dir);
+    let p = ray.origin + t * ray.dir;
+    let whole = n.dot(n);
+    let alpha = (c - b).cross(p - b).dot(n) / whole;
+    let beta = (a - c).cross(p - c).dot(n) / whole;
+    let gamma = (b - a).cross(p - a).dot(n) / whole;
+    (alpha >= 0.0 && beta >= 0.0 && gamma >= 0.0).then_some((t, Vec2::new(beta, gamma)))
+}
