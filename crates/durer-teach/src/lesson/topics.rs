@@ -221,7 +221,7 @@ pub static TOPICS: [Topic; 18] = [
         equations: &["L = k_d I_a + Σ k_d max(0, N·L_i) I_i", "point light:   I_i = I / (a_0 + a_1 d + a_2 d²)"],
         places: &[
             at("crates/durer-render/src/integrator/whitted.rs", "fn shade"),
-            at("crates/durer-render/src/integrator/whitted/direct.rs", "fn direct"),
+            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct Direct"),
             at("crates/durer-scene/src/light/point.rs", "fn illuminate"),
             at("crates/durer-scene/src/light/directional.rs", "fn illuminate"),
         ],
@@ -238,7 +238,7 @@ pub static TOPICS: [Topic; 18] = [
             "Phong:   L += k_s max(0, R·L)^s I,   R = d - 2 (d·N) N",
         ],
         places: &[
-            at("crates/durer-render/src/integrator/whitted/direct.rs", "fn direct"),
+            at("crates/durer-render/src/integrator/whitted/direct.rs", "struct Direct"),
             at("crates/durer-scene/src/math/mod.rs", "fn reflect"),
             at("crates/durer-render/src/compile/materials.rs", "fn highlight"),
         ],
