@@ -197,8 +197,9 @@ impl Object {
             Geometry::Primitive(shape) => *surface = shape.surface(point, crossing),
             Geometry::Mesh(tree) => {
                 *surface = tree.mesh.surface(part, crossing);
-                let mixed = || tree.mesh.mixed_normal(part, crossing.uv);
-                if rules.spoiled_normals && mixed().is_some_and(Vec3::is_nan) {
+                let spoiled =
+                    || tree.mesh.corner_normals(part).is_some_and(|corners| corners.iter().any(|n| n.is_nan()));
+                if rules.spoiled_normals && spoiled() {
                     surface.n_shade = Vec3::NAN;
                 }
             }
