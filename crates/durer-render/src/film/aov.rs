@@ -136,7 +136,7 @@ pub fn fill_from_last_hit(pixels: &mut [Color], hits: &[bool], width: usize) {
     }
 }
 
-/// Every AOV.
+/// All kinds of picture beside colour.
 pub static AOVS: &[Aov] = &[
     Aov {
         name: "depth",
