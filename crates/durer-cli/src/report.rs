@@ -12,27 +12,27 @@ use durer::source::SourceError;
 use std::io::IsTerminal;
 use std::ops::Range;
 
-/// Prints findings to standard error: all, or the errors alone.
+/// Prints diagnostics to standard error: all, or only errors.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let wanted: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
     print_to(StandardStream::stderr(colors(&std::io::stderr())), files, &wanted);
     if diagnostics.error_count() > ERROR_LIMIT {
-        complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
+        complain(&format!("and {} more errors", diagnostics.error_count() - ERROR_LIMIT));
     }
 }
 
-/// A number with its noun.
+/// Formats a count with its noun.
 pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Colours are for terminals.
+/// Enables colours on terminals.
 pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
     if stream.is_terminal() { ColorChoice::Auto } else { ColorChoice::Never }
 }
 
-/// Prints findings to a stream.
+/// Prints diagnostics to a stream.
 pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     if wanted.is_empty() {
         return;
@@ -40,34 +40,34 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     let mut shown = SimpleFiles::new();
     for file in 0.. {
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
-        // Files that nothing is said of need no text.
+        // Files without a diagnostic need no text.
         let used = wanted.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
     for diagnostic in wanted {
-        // Nothing can be said where the stream is closed.
+        // Ignore errors: a closed stream cannot show a message.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
         let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
     }
 }
 
-/// One note, in one line.
+/// Prints a note in one line.
 pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
 
-/// Says which samples were left out.
+/// Prints how many samples were rejected.
 pub fn rejected(statistics: &Statistics, quiet: bool) {
     if let (Some(first), false) = (statistics.first_rejected.first(), quiet) {
         let count = statistics.rejected;
         note(&Diagnostic::warning(format!(
-            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {})",
+            "left out {count} samples that were not finite, the first in pixel {},{} (sample {})",
             first.x, first.y, first.sample
         )));
     }
 }
 
-/// A scene file that cannot be read.
+/// Returns a failure for an unreadable scene file.
 pub fn unreadable(error: SourceError) -> Failure {
     Failure::Input(Some(error.to_string()))
 }
@@ -76,8 +76,8 @@ fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
     diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|r| r.0))
 }
 
-/// A file's bytes as text of the same length: places stay where they are, whatever the bytes.
-/// Nothing in it can steer a terminal.
+/// Returns a file's bytes as text of the same length, so that offsets stay valid. Control
+/// characters are replaced, so that they cannot control the terminal.
 fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
@@ -91,15 +91,14 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// Files of which only what is around a place is shown: everything may stand in one line of many
-/// megabytes.
+/// Files reduced to the surroundings of a span: a line may have many megabytes.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
 }
 
 impl Excerpt<'_> {
-    /// Bytes of a line shown before a place, and after.
+    /// Bytes of a line shown before and after the span.
     const BEFORE: usize = 80;
     const AFTER: usize = 120;
 }
@@ -134,8 +133,8 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-/// Whether a second place is shown with a first: in one long line, only what is around the first
-/// is.
+/// Returns true if a second span can be shown with the first: within one long line, only the
+/// surroundings of the first are.
 fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
     let Some(first) = first.filter(|first| first.file == second.file) else { return true };
     let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;
