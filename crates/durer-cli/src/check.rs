@@ -1,4 +1,4 @@
-//! `durer check`.
+//! `durer check`: finds and fixes mistakes in scenes.
 
 mod after;
 mod args;
@@ -30,14 +30,14 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
         return Ok(());
     }
     if args.output.is_some() && args.scenes.len() > 1 {
-        return Err(bad("--output is for one scene; without it each is mended in place"));
+        return Err(bad("--output takes one scene; without it, each scene is fixed in place"));
     }
     let mut all = Vec::with_capacity(args.scenes.len());
     let mut unread = false;
     for path in &args.scenes {
         match one(path, args) {
             Ok(checked) => all.push(checked),
-            // The others are checked all the same.
+            // Check the remaining scenes anyway.
             Err(failure) if args.scenes.len() > 1 => {
                 failure.report();
                 unread = true;
@@ -55,7 +55,7 @@ pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if serious { Err(Failure::Found) } else { Ok(()) }
 }
 
-/// Checks one scene, mends it where that is wanted, and says what was found.
+/// Checks one scene, applies fixes with `--fix`, and prints the findings.
 fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure> {
     let bytes = FolderSource::new(".").allow_outside().read_path(path, &path.display().to_string());
     let bytes = bytes.map_err(report::unreadable)?;
@@ -71,7 +71,7 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure>
                 guard.reads(path)?;
                 guard.writes("--output", other)?
             }
-            // That the scene is replaced is what was asked for.
+            // Without --output, the scene itself is replaced.
             None => guard.writes("--fix", path)?,
         };
         checked.named.iter().try_for_each(|named| guard.reads(named))?;
@@ -90,20 +90,20 @@ fn one(path: &Path, args: &CheckArgs) -> Result<(Checked, Vec<Change>), Failure>
     Ok((checked, changes))
 }
 
-/// What edits do to the text.
+/// Describes what edits do to the text.
 fn does(edits: &[Edit]) -> String {
     let one = |edit: &Edit| match edit.text.trim() {
-        "" => "takes it out".to_string(),
+        "" => "removes it".to_string(),
         text => format!("writes `{}`", text.replace('\n', " ")),
     };
     match edits {
         [only] => one(only),
-        [first, rest @ ..] => format!("{}, and makes {}", one(first), counted(rest.len(), "change") + " more"),
+        [first, rest @ ..] => format!("{}, and makes {}", one(first), counted(rest.len(), "more change")),
         [] => String::new(),
     }
 }
 
-/// Prints findings, and how many there are.
+/// Prints findings and their counts.
 fn print(checked: &Checked, mended: bool) {
     let offer = |finding: &Finding| {
         let mut diagnostic = finding.diagnostic.clone();
@@ -127,8 +127,8 @@ fn print(checked: &Checked, mended: bool) {
     });
     let counts = counts.collect::<Vec<_>>().join(", ");
     let found = match (counts.is_empty(), mended) {
-        (true, false) => "nothing found".to_string(),
-        (true, true) => "nothing is left".to_string(),
+        (true, false) => "no findings".to_string(),
+        (true, true) => "no findings left".to_string(),
         (false, true) => format!("{counts} left"),
         (false, false) => counts,
     };

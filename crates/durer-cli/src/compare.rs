@@ -1,4 +1,4 @@
-//! `durer compare`.
+//! `durer compare`: compares pictures with references.
 
 mod args;
 mod compared;
@@ -27,8 +27,8 @@ use stage::{Stage, stage};
 use std::path::{Path, PathBuf};
 use there::there;
 
-/// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that
-/// pictures differ.
+/// Runs the comparison. Every failure has the exit code of bad input, because 1 means that pictures
+/// differ.
 pub fn run(args: &CompareArgs) -> Result<(), Failure> {
     work(args).map_err(|failure| match failure {
         Failure::Other(error) => Failure::Input(Some(error.to_string())),
@@ -40,7 +40,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     let found = pairs::find(&args.reference, &args.picture)?;
     let heat_format = args.heat.as_deref().map(format).transpose()?;
     if args.heat.is_some() && found.folders {
-        return Err(bad("`--heat` is for two pictures; for folders, `--report` has the heat maps"));
+        return Err(bad("`--heat` takes two pictures; for folders, use `--report`, which has the heat maps"));
     }
     let mut guard = Guard::default();
     for pair in &found.pairs {
@@ -90,7 +90,7 @@ fn work(args: &CompareArgs) -> Result<(), Failure> {
     }
 }
 
-/// Finds out what of the scene is where pictures differ, and which mistakes make them so.
+/// Finds the scene's objects where pictures differ, and the mistakes that explain the difference.
 fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Guard) -> Result<(), Failure> {
     if args.scene.is_none() {
         return Ok(());
@@ -99,7 +99,7 @@ fn explain(args: &CompareArgs, all: &mut [Compared], memory: u64, guard: &mut Gu
     for compared in all {
         let (Outcome::Compared(found), Some(picture)) = (&compared.outcome, &compared.pair.picture) else { continue };
         let [reference, test] = read_both([&compared.pair.reference, picture], memory).map_err(bad)?;
-        // The pictures of a class have one reference.
+        // All pictures of a class share one reference.
         if stages.iter().all(|(path, _)| *path != compared.pair.reference) {
             stages.truncate(16);
             stages.insert(0, (compared.pair.reference.clone(), stage(args, &compared.pair, &reference, guard)?));
@@ -132,8 +132,7 @@ fn one(pair: Pair, options: &Options, memory: u64, page: bool) -> Compared {
     }
 }
 
-/// Reads two pictures of one size. That they have one, and can be compared within the memory, is
-/// known before anything is decoded.
+/// Reads two pictures. Checks their sizes and the memory limit before decoding.
 fn read_both(paths: [&Path; 2], memory: u64) -> Result<[Picture; 2], String> {
     let [a, b] = paths.map(|path| {
         let unreadable = |error: String| format!("cannot read `{}`: {error}", path.display());

@@ -1,4 +1,4 @@
-//! `durer convert`.
+//! `durer convert`: writes scenes and meshes in other formats.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -18,21 +18,20 @@ use durer::load;
 use durer::scene::{Scene, Studio, Wishes};
 use std::path::{Path, PathBuf};
 
-/// Write a scene anew: in its own or another dialect, as JSON, as glTF, or its meshes as PLY, OBJ
-/// or STL
+/// Convert a scene to another dialect, JSON or glTF, or its meshes to PLY, OBJ or STL
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  durer convert scene.txt -o scene_durer.txt --to durer\n  durer convert scene.txt -o scene.json\n  durer convert model.glb -o model.stl\n  durer convert scene.pbrt -o scene.glb\n  durer convert model.glb -o scene.txt"
 )]
 pub struct ConvertArgs {
-    /// The scene file
+    /// Scene or model file
     pub scene: PathBuf,
-    /// The file to write
+    /// File to write
     #[arg(short, long)]
     pub output: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// The dialect to write [default: the scene's]
+    /// Dialect to write [default: the scene's]
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
     pub to: Option<String>,
 }
@@ -47,7 +46,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_json = name.to_lowercase().ends_with(".json");
     let as_mesh = mesh_format_for(&name).filter(|_| args.to.is_none());
     if as_mesh.is_some() {
-        // A ground is no part of a model.
+        // The studio's ground does not belong to the model.
         options.staging.studio = Some(Studio::None);
     }
     let ending = args.output.extension().unwrap_or_default().to_string_lossy().to_lowercase();
@@ -57,12 +56,12 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         return Err(bad(format!("{message}, a model as .gltf or .glb, its meshes as .ply, .obj or .stl")));
     }
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
-    // What a model lacks, options of rendering add later.
+    // Render options add what the model lacks later.
     options.staging.bare = as_scene.is_some();
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;
-    // What the text that is written would name is not lost either.
+    // Protect the files that the written text would name.
     loaded.named_files().iter().try_for_each(|path| guard.reads(path))?;
     if let Some(guess) = loaded.guess.as_ref().filter(|guess| guess.hinted) {
         report::note(&guess.note());
@@ -80,7 +79,7 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
         let (mesh, left_out) = world.ok_or(Failure::Input(None))?.merged_mesh();
         if left_out > 0 {
             let objects = counted(left_out, "object");
-            let message = format!("{objects} without triangles left out: {} holds meshes only", format.name);
+            let message = format!("left out {objects} without triangles: {} holds only meshes", format.name);
             report::note(&Diagnostic::warning(message));
         }
         return output::save(&[(&place, (format.write)(&mesh))], false);
@@ -93,20 +92,22 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     if !loaded.scene.assets.has_loose() {
         return output::save(&[(&place, text(&loaded.scene))], false);
     }
-    // A text names files: those of a model go into a folder of the same name.
+    // A text scene refers to files: those of a model go into a folder with the output's name.
     let stem = args.output.file_stem().unwrap_or_default().to_string_lossy();
     let folder = plain(&stem);
     if folder == name {
-        return Err(bad("the name needs an ending, as in `scene.txt`: the model's files go into a folder without"));
+        return Err(bad(
+            "the output needs an extension, as in `scene.txt`: the name without it becomes the folder of the model's files",
+        ));
     }
     let (scene, files) = loaded.put_beside(&folder);
     let base = args.output.parent().unwrap_or(Path::new(""));
-    std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot make the folder `{folder}`"))?;
+    std::fs::create_dir_all(base.join(&folder)).with_context(|| format!("cannot create the folder `{folder}`"))?;
     let writes = |(path, bytes): Beside| Ok((guard.writes("a file of the model", &base.join(path))?, bytes));
     let mut all = files.into_iter().map(writes).collect::<Result<Vec<_>, Failure>>()?;
     all.push((place, text(&scene)));
     if let Some(options) = asked_for(&loaded.scene.wishes) {
-        let message = "the file also says how large and how good its picture is; the scene's text does not";
+        let message = "the file also sets size and quality of its picture, which the scene's text cannot hold";
         report::note(&Diagnostic::note(message).help(format!("render it with `{options}`")));
     }
     let (places, contents): (Vec<_>, Vec<_>) = all.into_iter().unzip();

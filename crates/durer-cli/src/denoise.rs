@@ -1,4 +1,4 @@
-//! `--denoise`: by Open Image Denoise where that is found, else by our own.
+//! `--denoise`: Open Image Denoise if it is installed, otherwise the built-in denoiser.
 
 mod oidn;
 
@@ -9,22 +9,22 @@ use durer::diag::Diagnostic;
 use durer::image::Layer;
 use durer::render::Noisy;
 
-/// Which denoiser is taken.
+/// Choice of denoiser.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Denoiser {
-    /// Open Image Denoise where it is found, else our own.
+    /// Open Image Denoise if it is found, otherwise the built-in denoiser.
     #[default]
     Auto,
     /// Open Image Denoise.
     Oidn,
-    /// Our own, whose bits are the same everywhere.
+    /// Built-in denoiser, which gives equal bits on every machine.
     Own,
 }
 
 impl Denoiser {
     const NAMES: [&'static str; 3] = ["auto", "oidn", "own"];
 
-    /// Reads its name.
+    /// Returns a parser of denoiser names.
     pub fn parser() -> impl TypedValueParser<Value = Denoiser> {
         PossibleValuesParser::new(Denoiser::NAMES).map(|name| match name.as_str() {
             "oidn" => Denoiser::Oidn,
@@ -33,7 +33,7 @@ impl Denoiser {
         })
     }
 
-    /// The picture without its noise.
+    /// Denoises a picture.
     pub fn clean(self, noisy: Noisy, threads: Option<usize>, quiet: bool) -> Result<Layer, Failure> {
         if self == Denoiser::Own {
             return Ok(noisy.denoised());
@@ -43,9 +43,7 @@ impl Denoiser {
             Err(why) if self == Denoiser::Oidn => Err(bad(format!("{why}; {HOW}"))),
             Err(why) => {
                 if !quiet {
-                    report::note(&Diagnostic::note(format!(
-                        "noise is taken out by our own denoiser, for {why}; {HOW}"
-                    )));
+                    report::note(&Diagnostic::note(format!("using the built-in denoiser because {why}; {HOW}")));
                 }
                 Ok(noisy.denoised())
             }
@@ -53,6 +51,6 @@ impl Denoiser {
     }
 }
 
-/// How the library is got.
-const HOW: &str = "`pip install pyoidn` brings Open Image Denoise: set OIDN_DIR to the folder `pyoidn/oidn` that it makes, \
-                   or to any other that has the library; `--denoise=own` asks for none";
+/// Advice on installing the library.
+const HOW: &str = "`pip install pyoidn` installs Open Image Denoise: set OIDN_DIR to its folder `pyoidn/oidn`, or to any \
+                   other folder with the library; `--denoise=own` needs no library";

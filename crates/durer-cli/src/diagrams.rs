@@ -1,4 +1,4 @@
-//! Pictures that show not the scene but how it is sampled.
+//! Diagrams of the sampling.
 
 use durer::film::course::{CourseFilter, diagram};
 use durer::image::{Image, Layer};
@@ -6,7 +6,7 @@ use durer::math::Vec2;
 use durer::render::{Control, Job, RenderError, Rendered, Sampling};
 use durer::world::World;
 
-/// Adds the diagrams of samples and filter.
+/// Adds the requested diagrams of samples and filter.
 pub fn add(
     shows: &[String],
     zoom: u32,
@@ -27,13 +27,13 @@ pub fn add(
     Ok(())
 }
 
-/// Where samples lie, as a layer.
+/// Renders the sample positions as a layer.
 pub fn samples_layer(world: &World, job: &Job, control: &Control, zoom: u32) -> Result<Layer, RenderError> {
     let stored = durer::render::sample_diagram(world, job, control)?;
     layer("samples", diagram::samples(&stored, zoom))
 }
 
-/// A filter's weights, as a layer.
+/// Renders the filter's weights as a layer.
 pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
     let made = match job.sampling {
         Sampling::Course2004 { filter, .. } => {
@@ -50,12 +50,12 @@ pub fn filter_layer(job: &Job, zoom: u32) -> Result<Layer, RenderError> {
     layer("filter", made)
 }
 
-/// Refuses a diagram too large before it is made.
+/// Rejects a diagram that would be too large.
 pub fn check(job: &Job, zoom: u32) -> Result<(), RenderError> {
     let side = |pixels: u32| pixels.saturating_mul(zoom).saturating_add(1);
     let (width, height) = (side(job.width), side(job.height));
     if u64::from(width) * u64::from(height) > 1 << 24 {
-        let message = "a diagram of so many pixels is too large; ask for a smaller --size or --zoom";
+        let message = "the diagram is too large; use a smaller --size or --zoom";
         return Err(RenderError::Diagram(message.into()));
     }
     Ok(())

@@ -1,4 +1,4 @@
-//! `durer explain`.
+//! `durer explain`: explains a pixel's colour.
 
 mod page;
 
@@ -24,7 +24,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Say why a pixel has its colour: the tree of terms that sums to it
+/// Explain a pixel's colour as a tree of terms that sum to it
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer explain scene.txt --pixel 200,150
@@ -32,43 +32,44 @@ use std::sync::Arc;
   durer explain scene.txt --brightest --html why.html
   durer explain scene.txt --ray '0 1 5 0 0 -1' --json
 
-Give the options with which the picture was rendered: they decide the pixel. Those that only say where a picture goes
-change nothing here. With one sample the pixel's centre is explained.")]
+Pass the same options as to `durer render`: the colour depends on them. Output options have no effect here. With one sample,
+the pixel's centre is explained.")]
 pub struct ExplainArgs {
     #[command(flatten)]
     pub render: RenderArgs,
 
-    /// The pixel, counted from 0 at the upper left corner
+    /// Pixel, counted from 0 at the upper left corner
     #[arg(long, value_name = "X,Y", value_parser = pixel, conflicts_with_all = ["ray", "brightest", "worst"])]
     pub pixel: Option<(u32, u32)>,
-    /// The sample whose tree is shown, by its place in the list [default: the first of those that
-    /// count most]
+    /// Index of the sample whose tree is shown [default: the first with the largest weight]
     #[arg(long, value_name = "N")]
     pub sample: Option<u32>,
-    /// Any ray instead of a pixel's: origin and direction
+    /// Explain this ray instead of a pixel: origin and direction
     #[arg(long, value_name = "OX OY OZ DX DY DZ", num_args = 1..=6, allow_negative_numbers = true, conflicts_with_all = ["brightest", "worst", "sample"])]
     pub ray: Option<Vec<f32>>,
-    /// The brightest pixel of the picture
+    /// Explain the brightest pixel
     #[arg(long, conflicts_with = "worst")]
     pub brightest: bool,
-    /// The pixel least like those around it; of paths, the one to which a single sample adds most
+    /// Explain the pixel that differs most from its neighbours; for paths, the one to which a
+    /// single sample adds most
     #[arg(long)]
     pub worst: bool,
-    /// Leave out terms that are a smaller share of the pixel, in percent
+    /// Omit terms below this percentage of the pixel
     #[arg(long, value_name = "PERCENT", default_value_t = 0.0, value_parser = percent)]
     pub min: f64,
-    /// Leave out terms that stand deeper in the tree
+    /// Omit terms deeper in the tree than this
     #[arg(long, value_name = "N")]
     pub depth: Option<u32>,
-    /// As JSON
+    /// Print JSON
     #[arg(long, conflicts_with = "html")]
     pub json: bool,
-    /// As a page with the picture, the tree and the rays in space
+    /// Write a page with the picture, the tree and the rays in space
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
 }
 
-/// The same words, with the numbers of a quoted ray apart: clap takes `-1 0 0` for an option.
+/// Splits the numbers of a quoted `--ray` into separate words: clap would take `-1 0 0` for an
+/// option.
 pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
     let mut all: Vec<OsString> = Vec::with_capacity(words.len());
     for word in words {
@@ -85,7 +86,7 @@ pub fn apart(words: Vec<OsString>) -> Vec<OsString> {
 pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     if args.render.work.time.is_some() {
         return Err(bad(
-            "how many samples there is time for differs from run to run: say how many there were with --samples",
+            "--time-limit gives a different number of samples on each run: pass the number with --samples instead",
         ));
     }
     let mut options = load_options(&args.render.reading);
@@ -101,7 +102,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let subject = subject(args, &opened, &job, picture.as_ref(), counts.as_ref())?;
     let names = Names { files: &opened.files, scene: &opened.loaded.scene, world: &opened.world };
-    // All trees of a pixel would hide each other.
+    // Show one tree: all trees of a pixel would hide each other.
     let sample = match &subject {
         Subject::Pixel(pixel) => match (args.sample, args.worst) {
             (Some(sample), _) => sample as usize,
@@ -136,7 +137,7 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The whole picture, and how many samples each pixel has where noise divides them.
+/// Renders the whole picture, and counts the samples of each pixel if they are adaptive.
 fn picture(args: &ExplainArgs, opened: &Opened, job: &Job) -> Result<(Option<Image>, Option<Image>), Failure> {
     let counts = if job.adaptive { Aov::from_name("sample-count") } else { None };
     let job = Job { crop: None, color: true, aovs: counts.into_iter().collect(), ..job.clone() };
@@ -159,11 +160,11 @@ fn subject(
             let [ox, oy, oz, dx, dy, dz] = numbers[..] else { return Err(bad("--ray needs six numbers")) };
             let ray = Ray::new(Vec3::new(ox, oy, oz), Vec3::new(dx, dy, dz));
             if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
-                return Err(bad("--ray needs finite numbers, and a direction that is not 0 0 0"));
+                return Err(bad("--ray needs finite numbers and a direction other than 0 0 0"));
             }
             let world = &opened.world;
             let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
-            return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("nothing is known of this ray"));
+            return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("this ray cannot be explained"));
         }
         (None, Some(pixel), _) => pixel,
         (None, None, Some(picture)) if args.brightest => most(picture, |x, y| luminance_of(at(picture, x, y))),
@@ -171,30 +172,30 @@ fn subject(
             return worst(opened, job, picture, counts).map(Subject::Pixel);
         }
         (None, None, Some(picture)) => most(picture, |x, y| oddness(picture, x, y)),
-        (None, None, None) => return Err(bad("say which pixel: --pixel X,Y, --brightest, --worst, or --ray")),
+        (None, None, None) => return Err(bad("choose a pixel or a ray: --pixel X,Y, --brightest, --worst, or --ray")),
     };
     if pixel.0 >= job.width || pixel.1 >= job.height {
         let (x, y) = pixel;
-        return Err(bad(format!("pixel {x},{y} lies outside the picture of {} x {} pixels", job.width, job.height)));
+        return Err(bad(format!("pixel {x},{y} is outside the picture of {} x {} pixels", job.width, job.height)));
     }
     let world = &opened.world;
-    // A part of a picture divides its samples otherwise than the whole.
+    // Adaptive sampling of a crop gives other counts than the whole picture.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
     let explanation = explain_of(world, job, pixel, samples).map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
-        return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
+        return Err(bad(format!("no sample {sample}: the pixel's samples are numbered from 0 to {last}")));
     }
     Ok(Subject::Pixel(explanation))
 }
 
-/// How many samples a pixel has, where that is known.
+/// Returns the number of samples of a pixel, if it is known.
 fn counted(counts: Option<&Image>, (x, y): (u32, u32)) -> Option<u32> {
     counts.map(|counts| at(counts, x, y).x as u32)
 }
 
-/// The pixel to which one sample adds most, among those that differ most from their neighbours: the
-/// brightest firefly.
+/// Returns the brightest firefly: among the pixels that differ most from their neighbours, the one
+/// to which a single sample adds most.
 fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) -> Result<Explanation, Failure> {
     const CANDIDATES: usize = 256;
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
@@ -205,7 +206,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
         let explanation = explain_of(&opened.world, job, (x, y), samples).map_err(failed)?;
-        // A lamp's own border is bright, and no firefly.
+        // The border of a visible light is bright too, but not a firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
         if best.as_ref().is_none_or(|(most, _)| adds > *most) {
@@ -219,7 +220,7 @@ fn at(picture: &Image, x: u32, y: u32) -> Color {
     picture.get(x, y).unwrap_or(Vec3::ZERO)
 }
 
-/// How far a pixel's luminance is from the middle one of those around it.
+/// Returns the distance of a pixel's luminance from the median of its neighbours.
 fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
     let mut around: Vec<f64> = (0..9)
         .filter(|&i| i != 4)
@@ -231,7 +232,7 @@ fn oddness(picture: &Image, x: u32, y: u32) -> f64 {
     (luminance_of(at(picture, x, y)) - middle).abs()
 }
 
-/// The first pixel of the greatest value in reading order.
+/// Returns the pixel with the greatest value, the first in reading order.
 fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     let places = (0..picture.height).flat_map(|y| (0..picture.width).map(move |x| (x, y)));
     let mut best = ((0, 0), f64::NEG_INFINITY);
@@ -244,7 +245,7 @@ fn most(picture: &Image, value: impl Fn(u32, u32) -> f64) -> (u32, u32) {
     best.0
 }
 
-/// A share for people.
+/// Formats a share as a percentage.
 fn percentage(share: f32) -> String {
     match 100.0 * share {
         0.0 => "0 %".into(),
@@ -254,7 +255,7 @@ fn percentage(share: f32) -> String {
     }
 }
 
-/// A line with what it adds before it.
+/// Formats a line, preceded by its contribution.
 pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     let indent = "  ".repeat(line.depth);
     let text = match line.adds {
@@ -267,7 +268,7 @@ pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
     };
     match (colored, line.adds) {
         (false, _) => format!("{indent}{text}"),
-        // Terms that add nothing, and what is only told of a term, stand back.
+        // Dim terms that add nothing, and remarks on a term.
         (true, adds) if line.depth > 0 && adds.is_none_or(|adds| adds.is(0.0)) => {
             format!("{indent}\x1b[2m{text}\x1b[0m")
         }

@@ -1,42 +1,42 @@
-//! Why a command did not do its work, and the exit codes of that.
+//! Failures of a command and their exit codes.
 
 use crate::terminal::{OTHER_FAILURE, complain};
 use durer::render::RenderError;
 use std::sync::atomic::{AtomicU8, Ordering::Relaxed};
 
-/// Exit code after a scene, an option or another input that is wrong.
+/// Exit code for an invalid scene, option or other input.
 const BAD_INPUT: u8 = 2;
-/// Exit code of `durer compare` after pictures that differ: as of `cmp` and `diff`, whose 2 says
-/// that something is wrong.
+/// Exit code of `durer compare` for different pictures, as of `cmp` and `diff`, whose 2 means an
+/// error.
 const DIFFERENT: u8 = 1;
-/// Exit code of `durer check` after findings.
+/// Exit code of `durer check` for findings.
 const FOUND: u8 = 1;
 
-/// The last signal's number: 2 is that of Ctrl-C.
+/// Number of the last signal; 2 is Ctrl-C.
 static SIGNAL: AtomicU8 = AtomicU8::new(2);
 
-/// A signal has interrupted the work: the exit code tells which, 130 after Ctrl-C, as shells have
-/// it.
+/// Records the signal that interrupted the work. The exit code is 128 plus its number, as in
+/// shells: 130 for Ctrl-C.
 pub fn interrupted_by(signal: u8) {
     SIGNAL.store(signal, Relaxed);
 }
 
-/// Why a command did not do its work.
+/// Failure of a command.
 pub enum Failure {
-    /// The input is wrong; diagnostics were printed, or the message says why.
+    /// Invalid input; diagnostics were printed, or the message says why.
     Input(Option<String>),
-    /// Something else went wrong.
+    /// Any other error.
     Other(anyhow::Error),
-    /// `durer compare` found pictures that differ, and has said so.
+    /// `durer compare` found different pictures and has printed so.
     Different,
-    /// `durer check` has found something, and has said so.
+    /// `durer check` has printed findings.
     Found,
-    /// The user stopped it; says what became of the work.
+    /// The user interrupted the work; the message says what was saved.
     Interrupted(String),
 }
 
 impl Failure {
-    /// Says it, and gives the exit code.
+    /// Prints the failure and returns the exit code.
     pub fn report(self) -> u8 {
         match self {
             Failure::Input(message) => {
@@ -65,12 +65,12 @@ impl<E: Into<anyhow::Error>> From<E> for Failure {
     }
 }
 
-/// A wrong input that a message explains.
+/// Returns a failure for invalid input.
 pub fn bad(message: impl Into<String>) -> Failure {
     Failure::Input(Some(message.into()))
 }
 
-/// What a failed render means for the shell.
+/// Converts a render error into a failure.
 pub fn failed(error: RenderError) -> Failure {
     match error {
         RenderError::Cancelled => Failure::Interrupted("nothing was written".into()),

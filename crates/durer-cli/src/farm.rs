@@ -1,4 +1,4 @@
-//! `durer farm`: a job for an engine that is there already, over `--shard` and `durer merge`.
+//! `durer farm`: job files for existing render farms, based on `--shard` and `durer merge`.
 
 use crate::failure::{Failure, bad};
 use crate::frames::{self, Frames, FramesArgs, Moves};
@@ -12,7 +12,7 @@ const KUBERNETES: &str = include_str!("farm/k8s.yaml");
 const OPENJD: &str = include_str!("farm/openjd.yaml");
 const DASK: &str = include_str!("farm/dask.py");
 
-/// Print what a farm needs to render a scene in shards, for an engine that is there already
+/// Print a job file that renders a scene in shards on an existing farm
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer farm scene.txt --template slurm --shards 64 --samples 256 > job.sh && sbatch job.sh
@@ -21,28 +21,28 @@ const DASK: &str = include_str!("farm/dask.py");
   durer farm scene.txt --template dask > render.py && python render.py
   durer farm walk.glb --template slurm --frames 0-239 --fps 24 --samples 64 > job.sh && sbatch job.sh
 
-Each shard is `durer render --shard`, and may be done again on another machine; `durer merge` gives the bytes of one run. The
-options of the render stand after those of the farm; they are checked here.")]
+Each shard is a `durer render --shard` and can be repeated on another machine; `durer merge` gives the same bytes as one run.
+Render options follow the farm's options; they are checked here.")]
 pub struct FarmArgs {
-    /// The scene file
+    /// Scene file
     pub scene: PathBuf,
-    /// For which engine
+    /// Farm engine
     #[arg(long, value_parser = ["slurm", "k8s", "openjd", "dask"])]
     pub template: String,
-    /// How many parts each picture has [default: 16; 1 with --frames]
+    /// Number of parts of each picture [default: 16; 1 with --frames]
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65535))]
     pub shards: Option<u32>,
     #[command(flatten)]
     pub frames: FramesArgs,
-    /// The picture to write in the end [default: the scene's name with .exr]
+    /// Picture to write [default: the scene's name with .exr]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
-    /// Options of the render
+    /// Render options
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub options: Vec<String>,
 }
 
-/// Prints the template with all that is known filled in.
+/// Prints the filled-in template.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     check_options(&args.options)?;
     let text =
@@ -56,7 +56,7 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     let quoted =
         |word: &str| shlex::try_quote(word).map(String::from).map_err(|_| bad(format!("{word:?} cannot be quoted")));
     let options = args.options.iter().map(|word| quoted(word)).collect::<Result<Vec<_>, _>>()?.join(" ");
-    // Names of jobs are letters, digits and dashes.
+    // Job names consist of letters, digits and dashes.
     let name: String = stem.to_lowercase().chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '-' }).collect();
     let name = format!("durer-{}", name.trim_matches('-'));
     let template = match args.template.as_str() {
@@ -70,7 +70,7 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     let Some(tasks) = numbers.count().checked_mul(shards) else {
         return Err(bad(format!("{} frames of {shards} shards are too many tasks", numbers.count())));
     };
-    // What a frame is, in the words of the command and of the language.
+    // A frame as command-line words, and as an expression of the template's language.
     let (moving, words) = match moves {
         Moves::Turntable(count) => {
             (format!("--turntable {count} "), format!(r#", "--turned", str(360 * frame / {count})"#))
@@ -97,14 +97,14 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Checks the options of the render, as they follow `durer render SCENE`.
+/// Checks the render options.
 fn check_options(options: &[String]) -> Result<(), Failure> {
     // A shard needs an output, which the template names.
     let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
     let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
     match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
         Ok(command) if command.frames.is_asked() => {
-            Err(bad("--frames and --turntable are options of the farm: they stand before those of the render"))
+            Err(bad("--frames and --turntable are options of the farm: put them before the render options"))
         }
         Ok(_) => Ok(()),
         Err(error) => {
@@ -115,9 +115,8 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// A template without the lines that belong to the other kind of job: those that begin with
-/// `@frames` are there where there are frames, those that begin with `@still` where there is one
-/// picture.
+/// Removes the lines of the other kind of job: lines that begin with `@frames` belong to
+/// animations, lines that begin with `@still` to single pictures.
 fn chosen(template: &str, frames: bool) -> String {
     let (here, there) = if frames { ("@frames", "@still") } else { ("@still", "@frames") };
     let lines = template.lines().filter(|line| !line.starts_with(there));

@@ -1,4 +1,4 @@
-//! `--frames` and `--turntable`: the pictures of an animation, each into a file of its own.
+//! `--frames` and `--turntable`: the pictures of an animation, one file each.
 
 use crate::failure::{Failure, bad};
 use crate::options::RenderArgs;
@@ -8,24 +8,24 @@ use durer::compile::Kept;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Which pictures of an animation are made, and what moves in them
+/// Frames of an animation, and how they differ
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Animation")]
 pub struct FramesArgs {
-    /// Frames of an animation, picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth. The
-    /// number takes the place of %d, or %04d, in SCENE, PICTURE, --camera and --view-file;
-    /// where none of these but PICTURE has it, the frame is a moment of the model's animation
+    /// Frames to render into picture.0007.png and so on: 7, 1-100, or 0-90:10 for each tenth; the
+    /// number replaces %d or %04d in SCENE, PICTURE, --camera and --view-file; if only PICTURE has
+    /// it, frames are times of the model's animation
     #[arg(long, value_name = "FRAMES")]
     pub frames: Option<Frames>,
-    /// Frames in a second of the model's animation
+    /// Frames per second of the model's animation
     #[arg(long, value_name = "NUMBER", default_value_t = 24.0, requires = "frames", value_parser = rate)]
     pub fps: f64,
-    /// Go around the model once in so many frames; without --frames, all of these
+    /// Rotate once around the model in this many frames; without --frames, render all of them
     #[arg(long, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=9999))]
     pub turntable: Option<u16>,
 }
 
-/// Numbers from the first to the last, in steps.
+/// A range of frames: first, last and step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frames {
     pub first: u32,
@@ -46,7 +46,7 @@ impl std::str::FromStr for Frames {
 }
 
 const MOST: u32 = 9_999_999;
-const WANTED: &str = "expected frames as 7, 1-100 or 0-90:10, of numbers from 0 to 9999999 that go up";
+const WANTED: &str = "expected frames as 7, 1-100 or 0-90:10, in ascending order, from 0 to 9999999";
 
 impl Frames {
     pub fn numbers(self) -> impl Iterator<Item = u32> {
@@ -58,34 +58,34 @@ impl Frames {
     }
 }
 
-/// Frames a second: a number above 0.
+/// Parses a frame rate: a number above 0.
 fn rate(text: &str) -> Result<f64, String> {
     let rate = text.parse().ok().filter(|&rate: &f64| rate.is_finite() && rate > 0.0);
     rate.ok_or("expected a number above 0".into())
 }
 
-/// What moves from frame to frame.
+/// Source of movement between frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Moves {
-    /// The way around the model, of so many frames.
+    /// One rotation around the model in this many frames.
     Turntable(u16),
-    /// Numbers in the place of `%d`.
+    /// Frame numbers in place of `%d`.
     Names,
-    /// The model's animation, of so many frames a second.
+    /// The model's animation, at this many frames per second.
     Time(f64),
 }
 
 impl FramesArgs {
-    /// Whether there is to be more than one picture.
+    /// Returns true if an animation is requested.
     pub fn is_asked(&self) -> bool {
         self.frames.is_some() || self.turntable.is_some()
     }
 
-    /// The frames that are asked for, if any, and what moves. `names` are those that may have a
-    /// place for a number.
+    /// Returns the requested frames and what moves. `names` may contain placeholders for the
+    /// number.
     ///
     /// # Errors
-    /// Nothing would move.
+    /// All frames would be equal.
     pub fn asked(&self, scene: &Path, names: &[&str]) -> Result<Option<(Frames, Moves)>, Failure> {
         let all = |count: u16| Frames { first: 0, last: u32::from(count) - 1, step: 1 };
         let Some(frames) = self.frames.or(self.turntable.map(all)) else { return Ok(None) };
@@ -96,8 +96,8 @@ impl FramesArgs {
             None if ["gltf", "glb"].contains(&extension.as_str()) => Moves::Time(self.fps),
             None => {
                 return Err(bad(
-                    "--frames: nothing would move. Put %d into the name of the scene, --camera or --view-file, \
-                                give --turntable, or render a glTF file, whose animation moves",
+                    "--frames: all frames would be equal; put %d into the name of the scene, --camera or --view-file, \
+                     pass --turntable, or render a glTF file with an animation",
                 ));
             }
         };
@@ -105,7 +105,7 @@ impl FramesArgs {
     }
 }
 
-/// Where a name has `%d` or `%04d`: from, to, and how many digits.
+/// Finds `%d` or `%04d` in a name: start, end, and number of digits.
 fn place(name: &str) -> Option<(usize, usize, usize)> {
     name.match_indices('%').find_map(|(from, _)| {
         let digits: String = name[from + 1..].chars().take_while(char::is_ascii_digit).collect();
@@ -115,7 +115,7 @@ fn place(name: &str) -> Option<(usize, usize, usize)> {
     })
 }
 
-/// A name with a frame's number in all its places.
+/// Replaces each placeholder of a name by the frame's number.
 pub fn numbered(name: &str, frame: u32) -> String {
     match place(name) {
         Some((from, to, digits)) => format!("{}{frame:0digits$}{}", &name[..from], numbered(&name[to..], frame)),
@@ -123,7 +123,7 @@ pub fn numbered(name: &str, frame: u32) -> String {
     }
 }
 
-/// The pattern of the files of all frames: `picture.png` becomes `picture.%04d.png`.
+/// Returns the pattern of the frames' files: `picture.png` becomes `picture.%04d.png`.
 pub fn pattern(path: &str) -> String {
     if place(path).is_some() {
         return path.into();
@@ -132,20 +132,20 @@ pub fn pattern(path: &str) -> String {
     Path::new(path).with_extension(format!("%04d.{extension}")).to_string_lossy().into_owned()
 }
 
-/// Renders the frames one after the other.
+/// Renders the frames in order.
 pub fn run(args: &mut RenderArgs, frames: Frames, moves: Moves) -> Result<(), Failure> {
     let staging = &args.reading.staging;
     let own = staging.camera.is_some() || staging.view_file.is_some() || staging.turned.is_some();
     if matches!(moves, Moves::Turntable(_)) && own {
-        return Err(bad("--turntable goes around the model: --camera, --view-file and --turned say whence it is seen"));
+        return Err(bad("--turntable sets the view of each frame: remove --camera, --view-file and --turned"));
     }
     if matches!(moves, Moves::Time(_)) && staging.at.is_some() {
-        return Err(bad("--frames are moments of the animation: --at is one"));
+        return Err(bad("--frames sets the time of each frame: remove --at"));
     }
     let utf8 = |path: &Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let (scene, output) = (utf8(&args.scene)?, pattern(&utf8(&output_of(args))?));
     let (camera, view_file) = (staging.camera.clone(), staging.view_file.as_deref().map(utf8).transpose()?);
-    // Meshes and pictures that frames share are read once.
+    // Read meshes and pictures that frames share once.
     let kept = Arc::new(Kept::default());
     for frame in frames.numbers() {
         (args.scene, args.output) = (numbered(&scene, frame).into(), Some(numbered(&output, frame).into()));

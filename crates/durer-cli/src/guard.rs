@@ -1,8 +1,7 @@
-//! What a run reads and what it writes: no file is both, and none is written twice.
+//! Inputs and outputs of a run: no file may be both, and no output may be named twice.
 //!
-//! Whoever opens a file for the user tells it here, and only what was allowed here is written
-//! ([`crate::output`] takes nothing else). It makes no difference by which name, link or detour a
-//! file is named.
+//! Every file that the user names is registered here, and [`crate::output`] writes only registered
+//! files. Files are compared by identity, so different names and links of one file are recognised.
 
 use crate::failure::{Failure, bad};
 use durer::image::Destination;
@@ -10,26 +9,26 @@ use durer::render::PartialRender;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// The files of one run.
+/// Files of one run.
 #[derive(Default)]
 pub struct Guard {
     inputs: Vec<Named>,
     outputs: Vec<Named>,
 }
 
-/// A file, what it is for, and all by which it can be known.
+/// A file, the option that names it, and its identity.
 struct Named {
     what: &'static str,
     path: PathBuf,
     identity: Identity,
 }
 
-/// What two names of one file have in common.
+/// Identity of a file, equal for all names of it.
 #[derive(PartialEq)]
 struct Identity {
-    /// Its name without links and detours; of a file that is not there yet, within its folder.
+    /// Canonical path; for a file that does not exist yet, within its canonical folder.
     name: Option<PathBuf>,
-    /// Its number in its file system, which hard links share.
+    /// Device and inode number, which hard links share.
     inode: Option<(u64, u64)>,
 }
 
@@ -38,7 +37,7 @@ impl Identity {
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let within = || Some(folder.canonicalize().ok()?.join(path.file_name()?));
         let name = path.canonicalize().ok().or_else(within);
-        // There, names that differ in capitals alone are usually of one file.
+        // These file systems usually ignore case.
         let same_case = cfg!(any(windows, target_os = "macos"));
         let name = name.map(|name| if same_case { name.to_string_lossy().to_lowercase().into() } else { name });
         Identity { name, inode: inode(path) }
@@ -61,7 +60,7 @@ fn inode(_: &Path) -> Option<(u64, u64)> {
 }
 
 impl Guard {
-    /// A file is read: refuses that if it is to be written.
+    /// Registers an input. Fails if it is also an output.
     pub fn reads(&mut self, path: &Path) -> Result<(), Failure> {
         let input = Named { what: "", path: path.into(), identity: Identity::of(path) };
         if let Some(output) = self.outputs.iter().find(|output| output.identity.is_same(&input.identity)) {
@@ -71,20 +70,20 @@ impl Guard {
         Ok(())
     }
 
-    /// A file is to be written, as the option `what` says: refuses what cannot be written, what is
-    /// read, what is written already, and saved work.
+    /// Registers an output for the option `what`. Fails if the file cannot be written, is an input,
+    /// is another output, or holds saved work.
     pub fn writes(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         let place = self.saves(what, path)?;
         match is_saved_work(path) {
             false => Ok(place),
             true => Err(bad(format!(
-                "{what}: `{}` is saved work, which is replaced by nothing else: choose another name",
+                "{what}: `{}` holds saved work, which must not be overwritten: choose another name",
                 path.display()
             ))),
         }
     }
 
-    /// The same for work that is saved, over saved work as well.
+    /// Registers an output for saved work, which may replace saved work.
     pub fn saves(&mut self, what: &'static str, path: &Path) -> Result<Destination, Failure> {
         self.claim(what, path)?;
         let own = ["/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].iter().any(|own| path == Path::new(own));
@@ -94,19 +93,19 @@ impl Guard {
         Ok(Destination::new(path)?)
     }
 
-    /// The same for a file that is only removed, or replaced under another claim.
+    /// Registers a file that is only removed, or replaced under another claim.
     pub fn claim(&mut self, what: &'static str, path: &Path) -> Result<(), Failure> {
         let output = Named { what, path: path.into(), identity: Identity::of(path) };
         let same = |other: &&Named| other.identity.is_same(&output.identity);
         if let Some(input) = self.inputs.iter().find(same) {
             return Err(both(&output, input));
         }
-        // What is no file holds as much as comes, if anything.
+        // Devices and pipes may be written twice.
         let file = !path.exists() || path.is_file();
         if let Some(other) = self.outputs.iter().find(same).filter(|_| file) {
             let (what, first) = (output.what, other.what);
             return Err(bad(format!(
-                "two things cannot go into one file, `{}`, as {first} and {what} say: choose another name",
+                "{first} and {what} both name `{}`: choose another name for one of them",
                 path.display()
             )));
         }
@@ -115,13 +114,13 @@ impl Guard {
     }
 }
 
-/// Whether a file holds a part of a picture.
+/// Returns true if a file holds a part of a picture.
 fn is_saved_work(path: &Path) -> bool {
-    // Whoever opens what is no file may wait for ever.
+    // Opening a FIFO would block.
     path.is_file() && start_of(path).is_ok_and(|start| start == PartialRender::MAGIC)
 }
 
-/// The first bytes of a file, at most as many as a part of a picture is known by.
+/// Reads the first bytes of a file, at most the length of [`PartialRender::MAGIC`].
 pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
     let mut start = Vec::new();
     std::fs::File::open(path)?.take(PartialRender::MAGIC.len() as u64).read_to_end(&mut start)?;
@@ -131,7 +130,7 @@ pub fn start_of(path: &Path) -> std::io::Result<Vec<u8>> {
 fn both(output: &Named, input: &Named) -> Failure {
     let (what, path) = (output.what, output.path.display());
     let named = if output.path == input.path { String::new() } else { format!(", as `{}`", input.path.display()) };
-    bad(format!("{what}: `{path}` would be replaced, and it is read in this run{named}: choose another name"))
+    bad(format!("{what}: `{path}` would be overwritten, but it is an input of this run{named}: choose another name"))
 }
 
 #[cfg(test)]
@@ -162,7 +161,7 @@ mod tests {
             assert!(after.reads(&at("in")).is_err(), "{}", name.display());
             assert!(after.writes("--preview", &at("in")).is_err(), "{}", name.display());
         }
-        // Files that are not there yet.
+        // Files that do not exist yet.
         let mut guard = Guard::default();
         assert!(guard.writes("-o", &at("new")).is_ok() && guard.writes("-o", &at("a/new")).is_ok());
         assert!(guard.writes("--preview", &at("a/../new")).is_err());

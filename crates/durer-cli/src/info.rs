@@ -1,4 +1,4 @@
-//! `durer info`.
+//! `durer info`: prints a summary of a scene.
 
 use crate::failure::Failure;
 use crate::guard::Guard;
@@ -15,15 +15,15 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Say what is in a scene
+/// Print a summary of a scene
 #[derive(Args)]
 #[command(after_help = "Examples:\n  durer info scene.txt\n  durer info scene.txt --json")]
 pub struct InfoArgs {
-    /// The scene file
+    /// Scene or model file
     pub scene: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
-    /// As JSON, with the scene as `durer convert` writes it
+    /// Print JSON, with the scene as `durer convert` writes it
     #[arg(long)]
     pub json: bool,
 }
@@ -64,7 +64,7 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
     say(&format!("camera     {name} at {}, looking along {}: {rest}", pose.center, pose.direction));
     let natural = || Raster::natural_size(camera.proportions(), loaded.rules.size);
     let (width, height) = loaded.scene.wishes.size.unwrap_or_else(natural);
-    say(&format!("picture    {width}x{height} where no size is asked for"));
+    say(&format!("picture    {width}x{height} by default"));
     for light in world.lights() {
         say(&format!("light      {}: {}", light.keyword(dialect), fields(light, &[])));
     }
@@ -98,12 +98,12 @@ pub fn run(args: &InfoArgs) -> Result<(), Failure> {
         say(&format!("           {bytes:.0} bytes a triangle"));
     }
     if let (Some(nodes), Some(tests)) = (per_ray(rays.nodes), per_ray(rays.tests)) {
-        say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests for each of {} from the camera", rays.rays));
+        say(&format!("rays       {nodes:.1} nodes and {tests:.1} tests per ray, for {} camera rays", rays.rays));
     }
     Ok(())
 }
 
-/// What it takes to find what the camera sees, by a coarse picture.
+/// Counts the work of tracing camera rays, in a coarse picture.
 fn rays(world: &World) -> TraversalStats {
     const SIDE: u32 = 64;
     let (raster, mut counts) = (raster(world, SIDE, SIDE), TraversalStats::default());
@@ -118,7 +118,7 @@ fn mib(bytes: usize) -> f64 {
     bytes as f64 / f64::from(1 << 20)
 }
 
-/// The fields of a thing with their values, but for some.
+/// Formats the fields of an object, except some.
 fn fields<T: DescribedList>(thing: &T, except: &[&str]) -> String {
     let wanted = thing.fields().iter().enumerate().filter(|(_, field)| !except.contains(&field.name));
     let shown = wanted.filter_map(|(i, field)| Some(format!("{} {}", field.name, value(&thing.get(i)?))));
@@ -137,7 +137,7 @@ fn value(value: &durer::describe::Value) -> String {
     }
 }
 
-/// What a world holds.
+/// Contents of a world.
 #[derive(Default)]
 struct Counted {
     shapes: BTreeMap<&'static str, usize>,
@@ -146,13 +146,13 @@ struct Counted {
     bytes: usize,
     picture_bytes: usize,
     tree_bytes: usize,
-    /// Costs of meshes' trees, each times its triangles.
+    /// Sum over meshes of tree cost times triangles.
     costs: f64,
     object_cost: Option<f64>,
 }
 
 impl Counted {
-    /// Counts a mesh; one that several objects share counts once.
+    /// Counts a mesh; memory of a shared mesh counts once.
     fn mesh(&mut self, tree: &Arc<MeshTree>, seen: &mut Vec<*const MeshTree>) {
         self.triangles += tree.mesh.len();
         if !seen.contains(&Arc::as_ptr(tree)) {
@@ -164,7 +164,7 @@ impl Counted {
         }
     }
 
-    /// Cost of a random ray in the mean tree of triangles, each of which counts the same.
+    /// Returns the expected cost of a random ray in a mesh's tree, averaged over triangles.
     fn tree_cost(&self) -> Option<f64> {
         let cost = self.costs / self.distinct_triangles as f64;
         cost.is_finite().then_some(cost)

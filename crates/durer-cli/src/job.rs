@@ -1,4 +1,4 @@
-//! From options to a job.
+//! Conversion of options to a job.
 
 use crate::failure::{Failure, bad};
 use crate::options::{JobArgs, SceneArgs, ViewArgs};
@@ -11,14 +11,14 @@ use durer::job::{RenderJob, View};
 use durer::render::{Job, Sampling};
 use durer::world::World;
 
-/// The job that the options ask for, the colour of the whole picture without a view; `timed` if
-/// time decides when it ends.
+/// Returns the job for the options; without a view, the colour of the whole picture. `timed` is
+/// true if a time limit ends it.
 pub fn job(args: &JobArgs, view: Option<&ViewArgs>, loaded: &Loaded, timed: bool) -> Result<Job, Failure> {
     let view = view.map(|view| View { crop: view.crop, show: view.show.clone() });
     args.options.resolve(&loaded.job_context(timed), view.as_ref()).map_err(bad)
 }
 
-/// Warns of a picture that its camera does not fill, or whose lens stays unused.
+/// Warns if the camera does not fill the picture, or its lens is not sampled.
 pub fn warn(job: &Job, world: &World) {
     let camera = world.camera();
     let (columns, rows) = durer::render::raster(world, job.width, job.height).empty();
@@ -26,19 +26,19 @@ pub fn warn(job: &Job, world: &World) {
         let (count, what) = if columns > 0 { (columns, "columns") } else { (rows, "rows") };
         let (w, h) = Raster::natural_size(camera.proportions(), (job.width, job.height));
         report::note(&Diagnostic::warning(format!(
-            "{count} {what} of {}x{} stay empty: this camera's picture has another shape; `--size {w}x{h}` has it",
+            "{count} {what} of {}x{} stay empty: the camera has another aspect ratio; `--size {w}x{h}` matches it",
             job.width, job.height
         )));
     }
     if job.sampling == Sampling::Center && camera.has_aperture() {
-        let message = "with one sample a pixel only the middle of the lens is used, and nothing is out of focus; ask for \
-                       more `--samples`, 64 say";
+        let message = "one sample per pixel uses only the middle of the lens, so everything is in focus; use more \
+                       `--samples`, for example 64";
         report::note(&Diagnostic::warning(message));
     }
 }
 
-/// The options that make a job of a scene, but for its size: those that are not what the scene has
-/// by itself.
+/// Returns the options that reproduce a job, without its size: those that differ from the scene's
+/// defaults.
 pub fn spelled(reading: &SceneArgs, job: &Job, loaded: &Loaded) -> String {
     let asked = loaded.guess.is_none();
     let mut words: Vec<String> = Vec::new();

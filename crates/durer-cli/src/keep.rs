@@ -1,4 +1,4 @@
-//! What is saved of work that takes long: checkpoints, parts, previews.
+//! Saved work of long renders: checkpoints, parts, previews.
 
 use crate::failure::{Failure, bad};
 use crate::guard::{Guard, start_of};
@@ -13,20 +13,20 @@ use std::cell::Cell;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// Work that takes less than this is not saved before it is done, unless somebody wants it more
-/// often.
+/// Time before the first save, unless `--checkpoint-every` is shorter.
 const SHORT: Duration = Duration::from_secs(1);
 
-/// Bytes of work that are taken to be saved in a second, as long as none were.
+/// Estimated bytes saved per second, before the first save is measured.
 const SAVED_PER_SECOND: u64 = 200_000_000;
 
-/// Saves work.
+/// Saves unfinished work and previews.
 pub struct Keeper {
-    /// Where it is saved.
+    /// File of the saved work.
     place: Option<Destination>,
-    /// Whether that is what the user wants in the end, and not only until the picture is there.
+    /// True if the user asked for the saved work itself; false if it is only kept until the picture
+    /// is written.
     wanted: bool,
-    /// What was saved before and is gone on with.
+    /// Earlier work to continue.
     saved: Cell<Option<Box<PartialRender>>>,
     resume: bool,
     restart: bool,
@@ -35,43 +35,46 @@ pub struct Keeper {
     display: Display,
     start: Instant,
     short: Duration,
-    /// Whether what is saved there is this work, as far as it was then.
+    /// True if this run has saved work to the file.
     is_ours: Cell<bool>,
-    /// How long saving took the last time.
+    /// Duration of the last save.
     saving: Cell<Option<Duration>>,
-    /// Whether it was said that saving does not work.
+    /// True after the first warning that saving failed.
     complained: Cell<bool>,
 }
 
 impl Keeper {
-    /// Says now what is known to prevent saving. Nothing that is saved is thrown away unless
-    /// `--restart` says so.
+    /// Reports before the render what would prevent saving. Saved work is only discarded with
+    /// `--restart`.
     pub fn new(args: &RenderArgs, output: &Path, guard: &mut Guard) -> Result<Self, Failure> {
         let work = &args.work;
         let (path, option) = match (&work.checkpoint, work.shard) {
             (_, Some(_)) => (output.to_path_buf(), "--output"),
             (Some(path), _) => (path.clone(), "--checkpoint"),
-            _ => (lengthened(output, ".part"), "--checkpoint, which is PICTURE.part unless given,"),
+            _ => (lengthened(output, ".part"), "--checkpoint (default PICTURE.part)"),
         };
         let wanted = work.shard.is_some() || work.checkpoint.is_some();
-        // Beside a stream there is no place.
+        // Saved work cannot be placed beside a stream.
         let beside_stream = !wanted && (output.starts_with("/dev") || output.starts_with("/proc"));
         let place = match work.no_checkpoint || beside_stream {
             true => None,
             false => Some(guard.saves(option, &path)?),
         };
         if let Some(place) = place.as_ref().filter(|place| place.is_stream() && work.shard.is_none()) {
-            return Err(bad(format!("{option}: `{}` is no file, and cannot keep anything", place.path().display())));
+            return Err(bad(format!(
+                "{option}: `{}` is not a regular file and cannot hold saved work",
+                place.path().display()
+            )));
         }
         let saved = match &place {
             Some(place) if !place.is_stream() => what_was_saved(args, place.path())?,
             _ => None,
         };
-        // Who watches sees the picture while it is made.
+        // With --watch, the picture grows while it is rendered.
         let growing = args.watch && !output.starts_with("/dev") && args.view.show == ["color"];
         let growing = growing.then(|| Ok::<_, Failure>((Destination::new(output)?, format(output)?))).transpose()?;
         let preview = work.preview.as_ref().map(|path| {
-            // The name first: it may be wrong altogether.
+            // Check the format first: the name may be invalid.
             let format = format(path)?;
             Ok::<_, Failure>((guard.writes("--preview", path)?, format))
         });
@@ -92,27 +95,26 @@ impl Keeper {
         })
     }
 
-    /// The part that was saved, if it is to be gone on with; else a fresh one.
+    /// Returns the saved part if it continues this work, otherwise `fresh`.
     pub fn begin(&self, fresh: PartialRender) -> Result<PartialRender, Failure> {
         let (Some(saved), Some(place)) = (self.saved.take(), &self.place) else { return Ok(fresh) };
         let name = place.path().display();
-        let other =
-            |error| bad(format!("cannot go on with `{name}`: {error}; --restart throws it away and begins anew"));
+        let other = |error| bad(format!("cannot continue `{name}`: {error}; --restart discards it and starts again"));
         fresh.same_work(&saved).map_err(other)?;
         if !self.quiet {
-            complain(&format!("note: going on with {name}: {} % done", percent(&saved)));
+            complain(&format!("note: continuing {name}: {} % done", percent(&saved)));
         }
         Ok(*saved)
     }
 
-    /// Saves work and preview.
+    /// Saves the work and the preview if they are due.
     pub fn watch(&self, part: &PartialRender, moment: RenderEvent) {
         let due = self.start.elapsed() >= self.short && self.is_worth_saving(part);
         if let Some(place) = self.place.as_ref().filter(|place| due && !place.is_stream()) {
             let before = Instant::now();
             match save_part(place, part) {
                 Ok(()) => self.is_ours.set(true),
-                // The picture may still be saved somewhere else.
+                // Do not abort: the picture may still be saved elsewhere.
                 Err(error) => self.complain(&error),
             }
             self.saving.set(Some(before.elapsed()));
@@ -127,7 +129,7 @@ impl Keeper {
         }
     }
 
-    /// Whether what is left of the work takes longer than saving does.
+    /// Returns true if the remaining work takes longer than saving.
     fn is_worth_saving(&self, part: &PartialRender) -> bool {
         let (all, done) = part.work();
         let left = self.start.elapsed().as_secs_f64() * all.saturating_sub(done) as f64 / done.max(1) as f64;
@@ -138,11 +140,11 @@ impl Keeper {
 
     fn complain(&self, error: &str) {
         if !self.complained.replace(true) {
-            complain(&format!("warning: {error}; rendering goes on"));
+            complain(&format!("warning: {error}; rendering continues"));
         }
     }
 
-    /// Saves a part that is wanted.
+    /// Saves a part that the user asked for.
     pub fn save(&self, part: &PartialRender) -> Result<(), Failure> {
         let Some(place) = &self.place else { return Ok(()) };
         progress::saving();
@@ -151,7 +153,7 @@ impl Keeper {
         Ok(())
     }
 
-    /// The picture is saved. Work that is finished is not needed any more.
+    /// Called when the picture is saved. Removes finished work.
     pub fn done(&self, part: &PartialRender, finished: bool) {
         let Some(place) = &self.place else { return };
         if !finished && (self.wanted || self.resume) {
@@ -162,19 +164,19 @@ impl Keeper {
             || self.is_ours.get()
             || read_part(place.path()).is_ok_and(|old| part.same_work(&old).is_ok())
         {
-            // Only what is of this picture, or was to be thrown away; if it cannot be removed, it
-            // is only in the way.
+            // Remove only work of this picture, or work that was to be discarded. A failure leaves
+            // a useless file but does no harm.
             let _ = std::fs::remove_file(place.path());
         }
     }
 
-    /// Saves what is there. The names of the files that were written.
+    /// Saves the work so far. Returns the names of the files written.
     pub fn after_interrupt(&self, part: &PartialRender) -> Vec<String> {
         let due = |place: &&Destination| part.work().1 > 0 && !place.is_stream();
         let Some(place) = self.place.as_ref().filter(due) else { return Vec::new() };
         progress::saving();
         match save_part(place, part) {
-            Ok(()) => vec![format!("{} (--resume goes on with it)", place.path().display())],
+            Ok(()) => vec![format!("{} (--resume continues it)", place.path().display())],
             Err(error) => {
                 self.complain(&error);
                 Vec::new()
@@ -182,16 +184,16 @@ impl Keeper {
         }
     }
 
-    /// Saves what is there after an error in this program, and says how to see it again.
+    /// Saves the work after a panic, and describes how to reproduce it.
     pub fn after_panic(&self, part: &PartialRender, panicked: &Panicked, command: &str) -> Failure {
         let saved = self.after_interrupt(part);
-        let kept = if saved.is_empty() { String::new() } else { format!("\nwhat was made is in {}", saved.join("")) };
-        Failure::Other(anyhow::anyhow!("{panicked}\nto see it alone: {command}{kept}"))
+        let kept = if saved.is_empty() { String::new() } else { format!("\nthe work so far is in {}", saved.join("")) };
+        Failure::Other(anyhow::anyhow!("{panicked}\nto reproduce it: {command}{kept}"))
     }
 }
 
-/// What was saved in a file and is to be gone on with. Refuses to replace what is no part at all,
-/// and without `--resume` or `--restart` what is not finished.
+/// Reads earlier work to continue. Refuses to replace a file that is not a part, and unfinished
+/// work without `--resume` or `--restart`.
 fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRender>>, Failure> {
     let name = path.display();
     if !path.exists() {
@@ -202,21 +204,21 @@ fn what_was_saved(args: &RenderArgs, path: &Path) -> Result<Option<Box<PartialRe
     if work.restart || empty && !work.resume {
         return Ok(None);
     }
-    let restart = "--restart throws it away and begins anew";
+    let restart = "--restart discards it and starts again";
     let part = match (read_part_of(path), work.resume) {
         (Ok(Ok(part)), true) => return Ok(Some(Box::new(part))),
         (Ok(Ok(part)), false) => part,
         (Ok(Err(error)), true) => return Err(bad(format!("`{name}` cannot be used: {error}; {restart}"))),
-        (Ok(Err(error)), false) => return Err(bad(format!("`{name}` was saved before, and {error}; {restart}"))),
+        (Ok(Err(error)), false) => return Err(bad(format!("`{name}` holds earlier work, but {error}; {restart}"))),
         (Err(failure), _) => return Err(failure),
     };
-    // A shard is what is wanted, as a picture is. Beside a picture there is a part only as long as
-    // there is no picture of it.
+    // A finished shard is an output like a picture. Beside a picture, a part only exists until the
+    // picture does.
     if work.shard.is_some() && part.is_finished() {
         return Ok(None);
     }
     let percent = percent(&part);
-    Err(bad(format!("there is unfinished work in `{name}`, {percent} % done: --resume goes on with it, {restart}")))
+    Err(bad(format!("`{name}` holds unfinished work, {percent} % done: --resume continues it, {restart}")))
 }
 
 fn percent(part: &PartialRender) -> u64 {
@@ -224,8 +226,7 @@ fn percent(part: &PartialRender) -> u64 {
     100 * done / all.max(1)
 }
 
-/// Whether a file may be replaced by a part: one that is there already, if it is one itself or
-/// empty.
+/// Checks that a part may replace a file: it does not exist, is empty, or is a part.
 fn check_is_part(path: &Path) -> Result<(), String> {
     let start = match start_of(path) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Vec::new(),
@@ -234,13 +235,13 @@ fn check_is_part(path: &Path) -> Result<(), String> {
     match PartialRender::MAGIC.starts_with(&start) {
         true => Ok(()),
         false => Err(format!(
-            "`{}` is no part of a picture, and is not replaced by one: choose another name",
+            "`{}` is not a part of a picture and must not be overwritten: choose another name",
             path.display()
         )),
     }
 }
 
-/// Saves a part, over nothing but a part.
+/// Saves a part, replacing only a part.
 fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
     if !place.is_stream() {
         check_is_part(place.path())?;
@@ -248,7 +249,7 @@ fn save_part(place: &Destination, part: &PartialRender) -> Result<(), String> {
     save_all(&[(place, part)]).map_err(|error| error.to_string())
 }
 
-/// Reads a part from a file.
+/// Reads a part.
 pub fn read_part(path: &Path) -> Result<PartialRender, Failure> {
     read_part_of(path)?.map_err(|error| bad(format!("`{}` cannot be used: {error}", path.display())))
 }

@@ -1,4 +1,4 @@
-//! Pictures larger than memory: rendered while they are written.
+//! Pictures larger than memory, rendered while they are written.
 
 use crate::failure::{Failure, bad, failed};
 use crate::options::RenderArgs;
@@ -14,19 +14,19 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::sync::Arc;
 
-/// Whether a picture is larger than memory or than any that is made at once.
+/// Returns true if a picture exceeds the memory limit or the largest size held in memory.
 pub fn is_large(job: &Job, needed: u64, memory: Option<u64>) -> bool {
     job.window().pixels() > MAX_PIXELS || memory.is_some_and(|memory| needed > memory)
 }
 
-/// How a large picture is made, or why it cannot be.
+/// Divides a large picture into bands, or reports why that is impossible.
 pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>) -> Result<Bands, Failure> {
     let refuse = |why: &str| Err(failed(RenderError::Bands(why.into())));
     let (work, window) = (&args.work, job.window());
-    let Some((_, format)) = target.single() else { return refuse("it has other pictures than the colours") };
+    let Some((_, format)) = target.single() else { return refuse("it has pictures other than the colour") };
     if format.rows.is_none() {
         let others: Vec<_> = FORMATS.iter().filter(|format| format.rows.is_some()).map(|format| format.name).collect();
-        return refuse(&format!("{} needs all rows at once; take one of {}", format.name, others.join(", ")));
+        return refuse(&format!("{} needs all rows at once; use one of {}", format.name, others.join(", ")));
     }
     format.check_sides(window.width, window.height).map_err(|error| bad(error.to_string()))?;
     for (given, option) in [
@@ -37,10 +37,10 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
         (args.stats, "--stats"),
     ] {
         if given {
-            return refuse(&format!("{option} needs all of it in memory"));
+            return refuse(&format!("{option} needs the whole picture in memory"));
         }
     }
-    // What the scene takes is not known yet: half is left for it.
+    // The scene's size is not known yet: reserve half of the memory for it.
     Bands::new(job, memory.map_or(u64::MAX, |memory| memory / 2)).map_err(|error| match (error, memory) {
         (RenderError::Memory { needed, .. }, Some(allowed)) => {
             failed(RenderError::Memory { needed: needed.saturating_mul(2), allowed })
@@ -49,17 +49,17 @@ pub fn bands(args: &RenderArgs, job: &Job, target: &Target, memory: Option<u64>)
     })
 }
 
-/// What was counted and the hash, or why there is no picture.
+/// Statistics and hash of a written picture, or the error.
 type Made = Result<(Statistics, Option<Digest>), BandsError>;
 
-/// The picture, which is made when it is written.
+/// A picture that is rendered when it is written.
 struct Large<'a> {
     bands: &'a Bands,
     world: &'a World,
     control: &'a Control,
     format: &'a Format,
     options: WriteOptions<'a>,
-    /// What came of it.
+    /// Result of the render, set by `write_to`.
     made: RefCell<Option<Made>>,
 }
 
@@ -68,13 +68,13 @@ impl Content for &Large<'_> {
         let mut out = io::BufWriter::new(out);
         let made = self.bands.write(self.world, self.control, self.format, &self.options, &mut out);
         let made = made.and_then(|made| Ok(out.flush().map(|()| made)?));
-        let result = if made.is_ok() { Ok(()) } else { Err(io::Error::other("the picture was not made")) };
+        let result = if made.is_ok() { Ok(()) } else { Err(io::Error::other("the picture was not rendered")) };
         *self.made.borrow_mut() = Some(made);
         result
     }
 }
 
-/// Renders and writes it.
+/// Renders and writes a large picture.
 pub fn render(
     bands: &Bands,
     world: &World,
@@ -100,7 +100,7 @@ pub fn render(
     match hash {
         Some(hash) if args.hash => say(&hash.to_string()),
         None if args.hash => {
-            return Err(bad("--hash: the lowest row of this format comes first; take PNG, PPM or HDR"));
+            return Err(bad("--hash: this format stores the lowest row first; use PNG, PPM or HDR"));
         }
         _ => {}
     }

@@ -1,4 +1,4 @@
-//! `durer lesson`.
+//! `durer lesson`: writes a lesson about a scene.
 
 mod folder;
 mod markdown;
@@ -23,8 +23,8 @@ use folder::Folder;
 use std::path::{Path, PathBuf};
 use written::{Lesson, PAGE, TEXT};
 
-/// Show a scene in the order of the lecture: rays, distance, normals, light by light, with
-/// equations and mistakes
+/// Write a lesson about a scene: rays, distance, normals and lights step by step, with equations
+/// and common mistakes
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer lesson scene.txt -o lesson/
@@ -32,34 +32,34 @@ use written::{Lesson, PAGE, TEXT};
   durer lesson scene.txt -o lesson/ --dialect f04 --shadows --bounces 4 --transfer course
   durer lesson scenes/plates.txt -o lesson/ --samples 32
 
-FOLDER gets a page for a browser, index.html, which needs nothing else, and the same as lesson.md with its pictures as
-files. A folder that is there already keeps its other files; what an earlier lesson wrote is replaced.
-Give the options with which the picture is rendered: with Whitted's light the last step is that picture. Without --size its
-longer side has 256 pixels. A step of which nothing is seen in the scene is shown in a small scene of ours, and says so.
-With --integrator path or photons, which some scenes have by themselves, the lesson goes on with soft shadows, bounces, lamps
-found in two ways, caustics and spectra, as far as the scene has them.")]
+FOLDER gets a self-contained page, index.html, and the same text as lesson.md with its pictures as files. An existing folder
+keeps its other files; files of an earlier lesson are replaced.
+Pass the same options as to `durer render`: with the whitted integrator, the last step is that picture. Without --size, the
+longer side has 256 pixels. A step that the scene cannot show uses a small built-in scene, and says so.
+With --integrator path or photons, the default of some scenes, the lesson continues with soft shadows, bounces, the two ways
+to sample lights, caustics and spectra, as far as the scene has them.")]
 pub struct LessonArgs {
-    /// The scene file
+    /// Scene file
     pub scene: PathBuf,
-    /// The folder to write [default: the scene's name with -lesson, here]
+    /// Folder to write [default: the scene's name with -lesson, in the current folder]
     #[arg(short, long, value_name = "FOLDER")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub reading: SceneArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// Threads that build and render [default: as many as the machine has]
+    /// Threads that build and render [default: one per processor]
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// How colours become eight bits
+    /// Transfer curve of the pictures
     #[arg(long, default_value = "srgb", value_parser = PossibleValuesParser::new(Transfer::ALL.map(Transfer::name)))]
     pub transfer: String,
-    /// Say nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub quiet: bool,
 }
 
-/// The longer side of a picture where no size is asked for.
+/// Default length of the longer side in pixels.
 const SIDE: u32 = 256;
 pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let stem = Path::new(args.scene.file_stem().unwrap_or_default());
@@ -84,7 +84,7 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let scene = args.scene.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let mut lesson = Lesson { scene, steps: Vec::new(), pictures: Vec::new(), transfer };
     let names: Vec<String> = TOPICS.iter().map(|topic| topic.title.to_string()).collect();
-    // Ctrl-C ends the program here: nothing is written yet.
+    // Nothing is written yet, so Ctrl-C may end the program here.
     let made = progress::each(&names, TOPICS.iter().collect(), args.quiet, |topic| {
         let steps = teacher.steps(topic, &control).map_err(failed)?;
         steps.into_iter().try_for_each(|step| lesson.add(step))
@@ -94,12 +94,12 @@ pub fn run(args: &LessonArgs) -> Result<(), Failure> {
     let count = files.len() - 2;
     let path = folder.write(files, &mut guard)?;
     if !args.quiet {
-        say(&format!("wrote {}, {TEXT} and {count} files that they show", path.join(PAGE).display()));
+        say(&format!("wrote {}, {TEXT} and {count} linked files", path.join(PAGE).display()));
     }
     Ok(())
 }
 
-/// All files, by their names in the folder.
+/// Returns the files of the folder by name.
 fn files(lesson: Lesson) -> Result<Vec<(String, Vec<u8>)>, Failure> {
     let mut files = vec![(PAGE.to_string(), page::page(&lesson).into_bytes())];
     files.push((TEXT.to_string(), markdown::text(&lesson).into_bytes()));

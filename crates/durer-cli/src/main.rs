@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-/// Has to run before the standard library begins, which opens a device that swallows everything in
-/// the place of a standard output that is closed.
+/// Runs before Rust's runtime, which replaces a closed standard output by a device that discards
+/// everything.
 #[cfg(unix)]
 #[ctor::ctor(unsafe)]
 fn before_main() {
@@ -13,7 +13,7 @@ fn before_main() {
 fn main() -> ExitCode {
     let print = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |panic| {
-        // Decoders' panics become errors.
+        // Panics of decoders become errors.
         if !durer::panics::are_expected() {
             print(panic);
         }

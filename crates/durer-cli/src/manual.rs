@@ -1,4 +1,4 @@
-//! What the program says of itself.
+//! Dialects, shell completions and manual pages.
 
 use crate::args::Cli;
 use crate::failure::Failure;
@@ -6,7 +6,7 @@ use crate::terminal::say;
 use clap::CommandFactory;
 use durer::dialect::{Compat, Dialect};
 
-/// `durer dialects`: the table, and the quirks by name.
+/// `durer dialects`: prints the dialects and the quirks.
 pub fn dialects() -> Result<(), Failure> {
     say("Dialects (--dialect NAME):");
     for dialect in Dialect::ALL {
@@ -18,14 +18,14 @@ pub fn dialects() -> Result<(), Failure> {
             say(&format!("         quirks: {}", quirks.join(", ")));
         }
     }
-    say("\nHabits of old programs, and a usual mistake (--compat NAME, --compat no-NAME):");
+    say("\nQuirks of old programs, and a common bug (--compat NAME, --compat no-NAME):");
     for (_, name, doc) in Compat::ALL {
         say(&format!("  {name:<18}{}", doc.split_whitespace().collect::<Vec<_>>().join(" ")));
     }
     Ok(())
 }
 
-/// `durer completions`.
+/// `durer completions`: prints a shell's completion script.
 pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     let mut text = Vec::new();
     clap_complete::generate(shell, &mut Cli::command(), "durer", &mut text);
@@ -33,7 +33,7 @@ pub fn completions(shell: clap_complete::Shell) -> Result<(), Failure> {
     Ok(())
 }
 
-/// `durer man`: the page of the command, followed by those of its parts.
+/// `durer man`: prints the manual page of the command, then those of its subcommands.
 pub fn man() -> Result<(), Failure> {
     let mut text = Vec::new();
     let command = Cli::command();

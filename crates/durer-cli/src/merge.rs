@@ -1,4 +1,4 @@
-//! `durer merge`.
+//! `durer merge`: merges the parts of a picture.
 
 use crate::display::DisplayArgs;
 use crate::failure::{Failure, bad, failed};
@@ -12,27 +12,26 @@ use clap::Args;
 use durer::render::merge;
 use std::path::PathBuf;
 
-/// Put parts of a picture together
+/// Merge the parts of a picture
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer merge one.part two.part three.part -o picture.exr
   durer merge shards/*.part -o picture.png --hash
 
-The result is the same, bit for bit, as that of one run. Parts of other pictures, work that is in two parts and
-work that is in none are refused.")]
+The result equals that of one run, bit for bit. Parts of other pictures, overlapping parts and missing parts are errors.")]
 pub struct MergeArgs {
-    /// The parts, in any order
+    /// Parts, in any order
     #[arg(required = true)]
     pub parts: Vec<PathBuf>,
-    /// The picture to write
+    /// Picture to write
     #[arg(short, long, value_name = "PICTURE")]
     pub output: PathBuf,
     #[command(flatten)]
     pub display: DisplayArgs,
-    /// Print the hash of the film as the last line of standard output
+    /// Print the film's hash as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Say nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub quiet: bool,
 }
@@ -44,7 +43,7 @@ pub fn run(args: &MergeArgs) -> Result<(), Failure> {
         Ok((path.display().to_string(), read_part(path)?))
     };
     let parts: Vec<_> = args.parts.iter().map(read).collect::<Result<_, Failure>>()?;
-    let Some((_, first)) = parts.first() else { return Err(bad("there are no parts to merge")) };
+    let Some((_, first)) = parts.first() else { return Err(bad("no parts to merge")) };
     let names: Vec<&str> = first.job().picture_names().collect();
     let target = Target::new(&args.output, &names, &mut guard)?;
     let whole = merge(&parts).map_err(|error| bad(error.to_string()))?;

@@ -1,4 +1,4 @@
-//! Reading and compiling a scene, with its findings printed.
+//! Reading and compiling a scene, with its diagnostics printed.
 
 use crate::failure::Failure;
 use crate::guard::Guard;
@@ -10,16 +10,16 @@ use durer::world::World;
 use durer::{LoadOptions, Loaded, load};
 use std::path::Path;
 
-/// A scene that was read and compiled.
+/// A compiled scene.
 pub struct Opened {
     pub loaded: Loaded,
     pub world: World,
     pub files: Files,
-    /// What was found, and printed.
+    /// Diagnostics, already printed.
     pub diagnostics: Diagnostics,
 }
 
-/// A scene that was read; what is found is printed when it is compiled.
+/// A scene that was read but not compiled. Compiling it prints the diagnostics.
 pub struct Read {
     pub loaded: Loaded,
     files: Files,
@@ -41,7 +41,7 @@ pub fn read(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
 }
 
 impl Read {
-    /// Compiles it, and prints what was found.
+    /// Compiles the scene and prints the diagnostics.
     pub fn compile(mut self, options: &LoadOptions, guard: &mut Guard) -> Result<Opened, Failure> {
         let world = self.loaded.compile(options, &mut self.files, &mut self.diagnostics);
         let told = self.loaded.guess.as_ref().filter(|guess| guess.hinted);
@@ -60,7 +60,7 @@ pub fn open(path: &Path, options: &LoadOptions, quiet: bool, guard: &mut Guard) 
     read(path, options, quiet, guard)?.compile(options, guard)
 }
 
-/// What the options about reading say.
+/// Converts command-line options to load options.
 pub fn load_options(args: &SceneArgs) -> LoadOptions {
     LoadOptions {
         dialect: args.dialect.as_deref().and_then(Dialect::from_name),

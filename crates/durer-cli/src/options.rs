@@ -1,4 +1,4 @@
-//! Options that several commands have.
+//! Options shared by several commands.
 
 mod job;
 mod method;
@@ -19,7 +19,7 @@ use std::time::Duration;
 pub use job::{JobArgs, accel, aspect};
 pub use method::MethodArgs;
 
-/// How a scene is read
+/// Options of reading a scene
 #[derive(Args)]
 pub struct SceneArgs {
     #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)), help = doc("dialect"))]
@@ -32,18 +32,19 @@ pub struct SceneArgs {
     pub allow_outside: bool,
     #[arg(long, value_name = "FOLDER", help = doc("assets"))]
     pub assets: Vec<PathBuf>,
-    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse, help = doc("memory"))]
+    #[arg(long, default_value = "80%", hide_default_value = true, value_name = "SIZE", value_parser = Memory::parse, help = doc("memory"))]
     pub memory: Memory,
     #[command(flatten)]
     pub staging: StagingArgs,
 }
 
-/// What is rendered, how, and whereto
+/// Options of rendering a picture
 #[derive(Args)]
 pub struct RenderArgs {
-    /// The scene file
+    /// Scene or model file
     pub scene: PathBuf,
-    /// The picture to write; with --shard, the part [default: the scene's name with .png, here]
+    /// Picture to write; with --shard, the part [default: the scene's name with .png, in the
+    /// current folder]
     #[arg(short, long, value_name = "PICTURE")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
@@ -56,44 +57,40 @@ pub struct RenderArgs {
     pub work: WorkArgs,
     #[command(flatten)]
     pub display: DisplayArgs,
-    /// Take the noise out of the colour picture, by what is known of each pixel's surface and of
-    /// its noise; EXR keeps the picture as it was rendered, beside a layer `denoised`, and
-    /// --hash knows nothing of it. By Open Image Denoise (oidn) where that is found, else by
-    /// our own (own)
+    /// Denoise the colour picture; EXR keeps it and adds a layer `denoised`; --hash ignores it
+    /// [auto: oidn (Open Image Denoise) if found, else own (built in)]
     #[arg(long, value_name = "BY", num_args = 0..=1, require_equals = true, default_missing_value = "auto", value_parser = Denoiser::parser())]
     pub denoise: Option<Denoiser>,
-    /// Render again whenever the scene, a mesh or a picture of it is saved; the picture grows as it
-    /// is made, and Ctrl-C ends
+    /// Render again whenever the scene or one of its files is saved; the picture grows while it
+    /// renders; Ctrl-C ends
     #[arg(long, conflicts_with_all = ["pixel", "shard", "checkpoint", "resume", "restart", "preview"])]
     pub watch: bool,
-    /// Print the hash of the film as the last line of standard output
+    /// Print the film's hash as the last line of standard output
     #[arg(long)]
     pub hash: bool,
-    /// Tell on standard error what the time went into, which rays there were, and how much of the
-    /// time they took
+    /// Print times, ray counts and the share of ray traversal to standard error
     #[arg(long)]
     pub stats: bool,
-    /// Say nothing but errors
+    /// Print only errors
     #[arg(short, long)]
     pub quiet: bool,
 }
 
-/// Which pictures are made
+/// Options of the pictures to write
 #[derive(Args)]
 pub struct ViewArgs {
     #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop, help = doc("crop"))]
     pub crop: Option<(u32, u32, u32, u32)>,
-    /// What to show; several are joined by commas. With paths and photons, `error` is how far the
-    /// luminance may be from the truth, noise and the bias of photons together, with 90 %
-    /// confidence
+    /// Pictures to write, joined by commas; with path and photons, `error` is the bound of the
+    /// luminance error, noise and photon bias together, at 90 % confidence
     #[arg(long, value_delimiter = ',', default_value = "color", value_parser = PossibleValuesParser::new(shows()))]
     pub show: Vec<String>,
-    /// Pixels for a pixel in the pictures `samples` and `filter`
+    /// Magnification of the pictures `samples` and `filter`, in pixels per pixel
     #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..=1000))]
     pub zoom: u32,
 }
 
-/// When and with how much it is made
+/// Options of threads, time and saved work
 #[derive(Args)]
 pub struct WorkArgs {
     #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]
@@ -102,34 +99,34 @@ pub struct WorkArgs {
     pub tile: Option<u32>,
     #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration, help = doc("time-limit"))]
     pub time: Option<Duration>,
-    /// Go on with the work that was saved; from the start where none was
+    /// Continue saved work; start from the beginning if there is none
     #[arg(long)]
     pub resume: bool,
-    /// Throw away unfinished work that was saved, and begin anew
+    /// Discard unfinished saved work and start again
     #[arg(long, conflicts_with_all = ["resume", "no_checkpoint"])]
     pub restart: bool,
-    /// Where work is saved [default: PICTURE.part, from the first second on]
+    /// File for unfinished work [default: PICTURE.part, after the first second]
     #[arg(long, value_name = "FILE", conflicts_with = "shard")]
     pub checkpoint: Option<PathBuf>,
-    /// How often work is saved, beside the ends of passes
+    /// Time between saves, besides the ends of passes
     #[arg(long, default_value = "30s", value_name = "TIME", value_parser = humantime::parse_duration)]
     pub checkpoint_every: Duration,
-    /// Do not save work before it is done
+    /// Do not save unfinished work
     #[arg(long, conflicts_with_all = ["checkpoint", "resume", "shard"])]
     pub no_checkpoint: bool,
-    /// Write what is there into this picture too, after each pass over all pixels
+    /// Also write the picture so far to this file after each pass over all pixels
     #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
     pub preview: Option<PathBuf>,
     #[arg(long, value_name = "INDEX/COUNT", requires = "output", help = doc("shard"))]
     pub shard: Option<Shard>,
-    #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard", help = doc("shard-by"))]
+    #[arg(long, value_name = "WHAT", default_value = "tiles", hide_default_value = true, value_parser = ["tiles", "samples"], requires = "shard", help = doc("shard-by"))]
     pub shard_by: String,
 }
 
-/// Pictures that show not the scene but how it is sampled.
+/// Names of pictures that show the sampling rather than the scene.
 pub const DIAGRAMS: [&str; 2] = ["samples", "filter"];
 
-/// The picture of how far pixels may be from the truth, which is made beside the work.
+/// Name of the picture of error bounds, which is computed beside the render.
 pub const ERROR: &str = "error";
 
 fn shows() -> Vec<&'static str> {

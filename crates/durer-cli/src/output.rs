@@ -1,4 +1,4 @@
-//! Pictures into files.
+//! Writing pictures to files.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -12,12 +12,12 @@ use std::cell::RefCell;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The format of a picture's name, or what is wrong with the name.
+/// Returns the format for a picture's name.
 pub fn format(path: &Path) -> Result<&'static Format, Failure> {
     format_for(path).map_err(|error| bad(error.to_string()))
 }
 
-/// The layers as a format holds them: values in floating point, pictures in eight bits.
+/// Returns the layers for a format: values for floating point, pictures for 8 bits.
 fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     match format.depth {
         Depth::Float => &rendered.layers,
@@ -25,17 +25,17 @@ fn layers<'r>(rendered: &'r Rendered, format: &Format) -> &'r [Layer] {
     }
 }
 
-/// Where the pictures of a render go.
+/// Output files of a render.
 pub struct Target {
     format: &'static Format,
-    /// The file of each, by its name; without a name, that of all. Diagrams go into files of their
-    /// own: their sizes differ.
+    /// File of each picture by name; a file without a name holds all pictures. Diagrams have their
+    /// own files, because their sizes differ.
     files: Vec<(Option<String>, Destination)>,
 }
 
 impl Target {
-    /// For the named pictures; says now what is known to prevent writing them, which is better than
-    /// after the work.
+    /// Prepares the files of the named pictures. Reports before the render what would prevent
+    /// writing.
     pub fn new(path: &Path, names: &[&str], guard: &mut Guard) -> Result<Self, Failure> {
         let format = format(path)?;
         let diagram = names.iter().any(|name| DIAGRAMS.contains(name));
@@ -43,13 +43,13 @@ impl Target {
             return Ok(Target { format, files: vec![(None, guard.writes("--output", path)?)] });
         }
         let extension = path.extension().unwrap_or_default().to_string_lossy();
-        // Named picture.depth.png where each has its own.
+        // Separate files are named picture.depth.png and so on.
         let own = |name: &&str| path.with_extension(format!("{name}.{extension}"));
         let files = names.iter().map(|name| Ok((Some(name.to_string()), guard.writes("--output", &own(name))?)));
         Ok(Target { format, files: files.collect::<Result<_, Failure>>()? })
     }
 
-    /// The file and its format, where all pictures go into one.
+    /// Returns the file and its format, if all pictures share one file.
     pub fn single(&self) -> Option<(&Destination, &'static Format)> {
         match &self.files[..] {
             [(None, place)] => Some((place, self.format)),
@@ -57,8 +57,8 @@ impl Target {
         }
     }
 
-    /// Saves the colours of a part while they are converted, row by row, without a picture of them
-    /// in memory, and says how they look; `None` where the file takes more than that.
+    /// Saves the colours of a part row by row, without a whole picture in memory. Returns
+    /// statistics of the colours, or `None` if the file needs more than that.
     pub fn save_colors(&self, part: &PartialRender, display: Display, quiet: bool) -> Result<Option<Looks>, Failure> {
         let only_colors = part.job().color && part.job().aovs.is_empty();
         let rows = |format: &Format| only_colors && format.rows.is_some() && !format.layers;
@@ -70,19 +70,19 @@ impl Target {
         Ok(Some(colors.looks.into_inner()))
     }
 
-    /// Whether pictures of this size fit into the files.
+    /// Checks that the format supports this size.
     pub fn check_size(&self, width: u32, height: u32) -> Result<(), Failure> {
         self.format.check_size(width, height).map_err(|error| bad(error.to_string()))
     }
 
-    /// The files for some pictures.
+    /// Encodes the pictures for their files.
     pub fn files(&self, rendered: &Rendered, display: Display) -> Result<Vec<(&Destination, Vec<u8>)>, Failure> {
         let layers = layers(rendered, self.format);
         let own = |name: &str| layers.iter().position(|layer| layer.name == name).map(|i| &layers[i..=i]);
         let file = |(name, place)| {
             let layers = match name {
                 None => layers,
-                Some(name) => own(name).ok_or_else(|| anyhow::anyhow!("there is no picture `{name}`"))?,
+                Some(name) => own(name).ok_or_else(|| anyhow::anyhow!("no picture `{name}`"))?,
             };
             Ok((place, encode(self.format, layers, display, &rendered.attributes)?))
         };
@@ -90,12 +90,12 @@ impl Target {
     }
 }
 
-/// The colours of a part, which become a file's bytes while they are written.
+/// Colours of a part, encoded while they are written.
 struct Colors<'a> {
     part: &'a PartialRender,
     format: &'static Format,
     display: Display,
-    /// How they look.
+    /// Statistics of the colours.
     looks: RefCell<Looks>,
 }
 
@@ -111,7 +111,7 @@ impl Content for &Colors<'_> {
     }
 }
 
-/// The bytes of one file, with texts beside the pictures where the format has a place for them.
+/// Encodes one file, with attributes if the format supports them.
 pub fn encode(
     format: &Format,
     layers: &[Layer],
@@ -119,7 +119,7 @@ pub fn encode(
     attributes: &[(&'static str, String)],
 ) -> Result<Vec<u8>, Failure> {
     let mut bytes = Vec::new();
-    // What a format cannot hold, a size above all, was asked for.
+    // Errors such as an unsupported size are the user's input.
     let options = WriteOptions { display: display.into(), attributes };
     format.write(layers, &options, &mut bytes).map_err(|error| bad(error.to_string()))?;
     Ok(bytes)
@@ -131,22 +131,22 @@ pub fn save_silently(files: &[(&Destination, Vec<u8>)]) -> Result<(), Failure> {
     Ok(save_all(files)?)
 }
 
-/// Saves all files or none, and says so.
+/// Saves all files or none, and prints their names.
 pub fn save(files: &[(&Destination, Vec<u8>)], quiet: bool) -> Result<(), Failure> {
     save_silently(files)?;
     files.iter().for_each(|(place, _)| wrote(place, quiet));
     Ok(())
 }
 
-/// Says what was written. Nothing is said of devices: standard output may be one, and the picture
-/// in it.
+/// Prints the name of a written file. Streams are not mentioned: the picture may be on standard
+/// output.
 pub fn wrote(place: &Destination, quiet: bool) {
     if !quiet && !place.is_stream() {
         say(&format!("wrote {}", place.path().display()));
     }
 }
 
-/// A name with something more at its end.
+/// Appends `end` to a file name.
 pub fn lengthened(path: &Path, end: &str) -> PathBuf {
     let mut name = path.as_os_str().to_os_string();
     name.push(end);

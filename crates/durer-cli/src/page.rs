@@ -1,4 +1,4 @@
-//! What pages for a browser have in common: pictures and data within the one file, no network.
+//! Common parts of HTML pages: pictures and data in one file, no network.
 
 use crate::failure::Failure;
 use crate::output::{encode, format};
@@ -8,23 +8,23 @@ use durer::image::{Layer, Transfer};
 use serde_json::Value;
 use std::path::Path;
 
-/// A picture as PNG.
+/// Encodes a picture as PNG.
 pub fn png(layer: Layer, transfer: Transfer) -> Result<Vec<u8>, Failure> {
     encode(format(Path::new("picture.png"))?, &[layer], transfer, &[])
 }
 
-/// A PNG as an address that holds it.
+/// Returns a PNG as a data URI.
 pub fn uri(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
-/// What all pages share: looks, and the beginning of their scripts.
+/// Style and script shared by all pages.
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// A page with what all share, where `@STYLE@` and `@SCRIPT@` stand in it, and its data.
+/// Fills a template's `@STYLE@`, `@SCRIPT@` and `@DATA@`.
 pub fn with_data(page: &str, data: &Value) -> String {
     let page = page.replacen("@STYLE@", STYLE, 1).replacen("@SCRIPT@", SCRIPT, 1);
-    // Nothing in the data can end the script that holds them.
+    // Escape `<`, so that the data cannot end the script.
     page.replacen("@DATA@", &data.to_string().replace('<', "\\u003c"), 1)
 }

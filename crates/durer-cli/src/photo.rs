@@ -1,4 +1,4 @@
-//! `durer photo`: from photographs to cameras and points.
+//! `durer photo`: cameras and points from photographs.
 
 mod args;
 mod camera;

@@ -1,4 +1,4 @@
-//! One picture: from the scene's file to the files that are written.
+//! One picture, from the scene file to the written files.
 
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
@@ -20,25 +20,25 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// What somebody who waits for files to be saved knows of a render, and can do to it.
+/// State shared between a render and `--watch`.
 #[derive(Default)]
 pub struct Watched {
-    /// Files that the scene is made of, beside its own.
+    /// Files that the scene uses, besides its own.
     pub files: Mutex<Vec<PathBuf>>,
-    /// Whether a file was saved since.
+    /// True if a file has been saved since the render began.
     pub stale: AtomicBool,
-    /// What was made of its files before.
+    /// Data kept from earlier renders.
     pub kept: Option<Arc<Kept>>,
     control: Mutex<Option<Arc<Control>>>,
 }
 
 impl Watched {
-    /// Of a scene whose files are kept from one picture to the next.
+    /// Keeps the scene's data from one picture to the next.
     pub fn keeping(kept: &Arc<Kept>) -> Self {
         Watched { kept: Some(Arc::clone(kept)), ..Watched::default() }
     }
 
-    /// Stops the render.
+    /// Cancels the render.
     pub fn cancel(&self) {
         self.stale.store(true, Relaxed);
         if let Ok(Some(control)) = self.control.lock().as_deref() {
@@ -46,7 +46,7 @@ impl Watched {
         }
     }
 
-    /// A render begins.
+    /// Registers the render that begins, so that it can be cancelled.
     fn begins(&self, control: &Arc<Control>) {
         if let Ok(mut place) = self.control.lock() {
             *place = Some(Arc::clone(control));
@@ -57,14 +57,14 @@ impl Watched {
     }
 }
 
-/// A pixel of which is told what it sees, or one sample of it, instead of writing a picture.
+/// A pixel, or one of its samples, to print instead of writing a picture.
 #[derive(Clone, Copy, Default)]
 pub struct Pixel {
     pub place: (u32, u32),
     pub sample: Option<u32>,
 }
 
-/// The picture that is written.
+/// Returns the file of the picture.
 pub fn output_of(args: &RenderArgs) -> PathBuf {
     let default_name = || lengthened(Path::new(args.scene.file_stem().unwrap_or_default()), ".png");
     args.output.clone().unwrap_or_else(default_name)
@@ -77,7 +77,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         shard => shard.unwrap_or(Shard::WHOLE),
     };
     let output = output_of(args);
-    // What is known to prevent writing is better known before the work.
+    // Report what would prevent writing before the work.
     let mut guard = Guard::default();
     let (target, keeper) = match (pixel, args.work.shard) {
         (Some(_), _) => (None, None),
@@ -102,13 +102,13 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     let bands = match &target {
         Some(target) if large::is_large(&job, needed, memory) => Some(large::bands(args, &job, target, memory)?),
         target => {
-            // A size that no picture has is refused as such, whatever the memory.
+            // Report an invalid size as such, whatever the memory limit.
             checked_count(window.width, window.height).map_err(|error| bad(error.to_string()))?;
             target.as_ref().map_or(Ok(()), |target| target.check_size(window.width, window.height))?;
             None
         }
     };
-    // What the film takes is not there for the scene.
+    // The film's memory is not available to the scene.
     needed = bands.as_ref().map_or(needed, Bands::bytes_needed);
     options.memory = memory.map(|memory| memory.saturating_sub(needed));
     if let Some(allowed) = memory.filter(|&memory| needed > memory) {
@@ -143,12 +143,12 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     let shows_error = args.view.show.iter().any(|show| show == ERROR);
     if shows_error && (target.is_none() || job.method.transport().is_none()) {
         return Err(bad(
-            "--show error is of whole pictures by path and photons: leave out --shard, or see --integrator",
+            "--show error needs a whole picture and the integrator path or photons: remove --shard, or set --integrator",
         ));
     }
     if args.view.show.iter().any(|show| DIAGRAMS.contains(&show.as_str())) {
         if target.is_none() {
-            return Err(bad("a diagram is not split into parts: leave it out, or --shard"));
+            return Err(bad("diagrams cannot be split into parts: remove --shard, or the diagram from --show"));
         }
         diagrams::check(&job, args.view.zoom).map_err(failed)?;
     }
@@ -188,7 +188,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
         }
     }
     if !finished && !args.quiet {
-        complain(&format!("note: the time was over after {} samples", part.statistics().samples));
+        complain(&format!("note: the time limit ended the render after {} samples", part.statistics().samples));
     }
     stages.ends("writing");
     if args.stats {
@@ -200,7 +200,7 @@ pub fn once(args: &RenderArgs, pixel: Option<Pixel>, watched: &Watched) -> Resul
     Ok(())
 }
 
-/// All the pictures of a part, with those that are made of it or beside it.
+/// Returns every picture of a part, including diagrams, error bounds and the denoised picture.
 fn pictures(
     args: &RenderArgs,
     world: &World,
@@ -226,17 +226,17 @@ fn pictures(
     Ok(rendered)
 }
 
-/// What is to be shown, each once.
+/// Returns the pictures to show, without duplicates.
 fn shows(args: &RenderArgs) -> Result<Vec<&str>, Failure> {
     let names: Vec<&str> = args.view.show.iter().map(String::as_str).collect();
     match (1..names.len()).find(|&i| names[..i].contains(&names[i])) {
-        Some(twice) => Err(bad(format!("--show: `{}` is asked for twice", names[twice]))),
+        Some(twice) => Err(bad(format!("--show: `{}` is given twice", names[twice]))),
         None => Ok(names),
     }
 }
 
-/// After Ctrl-C: what is there is saved. A picture is only written if none of its pixels is empty:
-/// it may replace a better one.
+/// Saves the work after Ctrl-C. Writes the picture only if every pixel has a sample: it may replace
+/// a better one.
 fn stopped(args: &RenderArgs, part: &PartialRender, keeper: &Keeper, target: Option<&Target>) -> Failure {
     let mut written = keeper.after_interrupt(part);
     if let Some(target) = target.filter(|_| part.is_whole()) {
@@ -249,11 +249,11 @@ fn stopped(args: &RenderArgs, part: &PartialRender, keeper: &Keeper, target: Opt
     let (all, done) = part.work();
     Failure::Interrupted(match written.is_empty() {
         true => "nothing was written".into(),
-        false => format!("{} % done, in {}", 100 * done / all.max(1), written.join(" and ")),
+        false => format!("{} % done, saved in {}", 100 * done / all.max(1), written.join(" and ")),
     })
 }
 
-/// The command that makes one sample again: this one, with the sample.
+/// Returns the command that reproduces a sample: this command line with the sample added.
 fn replaying(panicked: &Panicked) -> String {
     let words = std::env::args().chain(["--pixel".into(), format!("{},{}", panicked.x, panicked.y)]);
     let sample = panicked.sample.map(|sample| ["--sample".to_string(), sample.to_string()]);
@@ -261,7 +261,7 @@ fn replaying(panicked: &Panicked) -> String {
     shlex::try_join(words.iter().map(String::as_str)).unwrap_or_default()
 }
 
-/// `--pixel`.
+/// Prints the colour of a pixel or sample, for `--pixel`.
 fn print_pixel(world: &World, job: &Job, control: &Control, pixel: Pixel) -> Result<(), Failure> {
     let Pixel { place: (x, y), sample } = pixel;
     let color = replay(world, job, control, (x, y), sample).map_err(failed)?;

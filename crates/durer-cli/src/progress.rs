@@ -1,4 +1,4 @@
-//! A progress bar, and what Ctrl-C and other signals do.
+//! Progress bars, and handling of Ctrl-C and other signals.
 
 use crate::failure::{Failure, interrupted_by};
 use durer::render::{Control, RenderError};
@@ -8,33 +8,33 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, mpsc};
 use std::time::{Duration, Instant};
 
-/// What an interruption meets: Ctrl-C, or a signal that asks the program to end.
+/// State in which a signal that ends the program may arrive.
 enum Phase {
-    /// Nothing is written yet: it ends the program.
+    /// Before anything is written: the signal ends the program.
     Harmless,
-    /// All is done that can be: it ends the program.
+    /// The work is done: the signal ends the program.
     Idle,
-    /// It cancels; a second one ends the program.
+    /// The signal cancels the render; a second one ends the program.
     Rendering(Arc<Control>),
-    /// It waits until the files are whole; a second one ends the program. Says whether there was a
+    /// The signal waits until the files are complete; a second one ends the program. True after the
     /// first.
     Saving(bool),
 }
 
-/// Some programs send a signal twice, to the program and to its group: what comes so soon after
-/// another is the same one.
+/// Some programs send a signal twice, to the process and to its group: signals this close together
+/// count as one.
 const SAME: Duration = Duration::from_millis(500);
 
-/// Whoever changes it holds it, so that nothing begins to be saved while the program ends.
+/// The lock is held during changes, so that no save begins while the program ends.
 static PHASE: Mutex<Phase> = Mutex::new(Phase::Harmless);
-/// When the last interruption came that was not the same as one before.
+/// Time of the last signal that counted.
 static LAST: Mutex<Option<Instant>> = Mutex::new(None);
 
 fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// What an interruption does.
+/// Handles a signal.
 fn interrupt(signal: u8) {
     let (mut last, mut phase) = (locked(&LAST), locked(&PHASE));
     if last.is_some_and(|last| last.elapsed() < SAME) {
@@ -47,17 +47,18 @@ fn interrupt(signal: u8) {
         Phase::Saving(asked @ false) => *asked = true,
         Phase::Idle => crate::terminal::end(0),
         phase => {
-            let what = if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not all was saved" };
+            let what =
+                if matches!(phase, Phase::Harmless) { "nothing was written" } else { "not everything was saved" };
             crate::terminal::end(Failure::Interrupted(what.into()).report())
         }
     }
 }
 
-/// Hears interruptions from now on. Where that cannot be, they end the program as they end others.
+/// Starts to handle signals. If that fails, signals end the program as usual.
 #[cfg(unix)]
 pub fn hear_interrupts() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
-    // A file that grows beyond the allowed size is an error of writing then, which has a name.
+    // With SIGXFSZ handled, a file beyond the size limit is a write error with a name.
     let _ = signal_hook::flag::register(SIGXFSZ, Arc::default());
     let ignored = ignored_signals();
     let heard = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(move |signal| ignored >> (signal - 1) & 1 == 0);
@@ -67,44 +68,44 @@ pub fn hear_interrupts() {
         let _ = ready.send(());
         signals.iter_mut().flat_map(|signals| signals.forever()).for_each(|signal| interrupt(signal as u8));
     });
-    // Signals that come before it listens would end the program; after that, none is lost.
+    // Wait until the thread listens; before that, signals end the program.
     if listener.is_ok() {
         let _ = wait.recv();
     }
 }
 
-/// A bit for each signal that whoever started this program wants it to ignore, as `nohup` does.
+/// Returns a bit for each signal that the parent process set to be ignored, as `nohup` does.
 #[cfg(unix)]
 fn ignored_signals() -> u64 {
-    // Where the system does not tell, none.
+    // Without /proc, no signal counts as ignored.
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Hears Ctrl-C, Ctrl-Break and the other events of the console. After a closed window the system
-/// ends the program whatever it does: what is left then was saved before.
+/// Handles Ctrl-C, Ctrl-Break and the other console events. When the window is closed, the system
+/// ends the program regardless; only earlier saves remain.
 #[cfg(not(unix))]
 pub fn hear_interrupts() {
     let _ = ctrlc::set_handler(|| interrupt(2));
 }
 
-/// Nothing is to be done until somebody does something.
+/// Enters the idle state, in which the program waits for changes.
 pub fn idle() {
     *locked(&PHASE) = Phase::Idle;
 }
 
-/// Work begins again.
+/// Leaves the idle state.
 pub fn busy() {
     *locked(&PHASE) = Phase::Harmless;
 }
 
-/// Files are about to be saved.
+/// Enters the saving state.
 pub fn saving() {
     *locked(&PHASE) = Phase::Saving(false);
 }
 
-/// Runs a render with a progress bar (on a terminal) and Ctrl-C.
+/// Runs a render with a progress bar (on a terminal) and Ctrl-C handling.
 pub fn watch<T>(
     control: &Arc<Control>,
     quiet: bool,
@@ -137,7 +138,7 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError
             }
             bar.finish_and_clear();
         };
-        // Without a thread for it there is no bar.
+        // Without a thread for the bar, show none.
         let _ = std::thread::Builder::new().spawn_scoped(scope, show);
         let result = render();
         drop(finished);
@@ -145,15 +146,14 @@ fn with_bar<T>(control: &Control, render: impl FnOnce() -> Result<T, RenderError
     })
 }
 
-/// Works through a list one by one, with a line that tells how far it is where that takes long (on
-/// a terminal).
+/// Processes a list one by one, with a progress line on a terminal.
 pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl FnMut(T) -> R) -> Vec<R> {
     let bar = ProgressBar::with_draw_target(Some(items.len() as u64), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {pos} of {len}  {elapsed}  {msg}");
     bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
     if !quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
-        // That takes a thread, and must not be tried where there is none.
+        // The ticker needs a thread, and panics if there is none.
         if std::thread::Builder::new().spawn(|| {}).is_ok() {
             bar.enable_steady_tick(Duration::from_millis(200));
         }
@@ -169,7 +169,7 @@ pub fn each<T, R>(names: &[String], items: Vec<T>, quiet: bool, mut work: impl F
     done
 }
 
-/// Works with a bar that shows how far it is, from 0 to 1, where that takes long (on a terminal).
+/// Runs `work` with a progress bar from 0 to 1, on a terminal, if it takes long.
 pub fn shares<R>(name: &'static str, work: impl FnOnce(&(dyn Fn(f64) + Sync)) -> R) -> R {
     let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
     let style = ProgressStyle::with_template("{bar:40} {percent:>3} %  {msg}  {elapsed}");

@@ -1,4 +1,4 @@
-//! `durer render`: one picture, those of an animation, or one again and again.
+//! `durer render`: one picture, an animation, or repeated renders with `--watch`.
 
 use crate::failure::{Failure, bad};
 use crate::frames::FramesArgs;
@@ -26,22 +26,23 @@ use std::path::Path;
   durer render scene.txt -o picture.png --dialect f04 --shadows --bounces 4 --transfer course
   durer render scene.txt -o dots.png --show samples --size 9x9 --sampler jittered --samples 9
 
-A scene is a file of the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without camera and light is seen whole, in a studio.
+SCENE is a file in the course's language or a model: glTF, GLB, pbrt, Mitsuba, Radiance, 3MF, PLY, OBJ, STL. A model without
+camera and lights is framed whole and lit by a studio. `durer words` explains the words of the language.
 
-The extension of PICTURE says the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures go into one EXR file
-as layers, or into files of their own: picture.depth.png and so on.
+The extension of PICTURE selects the format: png, tga, bmp, ppm, pfm, exr, hdr. Several pictures become layers of one EXR file,
+or separate files: picture.depth.png and so on.
 
-Work that takes long is saved every now and then into PICTURE.part, which --resume goes on with, and without which word or
---restart nothing of it is thrown away; it is removed when the picture is done. Ctrl-C, SIGTERM and SIGHUP save what is there.")]
+Long renders save their work to PICTURE.part at intervals. --resume continues it, --restart discards it; without either, durer
+stops rather than overwrite it. The file is removed when the picture is done. Ctrl-C, SIGTERM and SIGHUP save the work so far.")]
 pub struct RenderCommand {
     #[command(flatten)]
     pub render: RenderArgs,
     #[command(flatten)]
     pub frames: FramesArgs,
-    /// Print what one pixel sees, and write nothing
+    /// Print the colour of one pixel and write nothing
     #[arg(long, value_name = "X,Y", value_parser = pixel)]
     pub pixel: Option<(u32, u32)>,
-    /// Of that pixel, only this sample
+    /// Print only this sample of the pixel
     #[arg(long, value_name = "NUMBER", requires = "pixel")]
     pub sample: Option<u32>,
 }
@@ -54,12 +55,14 @@ pub fn run(mut command: RenderCommand) -> Result<(), Failure> {
         (Some((frames, moves)), _) => {
             let work = &args.work;
             if work.checkpoint.is_some() || work.preview.is_some() || args.watch || command.pixel.is_some() {
-                return Err(bad("many pictures are made: --checkpoint, --preview, --watch and --pixel are about one"));
+                return Err(bad(
+                    "--checkpoint, --preview, --watch and --pixel apply to one picture, not to an animation",
+                ));
             }
             frames::run(&mut command.render, frames, moves)
         }
         (None, true) => {
-            // Each picture begins anew.
+            // Every change starts a new picture.
             command.render.work.no_checkpoint = true;
             watching::run(&command.render)
         }

@@ -15,27 +15,27 @@ use durer::world::{Material, World};
 use std::io::IsTerminal;
 use std::ops::Range;
 
-/// Prints findings to standard error: all, or the errors alone.
+/// Prints diagnostics to standard error: all, or only errors.
 pub fn print(files: &Files, diagnostics: &Diagnostics, errors_only: bool) {
     let wanted: Vec<&Diagnostic> =
         diagnostics.iter().filter(|d| !errors_only || d.severity == Severity::Error).collect();
     print_to(StandardStream::stderr(colors(&std::io::stderr())), files, &wanted);
     if diagnostics.error_count() > ERROR_LIMIT {
-        complain(&format!("and {} errors more", diagnostics.error_count() - ERROR_LIMIT));
+        complain(&format!("and {} more errors", diagnostics.error_count() - ERROR_LIMIT));
     }
 }
 
-/// A number with its noun.
+/// Formats a count with its noun.
 pub fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
 }
 
-/// Colours are for terminals.
+/// Enables colours on terminals.
 pub fn colors(stream: &impl IsTerminal) -> ColorChoice {
     if stream.is_terminal() { ColorChoice::Auto } else { ColorChoice::Never }
 }
 
-/// Prints findings to a stream.
+/// Prints diagnostics to a stream.
 pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     if wanted.is_empty() {
         return;
@@ -43,18 +43,18 @@ pub fn print_to(stream: StandardStream, files: &Files, wanted: &[&Diagnostic]) {
     let mut shown = SimpleFiles::new();
     for file in 0.. {
         let (Some(name), Some(bytes)) = (files.name(file), files.bytes(file)) else { break };
-        // Files that nothing is said of need no text.
+        // Files without a diagnostic need no text.
         let used = wanted.iter().any(|d| spans(d).any(|span| span.file == file));
         shown.add(name.to_string(), if used { text(bytes) } else { String::new() });
     }
     for diagnostic in wanted {
-        // Nothing can be said where the stream is closed.
+        // Ignore errors: a closed stream cannot show a message.
         let excerpt = Excerpt { files: &shown, around: diagnostic.span };
         let _ = emit_to_write_style(&mut stream.lock(), &Config::default(), &excerpt, &show(diagnostic, files));
     }
 }
 
-/// One note, in one line.
+/// Prints a note in one line.
 pub fn note(diagnostic: &Diagnostic) {
     complain(&format!("note: {}", diagnostic.message));
 }
@@ -65,7 +65,7 @@ pub fn rejected(statistics: &Statistics, world: Option<&World>, quiet: bool) {
         let count = statistics.rejected;
         let cause = world.and_then(cause).map(|cause| format!(": {cause}")).unwrap_or_default();
         note(&Diagnostic::warning(format!(
-            "{count} samples were not finite numbers and were left out, the first in pixel {},{} (sample {}){cause}",
+            "left out {count} samples that were not finite, the first in pixel {},{} (sample {}){cause}",
             first.x, first.y, first.sample
         )));
     }
@@ -101,8 +101,8 @@ fn spans(diagnostic: &Diagnostic) -> impl Iterator<Item = Span> {
     diagnostic.span.into_iter().chain(diagnostic.related.iter().map(|r| r.0))
 }
 
-/// A file's bytes as text of the same length: places stay where they are, whatever the bytes.
-/// Nothing in it can steer a terminal.
+/// Returns a file's bytes as text of the same length, so that offsets stay valid. Control
+/// characters are replaced, so that they cannot control the terminal.
 fn text(bytes: &[u8]) -> String {
     let harmless = |c: char| match c {
         '\n' | '\t' => c.to_string(),
@@ -116,15 +116,14 @@ fn text(bytes: &[u8]) -> String {
     }
 }
 
-/// Files of which only what is around a place is shown: everything may stand in one line of many
-/// megabytes.
+/// Files reduced to the surroundings of a span: a line may have many megabytes.
 struct Excerpt<'f> {
     files: &'f SimpleFiles<String, String>,
     around: Option<Span>,
 }
 
 impl Excerpt<'_> {
-    /// Bytes of a line shown before a place, and after.
+    /// Bytes of a line shown before and after the span.
     const BEFORE: usize = 80;
     const AFTER: usize = 120;
 }
@@ -159,8 +158,8 @@ impl<'f> files::Files<'f> for Excerpt<'_> {
     }
 }
 
-/// Whether a second place is shown with a first: in one long line, only what is around the first
-/// is.
+/// Returns true if a second span can be shown with the first: within one long line, only the
+/// surroundings of the first are.
 fn fits(first: Option<Span>, second: Span, files: &Files) -> bool {
     let Some(first) = first.filter(|first| first.file == second.file) else { return true };
     let between = first.start.min(second.start) as usize..first.end.max(second.end) as usize;

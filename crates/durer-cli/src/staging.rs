@@ -1,12 +1,12 @@
-//! Options about models: files that hold things and no whole scene.
+//! Options for models: files that contain objects but no whole scene.
 
 use clap::{Args, ValueEnum};
 use durer::options::doc;
 use durer::scene::{Axis, Staging, Studio, View};
 use std::path::PathBuf;
 
-/// How a model (glTF, pbrt, Radiance, OBJ, PLY, STL) becomes a scene; nothing of it concerns files
-/// that are scenes
+/// Options that make a scene of a model (glTF, pbrt, Radiance, OBJ, PLY, STL); scene files ignore
+/// them
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub struct StagingArgs {
@@ -41,7 +41,7 @@ pub enum Up {
 
 #[derive(Clone, Copy, ValueEnum)]
 pub enum From {
-    /// From the front, a little from the right and from above, in perspective
+    /// From the front, slightly from the right and above, in perspective
     ThreeQuarter,
     /// From the front, without perspective
     Front,
@@ -49,7 +49,7 @@ pub enum From {
     Side,
     /// From above, without perspective
     Top,
-    /// Without perspective, all three axes alike
+    /// Isometric: without perspective, all three axes alike
     Iso,
 }
 
@@ -65,7 +65,7 @@ pub enum Light {
 
 fn seconds(text: &str) -> Result<f32, String> {
     let at = text.parse().ok().filter(|&at: &f64| at.is_finite() && at >= 0.0);
-    at.map(|at| at as f32).ok_or("expected a number of seconds, 0 or more".into())
+    at.map(|at| at as f32).ok_or("expected seconds, 0 or more".into())
 }
 
 fn degrees(text: &str) -> Result<f32, String> {
@@ -74,7 +74,7 @@ fn degrees(text: &str) -> Result<f32, String> {
 }
 
 impl StagingArgs {
-    /// What they say, for a picture of some width and height.
+    /// Converts the options for the library.
     pub fn staging(&self) -> Staging {
         Staging {
             up: self.up.map(|up| match up {

@@ -1,22 +1,22 @@
-//! Lines on standard output and on standard error.
+//! Lines on standard output and standard error.
 
 use std::io::{ErrorKind, Write};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
-/// Exit code after anything that failed but a wrong input: standard output among that.
+/// Exit code of failures other than invalid input, including those of standard output.
 pub const OTHER_FAILURE: u8 = 1;
 
-/// Whether the program was started without a standard output.
+/// True if the program was started without a standard output.
 static CLOSED: AtomicBool = AtomicBool::new(false);
 
-/// Ends the program with an exit code.
+/// Function that ends the program with an exit code.
 pub type End = fn(u8) -> !;
 
-/// How the program ends before its work is done.
+/// Function that ends the program early.
 static END: OnceLock<End> = OnceLock::new();
 
-/// Sets how the program ends; the first call counts.
+/// Sets the function that ends the program; only the first call counts.
 pub fn set_end(end: End) {
     let _ = END.set(end);
 }
@@ -25,7 +25,7 @@ pub fn set_end(end: End) {
 ///
 /// # Panics
 ///
-/// If nobody said how: see [`set_end`].
+/// If [`set_end`] was not called.
 pub fn end(code: u8) -> ! {
     match END.get() {
         Some(end) => end(code),
@@ -33,18 +33,18 @@ pub fn end(code: u8) -> ! {
     }
 }
 
-/// Finds out whether there is a standard output.
+/// Records whether there is a standard output.
 #[cfg(unix)]
 pub fn look_at_standard_output() {
     CLOSED.store(rustix::io::fcntl_getfd(rustix::stdio::stdout()).is_err(), Relaxed);
 }
 
-/// Whether there is a standard output.
+/// Returns true if there is a standard output.
 pub fn has_standard_output() -> bool {
     !CLOSED.load(Relaxed)
 }
 
-/// A line on standard output. A closed pipe is nobody's fault: who closed it has read enough.
+/// Prints a line on standard output. A closed pipe is not an error: the reader has read enough.
 pub fn say(line: &str) {
     let written = match has_standard_output() {
         true => writeln!(std::io::stdout(), "{line}"),
@@ -59,7 +59,7 @@ pub fn say(line: &str) {
     }
 }
 
-/// A line on standard error; where that is closed, there is nobody to tell.
+/// Prints a line on standard error. Errors are ignored: they could not be reported.
 pub fn complain(line: &str) {
     let _ = writeln!(std::io::stderr(), "{line}");
 }

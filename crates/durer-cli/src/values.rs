@@ -1,13 +1,13 @@
-//! What may stand after options.
+//! Parsers of option values.
 
-/// A weight below which rays are left out.
+/// Parses a minimum throughput.
 pub fn weight(text: &str) -> Result<f32, String> {
-    text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "say a number, 0 or more".into())
+    text.parse().ok().filter(|w: &f32| w.is_finite() && *w >= 0.0).ok_or_else(|| "expected a number, 0 or more".into())
 }
 
 pub fn pixel(text: &str) -> Result<(u32, u32), String> {
     let numbers = text.split_once(',').and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "say it as 200,150: column and row from the upper left corner".into())
+    numbers.ok_or_else(|| "expected column and row from the upper left corner, as 200,150".into())
 }
 
 pub fn tolerance(text: &str) -> Result<f32, String> {
@@ -15,7 +15,9 @@ pub fn tolerance(text: &str) -> Result<f32, String> {
         Some((n, of)) => n.trim().parse().ok().zip(of.trim().parse::<f32>().ok()).map(|(n, of): (f32, f32)| n / of),
         None => text.parse().ok(),
     };
-    value.filter(|t| t.is_finite() && *t >= 0.0).ok_or_else(|| "say it as 2/255 or as a number, 0 or more".into())
+    value
+        .filter(|t| t.is_finite() && *t >= 0.0)
+        .ok_or_else(|| "expected a fraction as 2/255 or a number, 0 or more".into())
 }
 
 pub fn percent(text: &str) -> Result<f64, String> {
@@ -23,5 +25,5 @@ pub fn percent(text: &str) -> Result<f64, String> {
         .parse()
         .ok()
         .filter(|p| (0.0..=100.0).contains(p))
-        .ok_or_else(|| "say a number from 0 to 100".into())
+        .ok_or_else(|| "expected a number from 0 to 100".into())
 }

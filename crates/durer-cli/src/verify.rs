@@ -1,4 +1,4 @@
-//! `durer verify`.
+//! `durer verify`: checks that a render is deterministic.
 
 use crate::failure::Failure;
 use crate::guard::Guard;
@@ -19,16 +19,16 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Render a scene in many ways, and see whether the film is always the same
+/// Render a scene in many ways and check that the film is always the same
 #[derive(Args)]
 #[command(after_help = "Examples:
   durer verify scene.txt
   durer verify scene.txt --trials 500 --size 64x48 --samples 24 --noise-threshold 0.02
 
-Ways differ by threads, tile size, shards by tiles or samples, interruptions, the structure that finds what rays
-hit, and the processor's instructions. A small picture is enough; its default is 64x48 with 8 samples, 16 with --adaptive.")]
+Ways differ in threads, tile size, shards by tiles or samples, interruptions, acceleration structure and SIMD instructions. A
+small picture is enough: the default is 64x48 with 8 samples, 16 with --adaptive.")]
 pub struct VerifyArgs {
-    /// The scene file
+    /// Scene or model file
     pub scene: PathBuf,
     #[command(flatten)]
     pub reading: SceneArgs,
@@ -36,21 +36,20 @@ pub struct VerifyArgs {
     pub view: ViewArgs,
     #[command(flatten)]
     pub job: JobArgs,
-    /// How many ways to try
+    /// Number of ways to try
     #[arg(long, default_value_t = 100, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     pub trials: u32,
-    /// Print the hash alone
+    /// Print only the hash
     #[arg(short, long)]
     pub quiet: bool,
 }
 
-/// Structures that find what rays hit.
+/// Acceleration structures to try.
 const STRUCTURES: [(&str, AccelKind); 3] =
     [("bvh", AccelKind::Bvh), ("grid", AccelKind::Grid(None)), ("none", AccelKind::None)];
 
-/// The processor's instructions that can be had, as `DURER_SIMD` takes them. Which are used is
-/// decided once for a whole process; where that variable is set, as it is for each process that
-/// this one starts, there are only those.
+/// Returns the available SIMD levels by their names in `DURER_SIMD`. A process chooses its level
+/// once; if the variable is set, as in the child processes, there is only that level.
 fn simd_levels() -> Vec<&'static str> {
     match std::env::var_os("DURER_SIMD") {
         Some(_) => vec![SimdLevel::chosen().name()],
@@ -58,7 +57,7 @@ fn simd_levels() -> Vec<&'static str> {
     }
 }
 
-/// Size of the pictures where none is asked for.
+/// Default size of the pictures.
 const SIZE: (u32, u32) = (64, 48);
 
 pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
@@ -69,11 +68,11 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
         options.accel = accel;
         let (width, height) = args.job.options.given_size().unwrap_or(SIZE);
         options.staging.aspect = Some(width as f32 / height as f32);
-        // What is found is said once.
+        // Print diagnostics only for the first structure.
         let opened = open(&args.scene, &options, args.quiet || !worlds.is_empty(), &mut Guard::default())?;
         let mut job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
         (job.width, job.height) = (width, height);
-        // The work depends on the structure.
+        // The cost depends on the structure.
         job.aovs.retain(|aov| aov.name != "cost");
         if ["samples", "noise-threshold"].iter().all(|name| args.job.options.get(name).is_none()) {
             job.sampling = job.sampling.with_samples(if job.adaptive { LEAST_ADAPTIVE } else { 8 });
@@ -126,10 +125,10 @@ pub fn run(args: &VerifyArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// The hash that another process finds with other instructions, in fewer ways.
+/// Returns the hash that a child process finds with other instructions, in fewer ways.
 fn hash_at(level: &str) -> anyhow::Result<String> {
     let mut arguments: Vec<OsString> = std::env::args_os().skip(1).collect();
-    // Options may be given once only.
+    // An option may be given only once.
     while let Some(at) = arguments.iter().position(|argument| argument == "--trials") {
         arguments.drain(at..(at + 2).min(arguments.len()));
     }

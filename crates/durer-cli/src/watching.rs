@@ -14,17 +14,17 @@ use std::sync::atomic::Ordering::Relaxed;
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
-/// How often files are looked at: who saves one waits for the picture.
+/// Interval between checks of the files: the user waits for the picture.
 const LOOK: Duration = Duration::from_millis(10);
-/// How long they must stay as they are: programs save in several steps.
+/// Time for which files must stay unchanged: programs save in several steps.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// The files as they are.
+/// Returns the current stamps of the files.
 fn stamp(files: &[PathBuf]) -> Vec<Option<Stamp>> {
     files.iter().map(|path| stamp_of(path)).collect()
 }
 
-/// Renders until Ctrl-C: what is wrong with the scene is told, and waited for to be mended.
+/// Renders until Ctrl-C. Errors in the scene are printed, and the loop waits until a file changes.
 pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     let named = [&args.reading.staging.view_file, &args.reading.staging.environment];
     let always: Vec<PathBuf> =
@@ -39,13 +39,13 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
         match result {
             Ok(()) => {}
             Err(Failure::Interrupted(_)) if stale => {}
-            // Only what is wrong with files can be mended in them.
+            // Only errors in files can be fixed by saving them.
             Err(failure @ Failure::Input(_)) => {
                 failure.report();
             }
             Err(failure) => return Err(failure),
         }
-        // Files of a scene that could not be read stay watched.
+        // If the scene could not be read, keep watching the same files.
         let found = watched.files.into_inner().unwrap_or_default();
         let before = match found.is_empty() {
             true => before,
@@ -63,7 +63,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
             let count = report::counted(files.len(), "file");
             let reused = match kept.reuse().reused {
                 0 => String::new(),
-                n => format!(" ({n} of its meshes and pictures were kept)"),
+                n => format!(" ({n} meshes and pictures reused)"),
             };
             complain(&format!("watching {count}{reused}; Ctrl-C ends"));
         }
@@ -76,7 +76,7 @@ pub fn run(args: &RenderArgs) -> Result<(), Failure> {
     }
 }
 
-/// Waits until files stay as they are, but not for ever.
+/// Waits until files stay unchanged, but at most 40 pauses.
 fn settle(files: &[PathBuf]) {
     let mut last = stamp(files);
     for _ in 0..40 {
@@ -89,7 +89,7 @@ fn settle(files: &[PathBuf]) {
     }
 }
 
-/// Does some work, which is told to stop as soon as a file is saved.
+/// Runs some work and cancels it when a file is saved.
 fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watched, work: impl FnOnce() -> R) -> R {
     let (finished, wait) = mpsc::channel::<()>();
     std::thread::scope(|scope| {
@@ -101,7 +101,7 @@ fn while_watching<R>(files: &[PathBuf], before: &[Option<Stamp>], watched: &Watc
                 }
             }
         };
-        // Without a thread for it, the work is done to its end.
+        // If no thread can be started, the work runs to its end.
         let _ = std::thread::Builder::new().spawn_scoped(scope, look);
         let result = work();
         drop(finished);

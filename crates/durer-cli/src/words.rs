@@ -1,4 +1,4 @@
-//! `durer words`: the language's reference in the terminal.
+//! `durer words`: the language reference in the terminal.
 
 use crate::failure::{Failure, bad};
 use crate::terminal::say;
@@ -6,12 +6,12 @@ use durer::diag::did_you_mean;
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Chapter, Entry, FieldEntry, all_words, dialect_names, entries};
 
-/// What `durer words` takes.
+/// Arguments of `durer words`.
 #[derive(clap::Args)]
 pub struct WordsArgs {
-    /// The word; without one, all that begin something are listed
+    /// Word to look up; without one, list every word that begins a block
     pub word: Option<String>,
-    /// Only what this dialect has
+    /// Show only words of this dialect
     #[arg(long)]
     pub dialect: Option<String>,
 }
@@ -32,8 +32,8 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
     if begun.is_empty() && in_blocks.is_empty() {
         let place = dialect.map_or("the language".to_string(), |dialect| format!("the dialect `{}`", dialect.name()));
         let meant = did_you_mean(word, all_words());
-        let meant = meant.map_or("`durer words` lists all".to_string(), |near| format!("did you mean `{near}`?"));
-        return Err(bad(format!("`{word}` is no word of {place}: {meant}")));
+        let meant = meant.map_or("`durer words` lists them all".to_string(), |near| format!("did you mean `{near}`?"));
+        return Err(bad(format!("`{word}` is not a word of {place}: {meant}")));
     }
     let mut parts: Vec<String> = begun.into_iter().map(described).collect();
     if !in_blocks.is_empty() {
@@ -46,7 +46,7 @@ pub fn run(args: &WordsArgs) -> Result<(), Failure> {
 
 fn named(name: &str) -> Result<Dialect, Failure> {
     let known = || Dialect::ALL.map(Dialect::name).join(", ");
-    Dialect::from_name(name).ok_or_else(|| bad(format!("`{name}` is no dialect; there are {}", known())))
+    Dialect::from_name(name).ok_or_else(|| bad(format!("`{name}` is not a dialect; known dialects: {}", known())))
 }
 
 fn list(all: &[Entry], dialect: Option<Dialect>) {
@@ -62,7 +62,7 @@ fn list(all: &[Entry], dialect: Option<Dialect>) {
             say(&format!("  {:<22}{first}", own.unwrap_or(&entry.keywords[0]).0));
         }
     }
-    say("\n`durer words WORD` tells what follows a word.");
+    say("\n`durer words WORD` describes a word and its fields.");
 }
 
 fn described(entry: &Entry) -> String {
@@ -84,8 +84,8 @@ fn field_text(field: &FieldEntry) -> String {
     let words = field.words.iter().filter(|spelled| spelled.1 != 0);
     let words: Vec<String> = words.map(|&(word, dialects)| format!("{word} ({})", dialect_names(dialects))).collect();
     let given = match (&field.default, field.required) {
-        (Some(default), _) => format!("; {default} where it is not given"),
-        (None, true) => "; must be given".into(),
+        (Some(default), _) => format!("; default {default}"),
+        (None, true) => "; required".into(),
         (None, false) => String::new(),
     };
     format!("  {}\n      {}{given}\n      {}", words.join(", "), field.value.replace('`', ""), field.doc)

@@ -1,20 +1,20 @@
-//! Every command of the README and of the book is run, at a small size.
+//! Runs every command of the README and the book, at a small size.
 //!
-//! docs/lecture.md, whose commands made its pictures, has a test of its own.
+//! docs/lecture.md has its own test.
 
 mod common;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What follows an option in a command, changed so that the test is short.
+/// Option values replaced to keep the test short.
 const SMALLER: [(&str, &str); 3] = [("--size", "40x30"), ("--samples", "4"), ("--pixel", "20,15")];
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The README and all pages of the book, from the root.
+/// Returns the README and every page of the book.
 fn pages() -> Vec<String> {
     let mut pages = vec!["README.md".to_string(), "crates/durer-cli/README.md".to_string()];
     for folder in ["docs", "docs/language"] {
@@ -26,8 +26,8 @@ fn pages() -> Vec<String> {
     pages
 }
 
-/// The commands of a page, each of which may go on from those before it: lines of code that begin
-/// with `cargo durer`, or with `durer` where that is installed.
+/// Returns the commands of a page in order: lines of code that begin with `cargo durer` or `durer`.
+/// Later commands may use the files of earlier ones.
 fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
@@ -35,8 +35,8 @@ fn commands(page: &str) -> Vec<String> {
     commands.map(str::to_string).collect()
 }
 
-/// The reader's own files, which pages name and do not have; `scene.txt` and `model.glb` are made of a
-/// scene.
+/// Files of the reader that pages name but do not provide; `scene.txt` and `model.glb` are made
+/// from a scene.
 const STAND_INS: [(&str, &str); 4] = [
     (
         "scene.xml",
@@ -48,7 +48,7 @@ const STAND_INS: [(&str, &str); 4] = [
     ("office.vf", "rvu -vtv -vp 0 -5 0 -vd 0 1 0 -vu 0 0 1 -vh 45 -vv 45\n"),
 ];
 
-/// The same command for a picture of few pixels.
+/// Shortens a command to a picture of few pixels.
 fn smaller(command: &str) -> String {
     let mut words: Vec<&str> = command.split_whitespace().collect();
     for i in 1..words.len() {
@@ -65,7 +65,7 @@ fn smaller(command: &str) -> String {
 #[cfg(unix)]
 fn every_command_of_the_book_runs() {
     let durer = |folder: &Path, line: &str| {
-        // A shell, for the pages' patterns of file names.
+        // A shell expands the patterns of file names.
         let line = format!("{} {line}", env!("CARGO_BIN_EXE_durer"));
         Command::new("sh").args(["-c", &line]).current_dir(folder).output().unwrap()
     };
@@ -84,7 +84,7 @@ fn every_command_of_the_book_runs() {
             count += 1;
             let ran = durer(folder.path(), &smaller(&command));
             let said = String::from_utf8_lossy(&ran.stderr);
-            // `compare` says by 1 that pictures differ, as they do on these pages.
+            // `compare` exits with 1 because the pictures on these pages differ.
             let fine = ran.status.success() || command.starts_with("compare") && ran.status.code() == Some(1);
             assert!(fine, "{page}: {command}\n{said}");
         }

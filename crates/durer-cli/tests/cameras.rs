@@ -1,10 +1,10 @@
-//! Cameras from the command line: shapes of pictures, alpha, what is refused.
+//! Cameras on the command line: picture shapes, alpha, invalid values.
 
 mod common;
 
 use common::{Place, SCENE};
 
-/// The common scene with another camera.
+/// Returns the common scene with another camera.
 fn seen_by(camera: &str) -> String {
     let (_, rest) = SCENE.split_once('\n').unwrap();
     format!("# ours\n{camera}\n{rest}")
@@ -12,8 +12,7 @@ fn seen_by(camera: &str) -> String {
 
 const POSE: &str = "center 0 1 8 direction 0 -0.1 -1 up 0 1 0";
 
-/// Bytes of an uncompressed Targa picture: bits a pixel, and its pixels with alpha, the bottom row
-/// first.
+/// Returns the bits a pixel and the RGBA pixels of an uncompressed Targa picture, bottom row first.
 fn targa(place: &Place, name: &str) -> (u8, Vec<[u8; 4]>) {
     let bytes = place.bytes(name);
     let (head, rest) = bytes.split_at(18);
@@ -44,14 +43,14 @@ fn what_a_camera_does_not_see_is_transparent_however_it_is_sampled() {
         let at = |x: usize, y: usize| pixels[y * 40 + x];
         assert_eq!([at(0, 0), at(39, 0), at(0, 39), at(39, 39)], [[0; 4]; 4], "{way}");
         assert_eq!([at(20, 20)[3], at(20, 1)[3], at(38, 20)[3]], [255; 3], "{way}");
-        // The rim is smooth where a pixel has several samples.
+        // The rim is antialiased with several samples a pixel.
         let partly = pixels.iter().filter(|p| ![0, 255].contains(&p[3])).count();
         assert_eq!(partly > 20, way.contains("jitter") || way == "--samples 16", "{way}: {partly}");
-        // The disc's area, in pixels.
+        // Area of the disc in pixels.
         let area: f64 = pixels.iter().map(|p| f64::from(p[3]) / 255.0).sum();
         assert!((area / (400.0 * std::f64::consts::PI) - 1.0).abs() < 0.02, "{way}: {area}");
     }
-    // The formats without alpha show black there; a picture that is seen everywhere has no alpha.
+    // Formats without alpha show black there; a fully covered picture has no alpha.
     place.gives(0, "render eye.txt --size 40x40 -o eye.ppm");
     assert_eq!(place.image8("eye.ppm").pixels[0], [0; 3]);
     place.gives(0, "render eye.txt --size 40x40 -o inside.tga --crop 10,10,20x20");
@@ -75,9 +74,9 @@ fn pictures_take_the_shape_of_their_cameras() {
         place.put("shape.txt", seen_by(&camera.replace('@', POSE)));
         let said = place.gives(0, "info shape.txt").out;
         let (width, height) = size;
-        assert!(said.contains(&format!("picture    {width}x{height} where")), "{camera}: {said}");
+        assert!(said.contains(&format!("picture    {width}x{height} by default")), "{camera}: {said}");
     }
-    // In another shape it stays whole, and what is empty is told.
+    // With another aspect ratio the image stays whole, and a warning reports the empty pixels.
     place.put("sphere.txt", seen_by(&format!("EquirectangularCamera {{ {POSE} }}")));
     let said = place.gives(0, "render sphere.txt -o a.tga --size 40x40 --samples 1").err;
     assert!(said.contains("20 rows of 40x40 stay empty") && said.contains("--size 56x28"), "{said}");
@@ -102,9 +101,9 @@ fn lenses_have_the_same_bits_in_parts_and_on_all_threads() {
             assert_eq!(part.get(x, y), whole.get(x + 7, y + 9), "{way} {x},{y}");
         }
     }
-    // One sample goes through the lens's middle, as without an opening.
+    // One sample passes through the lens's centre, as without an aperture.
     let said = place.gives(0, "render lens.txt -o one.pfm --size 40x40 --samples 1").err;
-    assert!(said.contains("nothing is out of focus"), "{said}");
+    assert!(said.contains("everything is in focus"), "{said}");
     place.gives(0, "render sharp.txt -o sharp.pfm --size 40x40 --samples 1");
     assert_eq!(place.bytes("one.pfm"), place.bytes("sharp.pfm"));
 }
@@ -134,7 +133,7 @@ fn wrong_cameras_are_told_of() {
     refused("ProjectiveCamera {width 9 height 9}", &["has no `matrix`"]);
     refused("FishEyeCamera {@}", &["did you mean `FisheyeCamera`?"]);
     refused("FisheyeCamera {@} FisheyeCamera {@ walls 3}", &["no field `walls`"]);
-    // They are words of ours, and strictly nobody's.
+    // The words are extensions of the language, so --strict rejects them.
     place.put("ours.txt", seen_by(&format!("FisheyeCamera {{ {POSE} }}")).replace("# ours\n", ""));
     place.refused(2, "render ours.txt -o p.png --strict", &["`FisheyeCamera` is Dürer's own"]);
     place.refused(2, "render ours.txt -o p.png --strict --dialect f04", &["`FisheyeCamera`"]);
@@ -143,7 +142,7 @@ fn wrong_cameras_are_told_of() {
     assert_eq!(said.matches("warning").count(), 1, "{said}");
     place.put("short.txt", seen_by("FisheyeCamera { center 0 1 8 up 0 1 0 }").replace("# ours\n", ""));
     place.refused(2, "render short.txt -o q.png --dialect f04", &["`FisheyeCamera` has no `direction`"]);
-    // What is written anew says the same.
+    // Converted scenes give the same picture.
     place.gives(0, "convert ours.txt -o again.txt");
     place.gives(0, "render ours.txt -o a.pfm --size 20x20 --samples 2");
     place.gives(0, "render again.txt -o b.pfm --size 20x20 --samples 2");

@@ -1,5 +1,5 @@
-//! `durer check`, cause by cause: the smallest change of a sound scene that makes it, and the
-//! nearest that does not.
+//! `durer check`, cause by cause: the smallest change of a valid scene that triggers a finding, and
+//! the nearest change that does not.
 
 mod common;
 
@@ -12,13 +12,13 @@ const CAUSES: &str = include_str!("causes.txt");
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
-    /// A base, or nearly a cause: no warning.
+    /// A base scene or a near miss: no warning.
     Sound,
-    /// The finding of this code stands first.
+    /// The first finding has this code.
     Broken,
 }
 
-/// A scene, with the words of its line.
+/// A scene, with the options of its line.
 struct Case {
     line: String,
     kind: Kind,
@@ -27,7 +27,7 @@ struct Case {
     text: String,
 }
 
-/// Options beside others: the last of two that are given twice is meant.
+/// Adds options; if one is given twice, the last counts.
 fn joined(options: &str, more: &str) -> Vec<String> {
     let mut all: Vec<String> = options.split_whitespace().map(String::from).collect();
     for word in more.split_whitespace().filter(|word| word.starts_with("--")) {
@@ -74,7 +74,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A cube of faces with four corners, the same of triangles, and a picture of hills.
+/// A cube of quads, a cube of triangles, and a picture of hills.
 fn put_files(place: &Place) {
     let corners = "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n";
     let faces = [[1, 4, 3, 2], [5, 6, 7, 8], [1, 2, 6, 5], [2, 3, 7, 6], [3, 4, 8, 7], [4, 1, 5, 8]];
@@ -82,7 +82,7 @@ fn put_files(place: &Place) {
     let halves: String = faces.iter().map(|[a, b, c, d]| format!("f {a} {b} {c}\nf {a} {c} {d}\n")).collect();
     place.put("quads.obj", format!("{corners}{quads}"));
     place.put("box.obj", format!("{corners}{halves}"));
-    // Without its lid.
+    // The cube without its top face.
     let cup: String =
         halves.lines().enumerate().filter(|(i, _)| i / 2 != 4).map(|(_, face)| format!("{face}\n")).collect();
     place.put("cup.obj", format!("{corners}{cup}"));
@@ -103,7 +103,7 @@ fn each_cause_is_told_first_and_its_neighbour_is_sound() {
     put_files(&place);
     let cases = cases();
     let (mut wrong, mut told) = (Vec::new(), BTreeSet::new());
-    // Those with the same options in one run.
+    // Check scenes with equal options in one run.
     let mut of_options: BTreeMap<String, Vec<usize>> = BTreeMap::new();
     for (number, case) in cases.iter().enumerate() {
         place.put(&format!("{number}.txt"), &case.text);
@@ -133,7 +133,7 @@ fn each_cause_is_told_first_and_its_neighbour_is_sound() {
     assert!(cases.len() > 100 && told.len() > 50, "{} cases of {} causes", cases.len(), told.len());
 }
 
-/// Of every code there is a scene: here, or in a file of its own.
+/// Every code has a scene, here or in its own file.
 #[test]
 fn every_cause_has_its_scene() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
@@ -146,7 +146,7 @@ fn every_cause_has_its_scene() {
     assert_eq!(without, WITHOUT.map(|(code, _)| code));
 }
 
-/// Codes of which no scene can be written, or that others than `check` tell.
+/// Codes that no scene can trigger, or that commands other than `check` report.
 const WITHOUT: [(&str, &str); 6] = [
     ("misread-mesh", "the files are those of the course"),
     ("not-finite", "what makes no numbers is told as that"),

@@ -1,4 +1,4 @@
-//! `durer check`: scenes broken by hand, and what it says of them.
+//! `durer check` on scenes broken by hand.
 
 mod common;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// Broken scenes, named by the code of what is wrong with them: `camera-away.backwards.txt`.
+/// Broken scenes, named by the code of their finding: `camera-away.backwards.txt`.
 fn broken() -> (PathBuf, Vec<String>) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/broken");
     let entries = std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -21,7 +21,7 @@ fn code(name: &str) -> &str {
     name.split('.').next().unwrap()
 }
 
-/// A place with all broken scenes and their meshes in it.
+/// Returns a folder with the broken scenes and their meshes, and the scenes' names.
 fn with_broken() -> (Place, Vec<String>) {
     let (folder, names) = broken();
     let place = Place::new();
@@ -55,7 +55,7 @@ fn the_cause_is_among_the_first_two() {
             wrong.push(format!("{name}: {codes:?}"));
         }
         for finding in scene["findings"].as_array().unwrap() {
-            // A place is in a file that is there, and not beyond its end.
+            // Each place is within an existing file.
             let span = &finding["place"];
             if !span.is_null() {
                 let bytes = place.bytes(span["file"].as_str().unwrap());
@@ -67,7 +67,7 @@ fn the_cause_is_among_the_first_two() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Scenes that `--fix` must mend wholly: no warning is left.
+/// Scenes that `--fix` must repair completely.
 const MENDED: [&str; 32] = [
     "bad-value.radius",
     "camera-away.backwards",
@@ -112,7 +112,7 @@ fn what_is_mechanical_is_mended() {
         assert_eq!(place.bytes(name), before, "{name} itself was changed");
         let scene = &json(&ran)["scenes"][0];
         let mended = scene["mended"].as_array().unwrap();
-        // What was mended is not found again, by another run either.
+        // A second run does not report repaired findings either.
         let again = place.run("check mended.txt --json");
         assert_eq!(again.code, ran.code, "{name}\n{}", ran.out);
         let found = codes(&json(&again)["scenes"][0]);
@@ -138,34 +138,34 @@ fn mending_in_place_says_what_it_did() {
         ran.out
     );
     assert!(ran.out.contains("wrote wrong-count.group.txt"), "{}", ran.out);
-    assert!(ran.out.contains("nothing is left"), "{}", ran.out);
-    // There is nothing more to do, and nothing is written.
+    assert!(ran.out.contains("no findings left"), "{}", ran.out);
+    // A second run changes nothing.
     let ran = place.gives(0, "check wrong-count.group.txt --fix");
     assert!(!ran.out.contains("wrote"), "{}", ran.out);
-    // What cannot be mended is told, and the scene stays as it is.
+    // A finding without a fix is reported, and the scene stays unchanged.
     let before = place.bytes("camera-inside.sphere.txt");
     let ran = place.gives(1, "check camera-inside.sphere.txt --fix");
     assert!(ran.out.contains("1 warning left"), "{}", ran.out);
     assert_eq!(place.bytes("camera-inside.sphere.txt"), before);
-    // Where it cannot be written, nothing is changed.
+    // A failed write changes nothing.
     let before = place.bytes("extra-brace.txt");
     let ran = place.run("check extra-brace.txt --fix -o no/such/folder.txt");
     assert_ne!(ran.code, Some(0));
     assert!(ran.err.contains("no folder"), "{}", ran.err);
     assert_eq!(place.bytes("extra-brace.txt"), before);
-    place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output is for one scene"]);
+    place.refused(2, "check extra-brace.txt scene.txt --fix -o one.txt", &["--output takes one scene"]);
 }
 
 #[test]
 fn the_exit_code_tells() {
     let (place, _) = with_broken();
-    assert!(place.gives(0, "check scene.txt").out.contains("scene.txt: nothing found"));
-    // Notes are no reason to fail.
-    assert!(place.gives(0, "check material-index.counted-from-1.txt --fix").out.contains("nothing is left"));
+    assert!(place.gives(0, "check scene.txt").out.contains("scene.txt: no findings"));
+    // Notes do not change the exit code.
+    assert!(place.gives(0, "check material-index.counted-from-1.txt --fix").out.contains("no findings left"));
     assert!(place.gives(1, "check scene.txt light-inside.txt").out.contains("[light-inside]"));
-    assert!(place.gives(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: nothing found"));
+    assert!(place.gives(2, "check light-inside.txt no-camera.txt scene.txt").out.contains("scene.txt: no findings"));
     let ran = place.gives(2, "check nowhere.txt scene.txt");
-    assert!(ran.err.contains("nowhere.txt") && ran.out.contains("scene.txt: nothing found"), "{}{}", ran.err, ran.out);
+    assert!(ran.err.contains("nowhere.txt") && ran.out.contains("scene.txt: no findings"), "{}{}", ran.err, ran.out);
     place.refused(2, "check nowhere.txt", &["nowhere.txt"]);
     place.refused(2, "check", &["SCENE"]);
 }
@@ -182,7 +182,7 @@ Group { numObjects 1 MaterialIndex 0 Triangle { vertex0 -1 0 0 vertex1 0 1 0 ver
 ",
     );
     place.gives(0, "check back.txt");
-    // The course's programs leave backs black; then it is the triangle's fault.
+    // The course's programs leave back faces black, so here the triangle is at fault.
     let ran = place.gives(1, "check back.txt --dialect f04");
     assert!(ran.out.contains("[seen-from-behind]") && ran.out.contains("its back is left black"), "{}", ran.out);
     place.gives(0, "check back.txt --dialect f04 --fix -o front.txt");
@@ -207,7 +207,7 @@ fn a_picture_that_looks_wrong_is_told_of_after_the_render() {
     let err = render("scene.txt", "");
     assert!(!err.contains("the picture"), "{err}");
     let err = render("camera-away.point.txt", "");
-    assert!(err.contains("the picture is of one colour; `durer check` says:"), "{err}");
+    assert!(err.contains("the picture is of one colour; `durer check` reports:"), "{err}");
     assert!(err.contains("[camera-away]") && err.contains("turn it: `direction"), "{err}");
     let err = render("light-divides.txt", "");
     assert!(err.contains("lacks samples") && err.contains("[light-divides]") && err.contains("sample 0"), "{err}");
@@ -219,7 +219,7 @@ fn a_picture_that_looks_wrong_is_told_of_after_the_render() {
 
     let course = |scene: &str| place.gives(0, &format!("course -input {scene} -output p.tga -size 30 30")).err;
     assert!(!course("scene.txt").contains("the picture"));
-    // Light is for the students to see; a picture of one colour is nothing to be seen.
+    // Students judge the light themselves; only a picture of one colour is reported.
     assert!(!course("color-range.light.txt").contains("the picture"));
     assert!(course("camera-away.point.txt").contains("[camera-away]"));
 }

@@ -1,4 +1,4 @@
-//! `durer compare`: numbers, exit codes, folders, heat maps, and the page in a real browser.
+//! `durer compare`: measures, exit codes, folders, heat maps, and the report in a real browser.
 
 mod common;
 
@@ -29,7 +29,7 @@ fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-/// A rendered picture, named `a.png`, and the same as light, `a.exr`.
+/// Renders `a.png`, and the same picture in floating point as `a.exr`.
 fn rendered() -> (Place, Image8) {
     let place = Place::new();
     place.gives(0, "render scene.txt --size 60x50 --samples 1 -q -o a.png");
@@ -53,7 +53,7 @@ fn exit_codes_and_words() {
     assert!(place.gives(0, "compare a.png near.ppm --tolerance 2/255").out.starts_with("same: 0 of"));
     place.gives(0, "compare a.png near.ppm --tolerance 0.008");
     place.gives(0, "compare a.png near.ppm --allow 100");
-    // Light and eight bits of it are the same picture.
+    // A floating point picture equals its 8-bit version.
     place.gives(0, "compare a.png a.exr");
     place.gives(1, "compare a.png a.exr --transfer linear");
     let light = json(&place.gives(0, "compare a.exr a.exr --json").out);
@@ -72,11 +72,11 @@ fn regions_name_what_is_there() {
         assert!(!regions.is_empty());
         for region in regions {
             let (there, worst) = (&region["there"], &region["worst"]);
-            // Shadows fall on the plane.
+            // The plane receives shadows.
             assert!(there["hit"]["object"].as_str().unwrap().starts_with("Plane "), "{there}");
             assert_eq!(there["hit"]["normal"], serde_json::json!([0.0, 1.0, 0.0]));
             let command = there["command"].as_str().unwrap().strip_prefix("durer ").unwrap();
-            // All options that made the reference are there, also those that were found out.
+            // The command lists every option of the reference, also inferred ones.
             let options = format!("--pixel {},{} --size 60x50 --samples 1", worst[0], worst[1]);
             assert!(command.ends_with(&options), "{command}");
             place.gives(0, command);
@@ -177,7 +177,7 @@ fn folders_of_pictures_and_of_students() {
             ["1", "0", "1", "0"].map(String::from).to_vec(),
         )
     );
-    // One that cannot be read does not keep the others from being compared.
+    // An unreadable picture does not stop the others.
     place.put("class/bob/deep.png", "");
     place.put("class/ada/one.ppm", "P6 9 9");
     let ran = place.gives(2, "compare ref class --report class.html");
@@ -201,7 +201,7 @@ fn the_heat_map_is_black_where_nothing_differs() {
     assert!(heat.pixels[60 * 50 - 1][0] > 200);
 }
 
-/// The mistakes of students, made in the course's own pictures.
+/// Mistakes of students, applied to the course's pictures.
 #[test]
 fn mistakes_in_real_pictures_are_named() {
     let Some(course) = corpus() else { return };
@@ -210,7 +210,7 @@ fn mistakes_in_real_pictures_are_named() {
         let path = course.join("reference").join(name);
         let a = read8(&std::fs::read(&path).unwrap(), name).unwrap();
         let (width, height) = (a.width, a.height);
-        // One pixel in twenty, without a pattern.
+        // Change one pixel in twenty, without a pattern.
         let speckle = |x: u32, y: u32| {
             let mixed = x.wrapping_mul(0x9e37_79b9) ^ y.wrapping_mul(0x85eb_ca6b).rotate_left(13);
             ((mixed ^ mixed >> 15).wrapping_mul(0xc2b2_ae35) >> 16).is_multiple_of(20)
@@ -236,8 +236,7 @@ fn mistakes_in_real_pictures_are_named() {
     }
 }
 
-/// Rays through the borders of pixels instead of their middles: the mistake that is made most
-/// often.
+/// Rays through the corners of pixels instead of their centres: the most common mistake.
 #[test]
 fn border_pixels_and_missing_shadows_are_recognised() {
     let place = Place::new();
@@ -247,16 +246,16 @@ fn border_pixels_and_missing_shadows_are_recognised() {
         place.gives(0, &format!("render whitted.txt --size 150x150 --samples 1 -q -o {name}.png {options}"));
     }
     let words = |name: &str| place.gives(1, &format!("compare right.png {name}.png")).out;
-    // A fine pattern changes everywhere: where pixels alone do not tell, nothing is said.
+    // A fine pattern changes everywhere: pixels alone give no diagnosis.
     assert!(!words("border").contains("noise"), "{}", words("border"));
-    // What is brighter may be so for many reasons: pixels alone do not tell.
+    // Brightness has many possible causes: pixels alone give no diagnosis.
     assert!(words("bare").contains("the rest is equal: why cannot be told"), "{}", words("bare"));
     let tried = |name: &str| place.gives(1, &format!("compare right.png {name}.png --scene whitted.txt")).out;
     assert!(tried("bare").contains("there are no shadows: explains 100.0 %"), "{}", tried("bare"));
     assert!(tried("border").contains("lie on the picture's border"), "{}", tried("border"));
 }
 
-/// Clicks through the page and tells what it saw.
+/// Clicks through the page and records what it shows.
 const CLICKS: &str = r##"
 const look = () => [getComputedStyle($("over")).visibility, getComputedStyle($("over")).clipPath, getComputedStyle($("over")).mixBlendMode].join(" ");
 const choose = mode => { document.querySelector(`button[data-mode=${mode}]`).click(); see(`${mode}: ${look()}`); };
@@ -277,7 +276,7 @@ window.dispatchEvent(new KeyboardEvent("keydown", { key: "2" }));
 setTimeout(() => { see(`blinked ${getComputedStyle($("over")).visibility}`); done(); }, 700);
 "##;
 
-/// A class: who made the same mistake is said, and the table can be saved.
+/// A class: the page groups equal mistakes, and the table can be saved.
 #[test]
 fn a_class_is_a_matrix_of_students_and_pictures() {
     let place = Place::new();
@@ -305,7 +304,7 @@ done();
 #[test]
 fn the_page_works_in_a_browser_without_network() {
     let (place, a) = rendered();
-    // A name that would end a script, were it not taken as text.
+    // A name that would end the script if it were not escaped.
     for (name, left) in
         [("ref/one.ppm", 99), ("ref/</script><b>.ppm", 99), ("mine/one.ppm", 99), ("mine/</script><b>.ppm", 30)]
     {

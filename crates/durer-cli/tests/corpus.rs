@@ -1,4 +1,4 @@
-//! Files of others: the command lines of all official pictures, and scenes and models written anew.
+//! External files: the command lines of the official pictures, and converted scenes and models.
 
 mod common;
 
@@ -31,7 +31,7 @@ fn the_year_of_every_official_command_is_guessed() {
     assert!(rows.len() > 150, "{} rows", rows.len());
     let mut wrong = Vec::new();
     for (dialect, arguments) in rows {
-        // Pictures go into a folder of our own, four pixels wide.
+        // Pictures go into the test's folder, four pixels wide.
         let mut words: Vec<String> = arguments.split_whitespace().map(str::to_string).collect();
         for i in 0..words.len() {
             if [".tga", ".bmp", ".png"].iter().any(|ending| words[i].ends_with(ending)) {
@@ -63,7 +63,7 @@ fn models_written_in_words_make_the_same_picture() {
     let Some(course) = corpus() else { return };
     let models = course.join("../samples/gltf/khronos");
     let place = Place::new();
-    // Pictures that are turned and repeat, vertex colours, tangents, bones, films, glass,
+    // Transformed and repeated textures, vertex colours, tangents, skins, thin films, glass,
     // instances.
     for name in MODELS {
         let model = models.join(name);
@@ -88,7 +88,7 @@ fn scenes_written_anew_make_the_same_picture() {
         let folder = course.join("scenes").join(dialect);
         let mut scenes: Vec<_> = std::fs::read_dir(&folder).unwrap().map(|e| e.unwrap().path()).collect();
         scenes.retain(|path| {
-            // Splines have files of another kind.
+            // Splines use another kind of file.
             let name = path.file_name().unwrap().to_string_lossy();
             name.ends_with(".txt") && !name.starts_with("spline")
         });

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Place, SCENE};
 
-/// A scene that any year but 2003 and 2020 reads.
+/// A scene that every year except 2003 and 2020 reads.
 fn plain() -> String {
     SCENE.replace("reflectiveColor 0.5 0.5 0.5", "")
 }
@@ -58,7 +58,8 @@ fn the_picture_of_the_grid() {
     place.gives(0, "course -input scene.txt -size 60 60 -output b.tga -visualize_grid");
     place.gives(0, "course -input scene.txt -size 60 60 -output c.tga");
     let pictures = ["a.tga", "b.tga", "c.tga"].map(|name| place.bytes(name));
-    // Without a number of cells it has suitable ones: here one, as asked for in the first.
+    // Without a number of cells, the grid chooses one: here one cell, as requested in the first
+    // run.
     assert!(pictures[0] == pictures[1] && pictures[1] != pictures[2]);
     assert!(place.bytes("d.tga") != pictures[0]);
 }
@@ -142,7 +143,7 @@ fn f12a4_writes_tga_into_what_is_not_called_bmp() {
         assert_eq!(is_bmp, name == "o.bmp", "{name}");
         assert_eq!(durer::image::read8(&place.bytes(name), "o.tga").unwrap().width, 4);
     }
-    // Where nobody asked for that year, names mean what they say.
+    // Without that year's dialect, names have their plain meaning.
     place.gives(0, "course -input plain.txt -size 4 4 -output p.png");
     assert!(place.bytes("p.png").starts_with(b"\x89PNG"));
 }
@@ -176,7 +177,7 @@ Scene { Node { Component<Light> { type directional direction 0 0 -1 color 1 1 1 
         let mut command = std::process::Command::new(place.path(name));
         let output = command.args(["-input", scene, "-output", "o.bmp"]).current_dir(place.path("")).output().unwrap();
         let err = String::from_utf8_lossy(&output.stderr);
-        // Nothing is guessed where the program is known.
+        // A known program needs no guess of the dialect.
         assert!(output.status.success() && err.is_empty(), "{name}: {err}");
         assert_eq!(place.image8("o.bmp").width, side, "{name}");
     }
@@ -195,7 +196,7 @@ fn files_are_found_from_the_current_folder_and_beside_the_scene() {
             let arguments = format!("course --dialect {dialect} -input scenes/mesh.txt -size 4 4 -output o.bmp");
             let ran = place.run(&arguments);
             println!("{mesh} {dialect}: {:?}", ran.code);
-            // The current folder is 2004's and 2012's; beside the scene all find it.
+            // 2004 and 2012 look in the current folder; all look beside the scene.
             assert!(ran.code == Some(0) || (dialect == "f16" && folder.is_empty()), "{mesh} {dialect}: {}", ran.err);
         }
         std::fs::remove_file(place.path(&mesh)).unwrap();

@@ -8,7 +8,7 @@ use serde_json::Value;
 
 const SMALL: &str = "--size 40x30 --quiet";
 
-/// The value that a node's terms sum to, in single precision and in order.
+/// Sums a node's terms in single precision and in order.
 fn sum(node: &Value) -> [f32; 3] {
     let color = |name: &str| -> [f32; 3] { std::array::from_fn(|i| node[name][i].as_f64().unwrap() as f32) };
     let terms = node["terms"].as_array().unwrap();
@@ -46,7 +46,7 @@ fn samplers_of_the_course_are_explained_with_their_neighbours() {
     let text = ran("--sampler jittered --samples 4 --filter gaussian");
     assert!(text.contains("the mean of 36 samples by weight, also those of pixels around; "), "{text}");
     assert!(text.contains("(number 3 of pixel 21,14) at 21."), "{text}");
-    // Of those that are too far away, only the number is told.
+    // Only a count is printed for surfaces that are too far away.
     let text = ran("--sampler uniform --samples 4 --filter tent --filter-radius 0.9");
     assert!(text.contains(" samples more have no weight here"), "{text}");
     let text = ran("--jitter --blur");
@@ -72,7 +72,7 @@ fn the_text_names_things_by_their_place_in_the_file() {
         assert!(ran.out.contains(wanted), "{wanted}\n{}", ran.out);
     }
     assert!(!ran.out.contains('\x1b'), "no colours into a pipe");
-    // Any ray, with a sample of its own neither needed nor allowed.
+    // A ray needs and accepts no sample.
     let ran = place.gives(2, "explain scene.txt --quiet --ray 0,3,0,0,-1,0");
     assert!(ran.err.contains("--ray"), "{}", ran.err);
     for ray in [
@@ -87,7 +87,7 @@ fn the_text_names_things_by_their_place_in_the_file() {
     }
 }
 
-/// The vectors of highlights are printed, and the colour that weighs glass of 2012.
+/// Prints the vectors of highlights and the colour weight of 2012's glass.
 #[test]
 fn the_formulas_have_all_their_factors() {
     let place = Place::new();
@@ -106,8 +106,7 @@ fn the_formulas_have_all_their_factors() {
     assert!(String::from_utf8(place.bytes("linear.html")).unwrap().contains("\"transfer\":\"linear\""));
 }
 
-/// Small and deep terms are left out, and said to be; nothing has a minus before 0 or more than
-/// four digits.
+/// Omits small and deep terms and says so; prints no minus before 0 and at most four digits.
 #[test]
 fn the_text_can_be_read() {
     let place = Place::new();
@@ -145,11 +144,11 @@ fn the_brightest_and_the_oddest_pixel_are_found() {
 fn wrong_questions_are_refused() {
     let place = Place::new();
     for (question, answer) in [
-        ("", "say which pixel"),
-        ("--pixel 40,3", "pixel 40,3 lies outside the picture of 40 x 30 pixels"),
-        ("--pixel 4;3", "say it as 200,150"),
-        ("--pixel 4,3 --sample 16", "there is no sample 16: the pixel's are numbered from 0 to 15"),
-        ("--pixel 4,3 --time 1s", "differs from run to run"),
+        ("", "choose a pixel or a ray"),
+        ("--pixel 40,3", "pixel 40,3 is outside the picture of 40 x 30 pixels"),
+        ("--pixel 4;3", "as 200,150"),
+        ("--pixel 4,3 --sample 16", "no sample 16: the pixel's samples are numbered from 0 to 15"),
+        ("--pixel 4,3 --time 1s", "a different number of samples on each run"),
         ("--pixel 4,3 --brightest", "cannot be used with"),
     ] {
         let ran = place.gives(2, &format!("explain scene.txt {SMALL} {question}"));
@@ -168,13 +167,13 @@ fn the_page_holds_all_that_it_needs() {
     assert!(!page.contains("http:") && !page.contains("https:"), "nothing is fetched");
 }
 
-/// The names of all fields, and of all kinds, in some JSON.
+/// Collects the names of fields and kinds in a JSON value.
 fn words(json: &Value, found: &mut std::collections::BTreeSet<String>) {
     match json {
         Value::Array(values) => values.iter().for_each(|value| words(value, found)),
         Value::Object(fields) => {
             for (name, value) in fields {
-                // What numbers stand for is found by number.
+                // Objects are found by number.
                 if name.parse::<u32>().is_err() {
                     found.insert(name.clone());
                 }
@@ -208,7 +207,7 @@ fn all_that_the_json_has_is_documented() {
     assert!(missing.is_empty(), "{missing:?}");
 }
 
-/// Unfolds the tree, chooses another sample, marks a ray, turns space by the mouse.
+/// Unfolds the tree, selects another sample, highlights a ray, turns the view with the mouse.
 const CLICKS: &str = r##"
 const open = () => document.querySelectorAll("#tree details[open]").length;
 see(`terms ${document.querySelectorAll("#tree summary, #tree .leaf").length > 5}`);
@@ -256,7 +255,7 @@ fn the_page_works_in_a_browser_without_network() {
         "terms true",
         "folded true",
         "unfolded true",
-        // Of the floor and of what it mirrors, one to the light each.
+        // The floor and its reflection each have a ray to the light.
         "rays true 2",
         "marked 1 true",
         "unheld true",

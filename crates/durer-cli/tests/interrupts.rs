@@ -1,4 +1,4 @@
-//! Ctrl-C: exit code 130, soon, and what is there is saved.
+//! Ctrl-C: exit code 130 without delay, and the work so far is saved.
 #![cfg(unix)]
 
 mod common;
@@ -7,7 +7,7 @@ use common::Place;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// An idle machine takes 0.2 s; this is for busy ones.
+/// Limit for busy machines; an idle one takes 0.2 s.
 const SOON: Duration = Duration::from_secs(8);
 
 #[test]
@@ -25,7 +25,7 @@ fn rendering_stops_soon_and_where_there_is_nothing_leaves_nothing() {
     ] {
         let (ran, latency) = place.interrupted(&format!("render {options} -o old.png"), Duration::from_millis(400));
         assert_eq!((ran.code, ran.out.as_str()), (Some(130), ""), "{options}: {}", ran.err);
-        // A few blocks of pixels may be done; then they are kept.
+        // If a few blocks of pixels are done, they are saved.
         let part = place.path("old.png.part");
         let told = ran.err.lines().last().unwrap_or_default();
         assert!(told == "interrupted; nothing was written" || told.contains("old.png.part (--resume"), "{told}");
@@ -48,7 +48,7 @@ fn what_is_there_is_saved() {
         "scene.txt --sampler uniform --samples 100 --size 1000x1000",
         "scene.txt --sampler uniform --samples 16 --size 300x300 --filter gaussian --filter-radius 60",
         "scene.txt --jitter --size 3500x3500",
-        // What is saved takes time in proportion to what is made.
+        // Saving takes time in proportion to the work.
         "scene.txt --size 3000x3000 --samples 64",
     ] {
         place.put("old.png", "an old picture");
@@ -58,7 +58,7 @@ fn what_is_there_is_saved() {
         assert!(latency < SOON, "{options}: {latency:?}");
         let told = ran.err.lines().last().unwrap_or_default();
         assert_eq!(told.contains("old.png.part (--resume"), place.path("old.png.part").exists(), "{options}: {told}");
-        // A picture with holes does not replace an old one.
+        // An incomplete picture does not replace an old one.
         if told.ends_with("and old.png") {
             assert!(place.image8("old.png").width > 0);
         } else {
@@ -74,7 +74,7 @@ fn what_is_there_is_saved() {
 #[test]
 fn reading_stops_too() {
     let place = Place::new();
-    // Two million triangles: some seconds of reading and sorting, in a build of any kind.
+    // Two million triangles take seconds to read and sort, in any build.
     let mut mesh = String::new();
     for i in 0..400_000 {
         mesh += &format!("v {i} 0 1\nv {i} 1 {i}\nf {} {} 1\n", 2 * i + 1, 2 * i + 2);
@@ -85,7 +85,7 @@ fn reading_stops_too() {
         common::SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", "TriangleMesh { obj_file large.obj }"),
     );
     for command in ["render large.txt -o p.png", "info large.txt", "course -input large.txt -output p.tga"] {
-        // Late enough for a busy machine to have begun.
+        // Late enough for a busy machine to have started.
         let (ran, latency) = place.interrupted(command, Duration::from_millis(250));
         assert!(ran.code == Some(130) && ran.out.is_empty() && latency < SOON, "{command}: {:?} {latency:?}", ran.code);
     }
@@ -103,10 +103,10 @@ fn whenever_it_comes_the_file_is_whole_or_not_there() {
         );
         match ran.code {
             Some(0) => assert_eq!(place.image8("p.png").width, 300),
-            // It may have come when all was done.
+            // The signal may have arrived after the work was done.
             Some(130) => assert!(!place.path("p.png").exists() || place.image8("p.png").width == 300),
-            // Before it is heard at all, the system ends the program; if it has ended already,
-            // nothing does.
+            // Before the handler is installed, the system ends the program; after the program has
+            // ended, nothing happens.
             other => assert!(other.is_none(), "{other:?} after {after} ms"),
         }
         assert!(place.names().iter().all(|name| !name.ends_with(".tmp")));
@@ -154,7 +154,7 @@ fn whoever_watches_sees_what_is_saved_and_ends_by_ctrl_c() {
     let picture = || std::fs::read(place.path("a.png")).unwrap_or_default();
     wait(&|| !picture().is_empty());
     let mut before = picture();
-    // What is wrong is waited for to be mended.
+    // An error waits for the file to be fixed.
     for text in [scene.replace("0.8 0.3 0.2", "0.1 0.3 0.9"), scene.replace("radius 1", "radius x"), scene.clone()] {
         std::thread::sleep(Duration::from_millis(400));
         place.put("scene.txt", &text);

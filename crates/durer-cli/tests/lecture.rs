@@ -1,5 +1,5 @@
-//! docs/lecture.md and the lesson's steps: what they say of the source is there, and pictures are
-//! what their commands make.
+//! docs/lecture.md and the lesson's steps: their references to the source exist, and their commands
+//! reproduce the pictures.
 
 mod common;
 
@@ -16,12 +16,12 @@ fn guide() -> String {
     std::fs::read_to_string(root().join("docs/lecture.md")).unwrap()
 }
 
-/// Texts between two marks.
+/// Returns the texts between two marks.
 fn between<'t>(text: &'t str, from: &'t str, to: &'t str) -> impl Iterator<Item = &'t str> {
     text.split(from).skip(1).filter_map(move |rest| rest.split_once(to)).map(|parts| parts.0)
 }
 
-/// Whether a file of the repository has a definition of this name, and not only of a longer one.
+/// Checks that a file of the repository defines exactly this name.
 #[track_caller]
 fn defined(file: &str, symbol: &str) {
     let text = std::fs::read_to_string(root().join(file)).unwrap_or_else(|error| panic!("{file}: {error}"));
@@ -72,14 +72,14 @@ fn pictures_are_what_their_commands_make() {
         let run = Command::new(common::durer()).current_dir(root()).args(arguments).output().unwrap();
         assert!(run.status.success(), "{command}\n{}", String::from_utf8_lossy(&run.stderr));
         let (made, kept) = (std::fs::read(made).unwrap(), std::fs::read(root().join(picture)).unwrap());
-        // How much work rays are changes with every better tree: such a picture may be older.
+        // The cost picture changes with every improvement of the tree, so it may be older.
         let older = command.contains("--show cost");
         assert!(
             older || made == kept,
             "{picture} is not what the command beside it makes; the guide says how to make all anew"
         );
     };
-    // Two at a time: what is small leaves threads idle.
+    // Run two at a time: small renders leave threads idle.
     std::thread::scope(|scope| {
         for turn in 0..2 {
             let (commands, check) = (&commands, &check);

@@ -21,7 +21,7 @@ fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
     let ran = place.gives(0, &format!("lesson scene.txt -o out {SMALL}"));
     assert!(ran.out.starts_with("wrote out/index.html, lesson.md and "), "{}", ran.out);
     let (text, files) = (String::from_utf8(place.bytes("out/lesson.md")).unwrap(), names(&place.path("out")));
-    // All that the text shows is there, and nothing else.
+    // The folder has exactly the files that the text links to.
     let shown = |name: &str| text.contains(&format!("]({name})")) || name == "lesson.md";
     assert!(files.iter().all(|name| shown(name)), "{files:?}");
     assert_eq!(
@@ -30,11 +30,11 @@ fn a_lesson_is_a_folder_with_a_page_a_text_and_its_pictures() {
     );
     assert!(text.contains("> scene.txt cannot show this: no glass is seen in it"), "{text}");
     assert!(text.contains("`crates/durer-render/src/integrator/whitted/secondary.rs`: `fn refract`"));
-    // The last picture is the one that `render` makes.
+    // The last picture equals that of `render`.
     place.gives(0, &format!("render scene.txt -o p.png -q {SMALL}"));
     let last = files.iter().rfind(|name| name.ends_with("-supersampling.png")).unwrap();
     assert_eq!(place.bytes(&format!("out/{last}")), place.bytes("p.png"));
-    // And all of it is the same each time.
+    // A second run writes equal files.
     place.gives(0, &format!("lesson scene.txt -o again --quiet {SMALL}"));
     assert_eq!(names(&place.path("again")), files);
     assert!(files.iter().all(|name| place.bytes(&format!("out/{name}")) == place.bytes(&format!("again/{name}"))));
@@ -47,7 +47,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     place.put("out/notes.txt", "mine");
     place.gives(0, &format!("lesson scene.txt -o out -q {SMALL}"));
     let first = names(&place.path("out"));
-    // Another scene has other steps; what it does not need any more goes, and the notes stay.
+    // Another scene has other steps; stale files are removed, and foreign files stay.
     place.put("dull.txt", common::SCENE.replace("reflectiveColor 0.5 0.5 0.5", ""));
     place.gives(0, &format!("lesson dull.txt -o out -q {SMALL}"));
     place.gives(0, &format!("lesson dull.txt -o fresh -q {SMALL}"));
@@ -57,7 +57,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     assert_ne!(first, fresh);
     assert_eq!(names(&place.path("out")), fresh);
     assert_eq!(place.bytes("out/notes.txt"), b"mine");
-    // A file of that name which no lesson wrote is in the way.
+    // A foreign file with a lesson's file name stops the lesson.
     std::fs::create_dir(place.path("site")).unwrap();
     place.put("site/index.html", "my own page");
     let ran = place.gives(2, &format!("lesson scene.txt -o site -q {SMALL}"));
@@ -92,7 +92,7 @@ fn wrong_orders_are_refused_and_leave_nothing() {
     }
 }
 
-/// Moves the slider, and drags across the picture.
+/// Moves the slider and drags across the picture.
 const CLICKS: &str = r##"
 see(`steps ${document.querySelectorAll("section").length - 1} links ${document.querySelectorAll("nav a").length}`);
 const images = [...document.querySelectorAll("img")];
@@ -120,7 +120,7 @@ setTimeout(() => {
 #[test]
 fn the_page_works_in_a_browser_without_network() {
     let place = Place::new();
-    // A name that would end a script, or make a link to be removed, were it not taken as text.
+    // A name that would end the script or link to a file to remove, if it were not escaped.
     let scene = "<b>](a).txt";
     place.put(scene, common::SCENE);
     place.gives(0, &format!("lesson {scene} -o out -q {SMALL}"));

@@ -1,10 +1,10 @@
-//! Paths from the command line: pictures, measuring, exposure, checks.
+//! Path tracing on the command line: pictures, photometry, exposure, checks.
 
 mod common;
 
 use common::Place;
 
-/// A matte floor under a lamp that was measured, with a ball that shines.
+/// A diffuse floor under a light with measured intensities, with an emissive ball.
 const LIT: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.3 -1 up 0 1 0 angle 40 }
 Background { color 0 0 0 }
 Lights { PhotometricLight { position 0 2 0 file lamp.ies } }
@@ -14,7 +14,7 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere {
   MaterialIndex 2 Sphere { center -1 0.3 0.5 radius 0.3 } }
 ";
 
-/// 1000 candela straight down, by the cosine.
+/// 1000 candela straight down, with a cosine falloff.
 const LAMP: &str = "IESNA:LM-63-1995\nTILT=NONE\n1 -1 1 4 1 1 2 0 0 0\n1 1 60\n0 30 60 90\n0\n1000 866.025 500 0\n";
 
 fn lit() -> Place {
@@ -57,12 +57,12 @@ Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Box { mi
         let row: Vec<f64> = ran.out.lines().nth(1).unwrap().split(',').map(|word| word.parse().unwrap()).collect();
         (row[6], row[7])
     };
-    // 100 cd from 2 m: 25 lux without the pane; of its two faces each reflects 0.04: T = (1 - F) /
-    // (1 + F).
+    // 100 cd from 2 m: 25 lux without the pane. Each of its faces reflects 0.04: T = (1 - F) / (1 +
+    // F).
     let (mean, error) = lux("--integrator photons --samples 32 --photons 20000 --photon-radius 0.2");
     let expected = 25.0 * 0.96 / 1.04;
     assert!((mean - expected).abs() < 3.0 * error + 0.02 * expected, "{mean} ± {error}, not {expected}");
-    // Paths alone do not find a lamp without extent behind glass.
+    // Path tracing cannot find a point light behind glass.
     assert_eq!(lux("--samples 32").0, 0.0);
     assert!(place.gives(2, "measure pane.txt --at 0,0,0 --integrator ao").err.contains("path, or photons"));
 }
@@ -98,7 +98,7 @@ fn exposure_and_tone_change_eight_bits_alone() {
     place.gives(0, "render lit.txt -o b.pfm --size 16x12 --samples 4 -q");
     assert_eq!(place.image("a.pfm"), place.image("b.pfm"));
     assert!(place.gives(2, "render lit.txt -o p.png --exposure 1e9").err.contains("--exposure"));
-    assert!(place.gives(2, "render lit.txt -o p.png --clamp 1 --integrator ao").err.contains("--clamp makes no sense"));
+    assert!(place.gives(2, "render lit.txt -o p.png --clamp 1 --integrator ao").err.contains("--clamp does not apply"));
 }
 
 #[test]
@@ -115,7 +115,7 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     let dark = LIT.replace("PhotometricLight { position 0 2 0 file lamp.ies }", "").replace("emissionLuminance 20", "");
     place.put("dark.txt", &dark);
     assert!(place.gives(1, "check dark.txt").out.contains("no-emitter"));
-    // In the words of the file's own format.
+    // The message uses the words of the file's format.
     let scene =
         "<scene version='3.0.0'><sensor type='perspective'/><emitter type='projector'/><shape type='sphere'/></scene>";
     place.put("dark.xml", scene);
@@ -146,7 +146,7 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     assert!(!place.gives(0, "check bulb.txt --integrator photons").out.contains("lamp-in-glass"));
 }
 
-/// A lamp over a floor, and a ball of glass between.
+/// A light over a floor, with a ball of glass between.
 const CAUSTIC: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0 0 0 }
 Lights { PointLight { position 0.5 4 0 color 9 9 9 falloff 1 } }
@@ -174,7 +174,7 @@ fn photons_wavelengths_and_fog_have_the_same_bits_however_they_are_made() {
         let told = place.gives(0, &format!("verify {scene} {options} --size 20x16 --samples 5 --trials 4"));
         assert!(told.out.contains("same") || told.out.contains("one hash"), "{} {}", told.out, told.err);
     }
-    // Photons bring light that paths do not.
+    // Photons carry light that paths do not find.
     let mean = |options: &str| {
         place.gives(0, &format!("render scene.txt {options} --size 24x18 --samples 16 -o p.pfm -q --restart"));
         let bytes = std::fs::read(place.path("p.pfm")).unwrap();
@@ -190,8 +190,8 @@ fn options_of_light_that_make_no_sense_are_refused_and_noise_is_taken_out_beside
     let place = Place::new();
     place.put("scene.txt", CAUSTIC);
     for (options, word) in [
-        ("--integrator path --photons 9", "--photons makes no sense with --integrator path"),
-        ("--integrator whitted --color spectral", "--color makes no sense"),
+        ("--integrator path --photons 9", "--photons does not apply to --integrator path"),
+        ("--integrator whitted --color spectral", "--color does not apply"),
         ("--photon-radius 0", "--photon-radius must be more than 0"),
     ] {
         let told = place.gives(2, &format!("render scene.txt {options} -o p.png")).err;
@@ -229,7 +229,7 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
     let write = |base, lamp, sky| place.put("s.txt", scene(base, lamp, sky));
     place.put("paints.csv", "nm,grey,red\n400,0.5,0.1\n580,0.5,0.1\n600,0.5,0.8\n");
     place.put("lamp.csv", "400 0\n700 3\n");
-    // However it is coloured, it is as bright: E = pi L r^2 / (r^2 + d^2).
+    // The illuminance does not depend on the colour: E = pi L r^2 / (r^2 + d^2).
     for lamp in
         ["", "emissionSpectrum A", "emissionSpectrum F11", "emissionSpectrum 2700K", "emissionSpectrum lamp.csv"]
     {
@@ -241,8 +241,8 @@ Group {{ MaterialIndex 0 Plane {{ normal 0 1 0 offset 0 }} MaterialIndex 1 Disc 
             assert!((lux / (20.0 * std::f64::consts::PI) - 1.0).abs() < 0.01, "{lamp} {color}: {row}");
         }
     }
-    // A small lamp and lights without extent, as strong and of the same spectrum, show a paint in
-    // the same colour.
+    // A small area light and point lights with equal power and spectrum show a paint in the same
+    // colour.
     let shown = |lights: &str, things: &str| -> Vec<f64> {
         place.put(
             "t.txt",
@@ -312,7 +312,8 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         };
         ["0,1,0", "1,0,0", "-1,0,0", "0,0,1", "0,0,-1"].map(at).to_vec()
     };
-    // Reda and Andreas, 2003: in Colorado the sun stands 39.872 degrees high and at 194.340.
+    // Reda and Andreas, 2003: in Colorado, the sun's elevation is 39.872 degrees and its azimuth
+    // 194.340.
     let written = lux("sun -0.190061 0.641085 0.743564");
     assert!(written[3] > written[2] && written[2] > written[1] && written[1] > 0.0, "{written:?}");
     for sky in [
@@ -324,7 +325,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let near = found.iter().zip(&written).all(|(a, b)| (a / b - 1.0).abs() < 2e-3);
         assert!(near, "{sky}: {found:?}, not {written:?}");
     }
-    // At midnight it is told of, and dark.
+    // At midnight, a warning is printed and the picture is dark.
     assert_eq!(lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0")[0], 0.0);
     assert_eq!(lux("cieSky 12 sunAltitude -20 sunAzimuth 0")[0], 0.0);
     lux("latitude 39.742476 longitude -105.1786 date 2003 10 17 time 7 0 0");
@@ -348,16 +349,16 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         row.split(',').nth(6).unwrap().parse().unwrap()
     };
     for (light, expected) in [
-        // I / d²; of a flux, I is that over 4 pi; whatever the hue.
+        // E = I / d²; for a flux, I = flux / 4 pi, whatever the hue.
         ("PointLight { position 0 2 0 color 1 1 1 candela 800 }", 200.0),
         ("PointLight { position 0 2 0 color 0.9 0.5 0.1 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 2 2 2 angle 40 candela 800 }", 200.0),
-        // All in the cone of 60 degrees on either side: 2 pi (1 - 1/2).
+        // The flux fills the cone of 60 degrees on either side: 2 pi (1 - 1/2).
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 0 0 angle 60 innerAngle 60 lumens 800 }",
             800.0 / pi / 4.0,
         ),
-        // From there to the middle it fades with s², whose mean is a third.
+        // The intensity fades with s² to the axis; the mean of s² is a third.
         ("SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 lumens 800 }", 800.0 / (pi / 3.0) / 4.0),
         (
             "SpotLight { position 0 2 0 direction 0 -1 0 color 1 1 1 angle 60 fade smooth lumens 800 }",
@@ -365,7 +366,7 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         ),
         ("DirectionalLight { direction 0 -3 0 color 1 0.9 0.7 lux 100000 }", 100_000.0),
         ("DirectionalLight { direction 0 -3 0 color 1 1 1 lux 500 spectrum A }", 500.0),
-        // A file of 100 cd everywhere.
+        // A file with 100 cd in every direction.
         ("PhotometricLight { position 0 2 0 file lamp.ies }", 25.0),
         ("PhotometricLight { position 0 2 0 file lamp.ies color 0.2 0.9 0.4 lumens 800 }", 800.0 / (4.0 * pi) / 4.0),
     ] {
@@ -408,13 +409,13 @@ Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } } Group { MaterialIndex
         ("--shutter 1/125", "--f-number"),
         ("--f-number 8", "--shutter"),
         ("--iso 100", "--shutter"),
-        ("--shutter 0 --f-number 8", "seconds are as"),
-        ("--shutter 1/0 --f-number 8", "seconds are as"),
+        ("--shutter 0 --f-number 8", "expected seconds"),
+        ("--shutter 1/0 --f-number 8", "expected seconds"),
         ("--shutter 1/125 --f-number 0", "--f-number"),
     ] {
         place.refused(2, &format!("render s.txt -o q.png --size 1x1 {options}"), &[words]);
     }
-    // `check` sees it so, too.
+    // `check` uses the same exposure.
     place.put("lit.txt", scene.replace("0 0 9", "0 0 0"));
     assert!(place.gives(1, "check lit.txt").out.contains("too-bright"));
     place.gives(0, "check lit.txt --shutter 1/125 --f-number 8");
@@ -430,7 +431,7 @@ fn radiance_s_scenes_are_measured_in_lux_from_above() {
         let ran = place.gives(0, measure);
         ran.out.lines().skip(1).map(|row| row.split(',').map(|word| word.parse().unwrap()).collect()).collect()
     };
-    // Half of all directions shine: pi L, by rtrace's weights and 179 lm/W.
+    // Half of the sphere emits: pi L, with rtrace's weights and 179 lm/W.
     let expected = std::f64::consts::PI * 179.0 * (2.0 * 0.265 + 0.670 + 0.5 * 0.065);
     for row in
         rows("measure sky.rad --at 0,0,0 --grid 0,0,0:3,0,0:0,5,0:1x1 --grid 0,0,0:0,5,0:3,0,0:1x1 --samples 1024")
@@ -438,10 +439,10 @@ fn radiance_s_scenes_are_measured_in_lux_from_above() {
         assert_eq!(row[3..6], [0.0, 0.0, 1.0], "{row:?}");
         assert!((row[6] / expected - 1.0).abs() < 5e-3, "{row:?}, not {expected}");
     }
-    // No studio lights what is dark.
+    // A dark model gets no studio lights.
     assert_eq!(rows("measure dark.rad --at 0,0,0 --samples 64")[0][6], 0.0);
     assert!(rows("measure dark.rad --at 0,0,0 --samples 64 --studio soft")[0][6] > 0.1);
-    // Photons are kept on surfaces.
+    // Photons are stored on surfaces.
     let mirror = "void light l 0 0 3 100 100 100\nl sphere s 0 0 4 0 0 2 .05\nvoid mirror m 0 0 3 .9 .9 .9
 m polygon p 0 0 12 2 -9 -9 2 9 -9 2 9 9 2 -9 9\nvoid plastic w 0 0 5 .5 .5 .5 0 0\nw polygon f 0 0 12 -9 -9 0 9 -9 0 9 9 0 -9 9 0\n";
     place.put("mirror.rad", mirror);
@@ -484,6 +485,6 @@ Group {{ MaterialIndex 0 Sphere {{ center 0 -9 0 radius 1 }} }}"
         let said = told(&format!("Background {{ {sky} }}"));
         assert!(!said.contains("no effect") && !said.contains("grey"), "{sky}: {said}");
     }
-    // Nobody wrote what shines from all around.
+    // The file has no environment.
     assert!(told("").contains("`Background { color 0 0 0 }`"));
 }

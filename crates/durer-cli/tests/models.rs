@@ -1,4 +1,4 @@
-//! Models on the command line: rendered, told about, converted, refused at their place.
+//! Models on the command line: rendering, info, conversion, and errors with their place.
 
 mod common;
 
@@ -34,7 +34,7 @@ fn a_model_is_converted_also_to_words() {
         assert!(place.gives(0, &format!("info {name}")).out.contains("2 in meshes"), "{name}");
     }
     let hash = |name: &str| place.gives(0, &format!("render {name} -o a.png {SMALL} --hash -q")).out;
-    // A model without a camera is framed for a square.
+    // A model without a camera is framed for a square picture.
     let picture = |name: &str| {
         place.gives(0, &format!("render {name} -o a.ppm --size 24x24 --samples 2 -q --restart"));
         std::fs::read(place.path("a.ppm")).unwrap()
@@ -43,11 +43,11 @@ fn a_model_is_converted_also_to_words() {
         let said = place.gives(0, &format!("convert a.stl -o {name}")).out;
         assert!(said.contains(name) && said.contains("a.stl.ply"), "{said}");
         assert_eq!(picture(name), picture("a.stl"), "{name}");
-        // What is written is a scene like any other.
+        // Converted files are ordinary scenes.
         place.gives(0, &format!("convert {name} -o again-{name}"));
         assert_eq!(hash(&format!("again-{name}")), hash(name), "{name}");
     }
-    place.refused(2, "convert a.stl -o b --to durer", &["the name needs an ending"]);
+    place.refused(2, "convert a.stl -o b --to durer", &["the output needs an extension"]);
 }
 
 #[test]
@@ -68,7 +68,7 @@ fn a_part_of_the_picture_that_a_file_asks_for_is_made() {
     let part = picture("part.pbrt");
     assert_eq!((part.width, part.height), (15, 12));
     assert!(part == picture("whole.pbrt --crop 5,3,15x12"));
-    // Options say otherwise.
+    // Options override that.
     assert!(picture("part.pbrt --crop 0,0,30x20") == picture("whole.pbrt"));
     assert_eq!(picture("part.pbrt --size 60x40").width, 60);
 }
@@ -160,12 +160,12 @@ fn frames_are_moments_cameras_and_files() {
     let place = Place::new();
     place.put("a.stl", STL);
     let hash = |words: &str| place.gives(0, &format!("render {words} {SMALL} --hash -q")).out;
-    // A frame of a turntable is the same alone, and the view that `--turned` gives.
+    // A turntable's frame equals the same frame alone, and the view of `--turned`.
     let all = hash("a.stl -o a.png --turntable 3");
     let alone: String = (0..3).map(|i| hash(&format!("a.stl -o a.png --turntable 3 --frames {i}"))).collect();
     let turned: String = [0, 120, 240].map(|angle| hash(&format!("a.stl -o a.png --turned {angle}"))).concat();
     assert!(all == alone && all == turned, "{all} {alone} {turned}");
-    // Numbers take the place of %d in scenes and cameras.
+    // Frame numbers replace %d in scenes and cameras.
     for (i, diffuse) in [(8, "1 0 0"), (9, "0 1 0"), (10, "0 0 1")] {
         let material = format!("Materials {{ PhongMaterial {{ diffuseColor {diffuse} }} }}");
         let text = format!("{COURSE} {material} Group {{ MaterialIndex 0 Sphere {{ center 0 0 0 radius 1 }} }}");
@@ -179,16 +179,16 @@ fn frames_are_moments_cameras_and_files() {
         hash("a.xml -o a.png --camera %d --frames 0-1"),
         hash("a.xml -o a.png --camera 0") + &hash("a.xml -o a.png --camera 1")
     );
-    // Shards of frames, as farms make them.
+    // Shards of frames, as on farms.
     for shard in [1, 2] {
         hash(&format!("walk.%02d.txt --frames 8-9 --shard {shard}/2 -o %d.{shard}.part"));
     }
     assert_eq!(place.gives(0, "merge 9.1.part 9.2.part -o b.png --hash -q").out, hash("walk.09.txt -o a.png"));
-    place.refused(2, "render walk.08.txt --frames 1-3", &["nothing would move"]);
+    place.refused(2, "render walk.08.txt --frames 1-3", &["all frames would be equal"]);
     place.refused(2, "render walk.%02d.txt --frames 3-1", &["expected frames as 7, 1-100 or 0-90:10"]);
-    place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["many pictures are made"]);
-    place.refused(2, "render a.stl --turntable 4 --turned 3", &["--turned say whence"]);
-    // What has a camera of its own language is not turned, and says so.
+    place.refused(2, "render walk.%02d.txt --frames 8-9 --watch", &["apply to one picture"]);
+    place.refused(2, "render a.stl --turntable 4 --turned 3", &["remove --camera, --view-file and --turned"]);
+    // A scene with a camera cannot be turned, and the error says so.
     place.refused(2, "render walk.08.txt --turntable 4", &["`durer convert` makes a glTF file"]);
     place.refused(2, "render a.stl --fps 4", &["--frames"]);
     assert!(place.gives(2, "render walk.%02d.txt --frames 10-11 -q").err.contains("walk.11.txt"));
@@ -203,8 +203,8 @@ fn a_turntable_goes_around_and_fit_moves_the_camera() {
     assert!(frame(0) != frame(1) && frame(1) != frame(2) && frame(2) != frame(3));
     assert!(!place.path("a.0004.png").exists() && !place.path("a.png").exists());
     place.refused(2, "render a.stl -o a.png --turntable 0", &["--turntable"]);
-    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["many pictures are made"]);
-    // A camera that looks past the model sees it then.
+    place.refused(2, "render a.stl -o a.png --turntable 4 --preview b.png", &["apply to one picture"]);
+    // With --fit, a camera that looked past the model sees it.
     place.put("a.rad", RAD);
     place.put("a.vf", "VIEW= -vp 0 -900 900 -vd 0 -1 -.1 -vh 40 -vv 30\n");
     let hash =
@@ -221,9 +221,9 @@ fn an_environment_lights_a_model() {
     place.gives(0, "render sky.txt -o sky.hdr --size 64x32 --samples 1 -q");
     let hash = |more: &str| place.gives(0, &format!("render a.stl -o a.png {SMALL} --hash -q {more}")).out;
     assert_ne!(hash("--environment sky.hdr"), hash(""));
-    // Light from above is not light from the side.
+    // The environment's orientation matters.
     assert_ne!(hash("--environment sky.hdr --up y"), hash("--environment sky.hdr --up z"));
-    // A black one is meant so, but told.
+    // A black environment is legal, but reported.
     place.put("black.pfm", b"PF\n1 1\n-1\n\0\0\0\0\0\0\0\0\0\0\0\0".as_slice());
     let dark = place.gives(0, &format!("render a.stl -o dark.pfm {SMALL} --environment black.pfm --integrator path"));
     assert!(dark.err.contains("around the scene is black"), "{}", dark.err);
@@ -245,7 +245,7 @@ fn json_is_a_scene_for_every_command() {
     let text = "{\"type\": \"Scene\",\n \"camera\": {\"type\": \"PerspectiveCamra\"}}";
     place.put("b.json", text);
     place.refused(2, "render b.json -o b.png", &["b.json:2:21", "did you mean `PerspectiveCamera`?"]);
-    // What no name tells is told by the beginning.
+    // Files without an extension are recognised by their first bytes.
     place.put("b", text);
     place.refused(2, "render b -o b.png", &["b:2:21"]);
 }

@@ -1,4 +1,4 @@
-//! Work in parts: shards and their merging, checkpoints and resuming, single pixels, limits.
+//! Partial work: shards and merging, checkpoints and resuming, single pixels, limits.
 
 mod common;
 
@@ -28,12 +28,12 @@ fn shards_merge_to_the_bytes_of_one_run() {
         place.refused(2, "merge 1.part 2.part 3.part 2.part -o m.exr", &["`2.part` and `2.part` overlap"]);
         place.refused(2, "merge 1.part 2.part 3.part -o m.xyz", &["m.xyz"]);
     }
-    // Several pictures go into files of their own, named by the job that the parts have in them.
+    // Separate pictures go into separate files, named by the job stored in the parts.
     place.gives(0, "merge 1.part 2.part 3.part -o m.png --quiet");
     place.gives(0, &format!("{SMALL} -o w.png"));
     assert!(place.bytes("m.depth.png") == place.bytes("w.depth.png"));
     assert!(place.bytes("m.color.png") == place.bytes("w.color.png"));
-    // Parts of something else, and what is no part.
+    // Parts of another picture, and files that are not parts.
     place.gives(0, &format!("{SMALL} --seed 7 --shard 2/3 --shard-by samples -o other.part"));
     place.refused(2, "merge 1.part other.part 3.part -o m.exr", &["other.part", "`seed` is 7"]);
     let bytes = place.bytes("2.part");
@@ -52,7 +52,7 @@ fn work_that_was_stopped_is_gone_on_with() {
     let hash = last_line(&place.gives(0, &format!("{work} -o calm.png")).out);
     place.gives(0, &format!("{work} --time-limit 30ms --checkpoint c.part -o p.png"));
     assert!(place.path("c.part").exists(), "it cannot have been finished in 30 ms");
-    // What is there is refused for anything else, and stays.
+    // Saved work of another job is rejected and stays.
     let other = |options: &str, words: &[&str]| {
         place.refused(2, &format!("{work} --resume --checkpoint c.part -o p.png {options}"), words);
     };
@@ -68,7 +68,7 @@ fn work_that_was_stopped_is_gone_on_with() {
     let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png --threads 3 --tile 40"));
     assert_eq!(last_line(&ran.out), hash);
     assert!(place.bytes("p.png") == place.bytes("calm.png") && !place.path("c.part").exists());
-    // Where nothing was saved, it begins from the start.
+    // Without saved work, --resume starts from the beginning.
     let ran = place.gives(0, &format!("{work} --resume --checkpoint c.part -o p.png"));
     assert_eq!(last_line(&ran.out), hash);
 }
@@ -109,20 +109,20 @@ fn rules_of_stopping_and_limits() {
     place.refused(2, &format!("{adaptive} --shard 1/2"), &["not split"]);
     place.refused(2, &format!("{adaptive} --integrator photons"), &["photons"]);
     let ran = place.gives(0, "render scene.txt --size 64x48 --time 100ms --preview v.png -o t.png");
-    assert!(ran.err.contains("the time was over after"), "{}", ran.err);
+    assert!(ran.err.contains("the time limit ended the render after"), "{}", ran.err);
     assert_eq!((place.image8("v.png").width, place.image8("t.png").width), (64, 64));
     assert!(!place.path("t.png.part").exists(), "what nobody wanted is not left");
     let large = "render scene.txt --size 4000x4000 --memory 100M";
     place.refused(
         2,
         &format!("{large} -o p.bmp"),
-        &["bands of rows", "BMP needs all rows at once; take one of", "OpenEXR"],
+        &["bands of rows", "BMP needs all rows at once; use one of", "OpenEXR"],
     );
-    place.refused(2, &format!("{large} -o p.png --show color,depth"), &["bands of rows", "other pictures"]);
+    place.refused(2, &format!("{large} -o p.png --show color,depth"), &["bands of rows", "pictures other than"]);
     place.refused(2, &format!("{large} -o p.png --preview q.png"), &["bands of rows", "--preview"]);
     place.refused(2, &format!("{large} -o p.part --shard 1/2"), &["needs about", "100 MiB", "--memory"]);
     place.refused(2, "render scene.txt --size 4294967295x4 --memory 100M", &["needs about", "100 MiB", "--memory"]);
-    // A picture in bands, and at once.
+    // A picture in bands equals one rendered at once.
     let size = "--size 700x500 --samples 2 --hash";
     let [bands, whole] = ["--memory 12M", ""].map(|memory| {
         let name = if memory.is_empty() { "w.ppm" } else { "b.ppm" };
@@ -132,7 +132,7 @@ fn rules_of_stopping_and_limits() {
     });
     assert!(bands == whole, "{:?} {:?}", bands.1, whole.1);
     place.refused(2, "render scene.txt --memory 5Q", &["8G"]);
-    place.refused(2, "render scene.txt --noise-threshold 0", &["more than 0"]);
+    place.refused(2, "render scene.txt --noise-threshold 0", &["above 0"]);
     place.refused(2, "render scene.txt --noise-threshold 0.1 --sampler jittered", &["sobol or random"]);
     place.refused(2, "render scene.txt --time-limit soon", &["--time-limit"]);
     place.refused(2, "render scene.txt --preview p.xyz", &["p.xyz"]);
@@ -177,7 +177,7 @@ fn a_killed_program_leaves_nothing_that_its_next_run_does_not_take_up() {
 fn a_full_disk_is_told_and_the_old_file_is_intact() {
     let place = Place::new();
     for (name, options) in [("p.png", ""), ("p.exr", ""), ("p.part", "--shard 1/2")] {
-        // Work is saved over nothing but work.
+        // Saved work replaces only saved work.
         let old = if name == "p.part" { "" } else { "old" };
         place.put(name, old);
         for limit in [0, 100, 500] {

@@ -1,10 +1,10 @@
-//! Paths from the command line: how far pixels may be from the truth, ways to one light, denoisers.
+//! Path tracing on the command line: error bounds, light sampling strategies, denoisers.
 
 mod common;
 
 use common::Place;
 
-/// A lamp over a floor, and a ball of glass between.
+/// A light over a floor, with a ball of glass between.
 const GLASS: &str = "PerspectiveCamera { center 0 2 6 direction 0 -0.25 -1 up 0 1 0 angle 30 }
 Background { color 0.1 0.1 0.1 }
 Materials {
@@ -36,7 +36,7 @@ fn errors_are_shown_beside_the_work() {
     place.gives(0, &format!("{render} --show error -o e.pfm"));
     let errors = place.image("e.pfm");
     assert!(errors.pixels.iter().all(|error| error.x.is_finite() && error.x >= 0.0));
-    // It is what an explanation tells of a pixel.
+    // It equals the error in the pixel's explanation.
     let explain = "explain glass.txt --integrator photons --photons 500 --size 16x12 --samples 8 --pixel 8,8";
     let told: serde_json::Value = serde_json::from_str(&place.gives(0, &format!("{explain} --json")).out).unwrap();
     let bound = told["pixel"]["error"]["bound"].as_f64().unwrap();
@@ -60,7 +60,7 @@ fn ways_to_one_light_differ_in_noise_alone() {
             let pixels = place.image(name).pixels;
             pixels.iter().map(|pixel| f64::from(pixel.x)).sum::<f64>() / pixels.len() as f64
         };
-        // The mean of all pixels, and its variance.
+        // Mean and variance over the pixels.
         (mean(&format!("{way}.luminance.pfm")), mean(&format!("{way}.variance.pfm")) / (16.0 * 12.0))
     };
     let (both, lights, bsdf) = (render("both"), render("lights"), render("bsdf"));
@@ -68,14 +68,14 @@ fn ways_to_one_light_differ_in_noise_alone() {
         let error = (both.1 + half.1).sqrt();
         assert!((both.0 - half.0).abs() < 3.5 * error && both.0 != half.0, "{both:?} {half:?}");
     }
-    place.refused(2, "render glass.txt --integrator ao --direct bsdf -o p.png", &["--direct makes no sense"]);
+    place.refused(2, "render glass.txt --integrator ao --direct bsdf -o p.png", &["--direct does not apply"]);
     place.refused(2, "render glass.txt --direct middle -o p.png", &["both"]);
 }
 
 #[test]
 fn denoisers_are_chosen_and_where_to_get_one_is_told() {
     let place = place();
-    // A file of the library's name that is none.
+    // A file with the library's name that is not a library.
     for name in ["libOpenImageDenoise.so.2", "libOpenImageDenoise.2.dylib", "OpenImageDenoise.dll"] {
         place.put(name, "no library");
     }
@@ -88,7 +88,7 @@ fn denoisers_are_chosen_and_where_to_get_one_is_told() {
     let (code, _, told) = run("--denoise=oidn -o p.png");
     assert!(code == Some(2) && told.contains("pip install pyoidn") && told.contains("OIDN_DIR"), "{told}");
     let (_, auto, told) = run("--denoise -o auto.png");
-    assert!(told.contains("our own denoiser") && told.contains("pip install pyoidn"), "{told}");
+    assert!(told.contains("the built-in denoiser") && told.contains("pip install pyoidn"), "{told}");
     let (code, own, told) = run("--denoise=own -o own.png");
     assert!(code == Some(0) && !told.contains("pyoidn"), "{told}");
     assert_eq!(place.bytes("auto.png"), place.bytes("own.png"));

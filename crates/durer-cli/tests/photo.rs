@@ -1,5 +1,5 @@
-//! `durer photo`: photographs that Dürer takes itself, of which all is known, and what is no
-//! photograph.
+//! `durer photo`: photographs rendered by Dürer, for which the truth is known, and files that are
+//! not photographs.
 
 mod common;
 
@@ -12,16 +12,16 @@ use durer_photo::{Lens, Pose, Reconstruction};
 use nalgebra::Vector3;
 use std::path::Path;
 
-/// Width, height and focal length of the photographs.
+/// Width, height and focal length of the photographs, in pixels.
 const SIZE: [u32; 2] = [400, 300];
 const FOCAL: f64 = 410.0;
-/// How long the scene is.
+/// Length of the scene.
 const LENGTH: f64 = 8.0;
 
-/// Photographs that Dürer took.
+/// Photographs rendered by Dürer.
 const PHOTOGRAPHS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/photographs");
 
-/// Boxes and walls of noise in even light.
+/// Boxes and walls with a noise texture in uniform light.
 const SCENE: &str = "
 Background { color 0.1 0.1 0.1 ambientLight 1 1 1 }
 Materials { numMaterials 3
@@ -39,7 +39,7 @@ Group { numObjects 8
   MaterialIndex 1 Box { min -2.8 0 -1.9 max -1.8 1.5 -1 } }
 ";
 
-/// The cameras: twenty in two rows on an arc.
+/// Twenty cameras in two rows on an arc.
 fn cameras() -> Vec<Pose> {
     let camera = |i: usize| {
         let (angle, height) = ((f64::from(i as u32 % 10) - 4.5) * 0.11, if i < 10 { 1.4 } else { 2.6 });
@@ -49,8 +49,8 @@ fn cameras() -> Vec<Pose> {
     (0..20).map(camera).collect()
 }
 
-/// How far a solution is from the truth, after one similarity: the farthest camera's place, and the
-/// largest angle in degrees.
+/// Returns the errors of a solution after a similarity alignment: the largest distance of a camera,
+/// and the largest angle in degrees.
 fn differences(all: &Reconstruction, truth: &[Pose]) -> (f64, f64) {
     let found: Vec<Pose> = all.views.iter().map(|view| view.pose.unwrap()).collect();
     let there = aligned(&found, truth).unwrap();
@@ -82,7 +82,7 @@ fn photographs_of_a_known_scene_give_its_cameras() {
         let points = solved.out.split("; ").nth(1).and_then(|rest| rest.split('\n').next()).unwrap();
         assert_eq!(
             place.gives(0, &format!("photo convert {file}")).out,
-            format!("{there} photographs have a place; {points}\n")
+            format!("{there} photographs registered; {points}\n")
         );
     }
     assert!(
@@ -93,7 +93,11 @@ fn photographs_of_a_known_scene_give_its_cameras() {
     );
     place.refused(2, "photo convert matches.json", &["these are matches, which have no cameras yet"]);
     place.refused(2, "photo solve scene.gltf -o no.out", &["there is nothing to adjust"]);
-    place.refused(2, "photo tour points.ply --pictures photos -o no.html", &["nobody knows where any photograph"]);
+    place.refused(
+        2,
+        "photo tour points.ply --pictures photos -o no.html",
+        &["no photograph of `points.ply` has a camera position"],
+    );
     place.gives(0, "photo tour solved --pictures photos -o tour.html --side 64 -q");
     let walked = [
         "20 photographs, ",
@@ -133,8 +137,8 @@ fn threads_change_no_bit() {
     assert_eq!(place.bytes("1.out"), place.bytes("5.out"));
 }
 
-/// A JPEG with EXIF that tells of a focal length in millimetres and of so many pixels an inch of
-/// the sensor.
+/// Returns a JPEG whose EXIF has a focal length in millimetres and a sensor resolution in pixels an
+/// inch.
 fn with_exif(jpeg: &[u8], millimetres: [u32; 2], pixels: [u32; 2]) -> Vec<u8> {
     let entry = |tag: u16, kind: u16, value: u32| {
         [&tag.to_be_bytes()[..], &kind.to_be_bytes(), &1_u32.to_be_bytes(), &value.to_be_bytes()].concat()
@@ -154,8 +158,8 @@ fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
     std::fs::create_dir(place.path("photos")).unwrap();
     let photographs = (0..6).map(|i| (i, std::fs::read(Path::new(PHOTOGRAPHS).join(format!("{i}.jpg"))).unwrap()));
     for (i, jpeg) in photographs {
-        // 330 pixels are true, and 660 may be; one is of a lens longer than any, one is divided by
-        // zero.
+        // 330 pixels are true and 660 are possible; one focal length is too long for any lens, one
+        // divides by zero.
         let (millimetres, pixels) = match i {
             0 => ([5, 1], [1_000_000_000, 1]),
             1 => ([5, 0], [1000, 1]),
@@ -165,14 +169,8 @@ fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
     }
     let matched = place.gives(0, "photo match photos -o m.json --features 1500 --field 60");
     assert!(matched.err.contains("warning: 0.jpg: EXIF's focal length, 196850394 pixels by 5 mm"), "{}", matched.err);
-    assert!(
-        !matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 salient points, focal length 277")
-    );
-    assert!(
-        matched.out.contains("2.jpg: 320x240, 1500 salient points, focal length 660 (EXIF: 25.4 mm"),
-        "{}",
-        matched.out
-    );
+    assert!(!matched.err.contains("1.jpg") && matched.out.contains("1.jpg: 320x240, 1500 features, focal length 277"));
+    assert!(matched.out.contains("2.jpg: 320x240, 1500 features, focal length 660 (EXIF: 25.4 mm"), "{}", matched.out);
     let solved = place.gives(0, "photo solve m.json -o m.out");
     assert!(solved.err.contains("EXIF says 660: EXIF is wrong"), "{}", solved.err);
     for lens in read(&place.path("m.out")).unwrap().lenses {
@@ -180,7 +178,7 @@ fn exif_that_cannot_be_true_is_told_and_what_may_be_is_corrected() {
     }
 }
 
-/// A picture of noise as PNG, which is another one for each seed.
+/// Returns a PNG of noise that depends on the seed.
 fn noise(seed: u64) -> Vec<u8> {
     let mut random = durer_photo::random::Random::new(seed);
     let picture = image::GrayImage::from_fn(160, 120, |_, _| image::Luma([random.bits() as u8]));
@@ -195,7 +193,7 @@ fn what_is_no_set_of_photographs_is_refused() {
     let refused = |words: &[&str]| place.refused(2, "photo match photos -o m.json", words);
     refused(&["cannot read the folder `photos`"]);
     std::fs::create_dir(place.path("photos")).unwrap();
-    refused(&["there are no photographs in `photos`"]);
+    refused(&["no photographs (.jpg, .jpeg, .png) in `photos`"]);
     place.put("photos/a.png", noise(1));
     refused(&["two photographs or more are needed"]);
     place.put("photos/b.png", noise(1));
@@ -207,19 +205,19 @@ fn what_is_no_set_of_photographs_is_refused() {
     place.put("photos/b.png", noise(2));
     place.put("photos/b.jpg", "no picture");
     refused(&["b.jpg: this is neither a JPEG nor a PNG"]);
-    // A decoder would fill up with grey what is missing.
+    // A decoder would fill missing parts with grey.
     let jpeg = std::fs::read(Path::new(PHOTOGRAPHS).join("0.jpg")).unwrap();
     place.put("photos/b.jpg", &jpeg[..jpeg.len() / 2]);
     refused(&["b.jpg: cannot be read as a picture: the JPEG is cut off"]);
     std::fs::remove_file(place.path("photos/b.jpg")).unwrap();
-    // What is no file is no photograph.
+    // Folders do not count as photographs.
     std::fs::create_dir(place.path("photos/folder.jpg")).unwrap();
     refused(&["no two of the photographs show the same things"]);
     assert!(!place.path("m.json").exists());
     false_matches_are_refused(&place);
 }
 
-/// Twenty thousand correspondences of eight photographs that mean nothing.
+/// Twenty thousand random correspondences of eight photographs.
 fn false_matches_are_refused(place: &Place) {
     let mut random = durer_photo::random::Random::new(7);
     let picture = |i: usize| {
@@ -302,7 +300,7 @@ fn broken_files_are_refused_at_their_place() {
         place.put(file, content);
         place.refused(2, command, words);
     }
-    // Whose pixels count from the bottom gets no camera, though one might see a few of them.
+    // Pixels counted from the bottom give no camera, although one might see a few of them.
     let ours = |name: &str| std::fs::read(Path::new(PHOTOGRAPHS).join(name)).unwrap();
     place.put("2.jpg", ours("2.jpg"));
     let points = String::from_utf8(ours("2.points")).unwrap();
@@ -325,10 +323,10 @@ fn broken_files_are_refused_at_their_place() {
     place.put("twice/cameras.txt", "1 SIMPLE_PINHOLE 9 9 5 4 4 7\n");
     place.refused(2, "photo convert twice -o c.ply", &["twice/cameras.txt:1:28: the row should end here"]);
     place.refused(2, "photo camera p.png", &["--points FILE or --lines FILE"]);
-    place.refused(2, "photo solve b.txt -o b.txt", &["is read in this run"]);
+    place.refused(2, "photo solve b.txt -o b.txt", &["is an input of this run"]);
 }
 
-/// A picture whose sides are equal.
+/// A square picture.
 fn square() -> Vec<u8> {
     let mut bytes = std::io::Cursor::new(Vec::new());
     image::GrayImage::new(64, 64).write_to(&mut bytes, image::ImageFormat::Png).unwrap();
@@ -353,19 +351,19 @@ fn things_are_placed_in_a_photograph_with_their_shadows() {
             [0, 1].map(|i| [0, 1, 2].map(|c| sum[i][c] + u32::from(both[i][c])))
         })
     };
-    // What no thing covers or darkens is the photograph, but for roundings.
+    // Pixels without object and shadow equal the photograph, except for rounding.
     let [now, before] = sum(0, 0, 320, 80);
     assert!((0..3).all(|c| now[c].abs_diff(before[c]) < 320 * 80 / 100), "{now:?} {before:?}");
-    // Left of the red ball is its shadow; the ball is red where the floor was grey.
+    // The shadow is left of the red ball; the ball is red where the floor was grey.
     let [now, before] = sum(90, 196, 30, 10);
     assert!((0..3).all(|c| now[c] * 10 < before[c] * 9 && now[c] * 4 > before[c]), "{now:?} {before:?}");
     let [now, before] = sum(135, 150, 20, 20);
     assert!(now[0] > 2 * now[2] && before[0] < 3 * before[2], "{now:?} {before:?}");
     for (options, words) in [
-        ("placed.txt --backplate 2.jpg --stand-in 9", "--stand-in 9: the scene has 4 materials, from 0"),
-        ("placed.txt --backplate 2.jpg --stand-in 0,1,2,3", "there is nothing to place"),
+        ("placed.txt --backplate 2.jpg --stand-in 9", "--stand-in 9: the scene has 4 materials, numbered from 0"),
+        ("placed.txt --backplate 2.jpg --stand-in 0,1,2,3", "there is nothing to insert"),
         ("placed.txt --backplate 2.jpg --size 10x10", "the picture has the photograph's size, 320x240"),
-        ("placed.txt --backplate square.png", "the scene's camera is not of `square.png`"),
+        ("placed.txt --backplate square.png", "the scene's camera does not fit `square.png`"),
         ("placed.txt --backplate placed.txt", "neither a JPEG nor a PNG"),
     ] {
         place.put("square.png", square());
@@ -394,8 +392,8 @@ fn a_thing_sits_in_a_photograph_of_others() {
             [now + sum(placed.pixels[(y * placed.width + x) as usize]), before + sum(plate.get_pixel(x, y).0)]
         })
     };
-    // The books stay as they are; left of the solid and of the ball, where the foot's shadow lies
-    // too, the seat is darker.
+    // The books are unchanged; the seat is darker left of the solid, and left of the ball, where
+    // the foot also casts a shadow.
     let [now, before] = luma(120, 140, 220, 230);
     assert!(now.abs_diff(before) * 100 < before, "{now} {before}");
     for [now, before] in [luma(466, 442, 8, 6), luma(518, 444, 4, 6)] {

@@ -1,10 +1,10 @@
-//! The pictures that `durer render` writes, and what may not change a bit of them.
+//! Pictures of `durer render`, and options that must not change a bit of them.
 
 mod common;
 
 use common::{Place, SCENE};
 
-/// Every way of sampling.
+/// Every kind of sampling.
 const SAMPLINGS: [&str; 9] = [
     "--samples 1",
     "--samples 5",
@@ -109,7 +109,7 @@ fn several_pictures_are_files_of_their_own_or_layers() {
         assert_eq!((image.width, image.height), size, "{name}");
     }
     assert_eq!(place.names().len(), before.len() + 11);
-    // EXR holds them all, but for diagrams, whose sizes differ.
+    // EXR holds every picture except diagrams, whose sizes differ.
     let ran = place.gives(0, "render scene.txt --size 9x8 --show color,depth,normals -o layers.exr");
     assert_eq!(ran.out, "wrote layers.exr\n");
     let text = String::from_utf8_lossy(&place.bytes("layers.exr")).into_owned();

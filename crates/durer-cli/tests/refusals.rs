@@ -1,4 +1,4 @@
-//! What is wrong is said, with the right exit code, and nothing is written.
+//! Errors have a message and the right exit code, and write nothing.
 
 mod common;
 
@@ -88,7 +88,7 @@ fn pipes_and_devices_are_no_scenes() {
 fn bad_options_of_render() {
     let place = Place::new();
     for (options, words) in [
-        ("--size 0x5", "at least one pixel"),
+        ("--size 0x5", "width and height must be at least 1"),
         ("--size 5", "640x480"),
         ("--size 99999999999x1", "640x480"),
         ("--size 100000x100000 -o p.bmp", "bands of rows"),
@@ -159,7 +159,7 @@ fn what_cannot_be_written_is_exit_code_1_and_harms_nothing() {
         place.gives(2, &format!("render {arguments}"));
         assert_eq!(place.bytes("old.png"), b"an old picture");
     }
-    // One of two cannot be written: neither is.
+    // If one of two files cannot be written, neither is.
     place.refused(1, "course -input scene.txt -size 4 4 -output p.tga -normals missing/n.tga", &["there is no folder"]);
 }
 
@@ -188,7 +188,7 @@ fn closed_pipes_and_odd_names_do_not_panic() {
         let ran = Command::new("bash").args(["-c", &script]).current_dir(place.path("")).output().unwrap();
         assert!(!String::from_utf8_lossy(&ran.stdout).contains("panicked"), "{arguments}");
     }
-    // The reading end of standard error is closed, and there is something to say.
+    // The reading end of standard error is closed, and there is a message to print.
     let mut child = place.command("render missing.txt").stderr(Stdio::piped()).spawn().unwrap();
     drop(child.stderr.take());
     assert_eq!(child.wait().unwrap().code(), Some(2));

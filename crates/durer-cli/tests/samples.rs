@@ -1,5 +1,5 @@
-//! What goes through several formats stays the same picture, and the Khronos sample models show
-//! what their cards promise.
+//! Conversion between formats keeps the picture, and the Khronos sample models show what their
+//! cards specify.
 
 mod common;
 
@@ -12,13 +12,14 @@ use std::path::{Path, PathBuf};
 
 const SMALL: &str = "--size 16x16 --samples 2 --quiet --hash";
 
-/// The hash of a small picture.
+/// Returns the hash of a small picture.
 #[track_caller]
 fn hash(place: &Place, scene: impl AsRef<Path>, more: &str) -> String {
     place.gives(0, &format!("render {} -o x.png {SMALL} {more}", scene.as_ref().display())).out
 }
 
-/// Files with such endings in a folder and below it, in order. Arguments are parted at blanks here.
+/// Collects the files with these extensions in and below a folder, sorted. Skips paths with blanks,
+/// which separate arguments here.
 fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -34,7 +35,7 @@ fn below(folder: &Path, endings: &[&str], found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The first file of a sample model of Khronos, if the samples are here.
+/// Returns the first file of a Khronos sample model, if the samples are available.
 fn khronos(name: &str) -> Option<PathBuf> {
     let folder = corpus()?.parent()?.join("samples/gltf/khronos").join(name);
     let mut found = Vec::new();
@@ -45,7 +46,7 @@ fn khronos(name: &str) -> Option<PathBuf> {
     found.into_iter().next()
 }
 
-/// How many scenes of each dialect of the corpus.
+/// Number of scenes tested of each dialect.
 const SCENES: usize = 3;
 
 #[test]
@@ -56,7 +57,7 @@ fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
     let mut tried = BTreeMap::new();
     let place = Place::new();
     for path in all {
-        // Whether it is a scene, and of which dialect.
+        // Skip files that are not scenes; find the dialect.
         let options = LoadOptions::default();
         let read = load(&path, &options, &mut Files::default(), &mut Diagnostics::default()).unwrap();
         let Some(dialect) = read.and_then(|loaded| Some(loaded.guess.as_ref()?.dialect.name())) else { continue };
@@ -69,10 +70,10 @@ fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
         let shown = path.display().to_string();
         place.gives(0, &format!("convert {shown} -o ours.txt --to durer {files}"));
         place.gives(0, &format!("convert ours.txt -o back.txt --dialect durer --to {dialect} {files}"));
-        // With all quirks of the year's program.
+        // With every quirk of the year's program.
         let asked = format!("{files} --dialect {dialect}");
         assert_eq!(hash(&place, "back.txt", &asked), hash(&place, &path, &asked), "{shown}");
-        // JSON says whose words it has: in the words of another year they may mean something else.
+        // JSON records its dialect: words may have another meaning in another year.
         place.gives(0, &format!("convert {shown} -o scene.json {files}"));
         place.gives(0, &format!("convert scene.json -o back.txt --to {dialect} {files}"));
         let usual = hash(&place, &path, &files);
@@ -82,7 +83,7 @@ fn scenes_of_the_course_come_back_from_our_own_words_and_from_json() {
     assert!(tried.len() >= 5, "{tried:?}");
 }
 
-/// Sample models that are written as glTF again, whose picture is the same then.
+/// Sample models whose picture stays the same when written as glTF.
 const WRITTEN: [&str; 12] = [
     "AlphaBlendModeTest",
     "BoxTextured",
@@ -109,7 +110,7 @@ fn gltf_written_anew_makes_the_same_picture() {
         assert_eq!(first, again, "{name}");
         let usual = hash(&place, &path, "");
         assert_eq!(first, usual, "{name}");
-        // Nothing is lost, and nothing is told to be.
+        // The conversion is lossless and reports no loss.
         assert!(!told.contains("NO_COUNTERPART"), "{name}: {told}");
     }
 }
@@ -118,7 +119,7 @@ fn gltf_written_anew_makes_the_same_picture() {
 fn a_mesh_is_the_same_in_all_formats_that_carry_the_same() {
     let place = Place::new();
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/meshes");
-    // PLY and STL are written without normals: where a mesh has its own, it is another then.
+    // PLY and STL are written without normals, so a mesh with normals changes.
     for (mesh, its_own) in [("durer-solid.obj", false), ("knot.ply", true)] {
         let path = folder.join(mesh);
         let usual = hash(&place, &path, "--up y");
@@ -129,7 +130,7 @@ fn a_mesh_is_the_same_in_all_formats_that_carry_the_same() {
             let same = hash(&place, name, "--up y") == usual;
             assert_eq!(same, has_normals || !its_own, "{mesh} as {name}");
         }
-        // Without normals they are the same again.
+        // Without normals, the pictures are equal again.
         assert_eq!(hash(&place, "a.ply", "--up y"), hash(&place, "a.stl", "--up y"), "{mesh}");
     }
 }
@@ -137,21 +138,21 @@ fn a_mesh_is_the_same_in_all_formats_that_carry_the_same() {
 /// Rows and columns of the cards' pictures.
 const SIDE: usize = 200;
 
-/// What is wanted around a place of a card.
+/// Expected content around a place of a card.
 #[derive(Clone, Copy, Debug)]
 enum Mark {
     /// A green tick, and no red cross.
     Tick,
-    /// One colour, up to a little noise.
+    /// One colour, up to noise.
     Color([u8; 3]),
-    /// The same as there.
+    /// The content of another place.
     As(usize, usize),
 }
 
-/// A card, and what is to be seen at places of it.
+/// A card and the expected content at places of it.
 type Card = (&'static str, &'static [(usize, usize, Mark)]);
 
-/// The cards, and what is to be seen on them from the front at pixels of their pictures.
+/// The cards, with the expected content at pixels of their front view.
 const CARDS: &[Card] = &[
     (
         "TextureSettingsTest",
@@ -181,13 +182,13 @@ const CARDS: &[Card] = &[
     ),
 ];
 
-/// Cells that lie behind a hidden back, for lights that see it too: those of the studio.
+/// Cells behind a hidden back face, which only lights of the studio reach.
 const BEHIND: &[Card] = &[
     ("TextureSettingsTest", &[(107, 47, Mark::Tick)]),
     ("NegativeScaleTest", &[(131, 54, Mark::Tick), (131, 73, Mark::Tick)]),
 ];
 
-/// The pixels around a place.
+/// Returns the pixels around a place.
 fn around(picture: &Image8, (x, y): (usize, usize)) -> impl Iterator<Item = [f64; 3]> {
     const REACH: usize = 7;
     let rows = y - REACH..=y + REACH;

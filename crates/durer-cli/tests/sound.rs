@@ -1,5 +1,5 @@
-//! `durer check` is silent about scenes that are sound: our own, and the course's but for those
-//! that are truly odd.
+//! `durer check` reports nothing for valid scenes: those of the repository, and those of the course
+//! except the truly wrong ones.
 
 mod common;
 
@@ -8,13 +8,13 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What is found in the course's scenes, and why it is right.
+/// Expected findings in the course's scenes, with the reason.
 const ODD: [(&str, &str, &str); 2] = [
     ("f04/scene2_05_inside_sphere.txt", "camera-inside", "the camera is inside a sphere, as its name says"),
     ("f04/scene8_10_transparent_vase.txt", "open-glass", "the vase is of glass, and open at its rim"),
 ];
 
-/// Notes about the course's scenes: true, and harmless.
+/// Expected notes about the course's scenes: true, and harmless.
 const NOTES: [(&str, usize, &str); 7] = [
     ("degenerate-mesh", 6, "vases and teapots have triangles without area at their poles"),
     (
@@ -31,14 +31,14 @@ const NOTES: [(&str, usize, &str); 7] = [
 
 fn scenes(folder: &Path) -> Vec<PathBuf> {
     let mut scenes: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    // Splines have files of another kind.
+    // Splines use another kind of file.
     let spline = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with("spline");
     scenes.retain(|path| path.extension().is_some_and(|extension| extension == "txt") && !spline(path));
     scenes.sort();
     scenes
 }
 
-/// The findings of some scenes as (scene, severity, code).
+/// Returns the findings of some scenes as (scene, severity, code).
 fn found(scenes: &[PathBuf], options: &str) -> Vec<(String, String, String)> {
     let place = Place::new();
     let mut command = place.command(&format!("check --json {options}"));
@@ -86,7 +86,7 @@ fn the_course_is_sound_but_for_what_is_truly_odd() {
 fn our_own_scenes_are_sound() {
     let own = scenes(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes"));
     assert!(own.len() > 30, "{} scenes", own.len());
-    // Daylight is in cd/m^2, and is looked at through an exposure.
+    // Daylight is in cd/m^2 and needs an exposure.
     let (sunny, others): (Vec<PathBuf>, Vec<PathBuf>) =
         own.into_iter().partition(|path| path.ends_with("daylight.txt"));
     let found: Vec<_> = found(&others, "").into_iter().chain(found(&sunny, "--exposure -13")).collect();

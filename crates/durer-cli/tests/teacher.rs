@@ -1,4 +1,5 @@
-//! What students break, one case for each that `check` or the reader once missed or told wrongly.
+//! Mistakes of students: one case for each that `check` or the reader once missed or reported
+//! wrongly.
 
 mod common;
 
@@ -19,7 +20,7 @@ Group { numObjects 3
   MaterialIndex 1 Plane { normal 0 1 0 offset 0 } }
 ";
 
-/// The scene in a year's words, with changes.
+/// Returns the scene in a year's dialect, with changes.
 fn scene(year: &str, changes: &[(&str, &str)]) -> String {
     let (light, shine, glass) = match year {
         "f04" => ("attenuation 1 0 0.01", "exponent 20", "transparentColor 0.9 0.9 0.9 indexOfRefraction 1.5"),
@@ -43,7 +44,7 @@ fn found(place: &Place, year: &str, options: &str, changes: &[(&str, &str)]) -> 
     (findings.iter().map(|finding| finding["code"].as_str().unwrap().to_string()).collect(), ran.out)
 }
 
-/// Year, options, changes, the finding that stands first; none where there is to be no warning.
+/// Year, options, changes, and the first finding; `None` if there must be no warning.
 type Case = (&'static str, &'static str, &'static [(&'static str, &'static str)], &'static str);
 
 const CASES: &[Case] = &[
@@ -72,10 +73,10 @@ const CASES: &[Case] = &[
         "same-parts",
     ),
     ("f04", "--bounces 3", &[(LEFT, "TriangleMesh { obj_file quad.obj }")], "mesh-quads"),
-    // A floor that faces down is no light's fault.
+    // A floor that faces down is not the light's fault.
     ("f04", "--bounces 3", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
     ("f16", "", &[("normal 0 1 0 offset 0", "normal 0 -1 0 offset 0")], "seen-from-behind"),
-    // The cause, and not that nothing is seen or all is of one colour.
+    // Report the cause, not that nothing is visible or the picture has one colour.
     ("f04", "--bounces 3", &[("direction 0 -0.15 -1", "direction 0 0.15 1")], "camera-away"),
     (
         "f04",
@@ -83,7 +84,7 @@ const CASES: &[Case] = &[
         &[(ANGLE, "OrthographicCamera { center -1.2 1 9 direction 0 0 -1 up 0 1 0 size 0.1 }")],
         "too-narrow",
     ),
-    // Turned to things that are below the floor, the camera would see the floor.
+    // Turned to objects below the floor, the camera would see the floor.
     (
         "f04",
         "--bounces 3",
@@ -94,7 +95,7 @@ const CASES: &[Case] = &[
         "f04",
         "--bounces 3",
         &[(RIGHT, "Transform { Translate -240 -198 -1791 Sphere { center 0 0 0 radius 1 } }")],
-        // A thing narrower than two pixels: why it is not seen.
+        // An object narrower than two pixels: report why it is invisible.
         "tiny",
     ),
     ("f04", "--bounces 3 --show depth --depth-range 12 6", &[], "depth-range"),
@@ -137,8 +138,8 @@ fn the_cause_stands_first() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// After a colour out of range, nobody is told of too much light as well; what is behind glass is
-/// not hidden.
+/// A colour out of range is not reported as too much light as well; an object behind glass is not
+/// hidden.
 #[test]
 fn consequences_are_silent() {
     let place = Place::new();
@@ -149,11 +150,11 @@ fn consequences_are_silent() {
     assert!(!codes.iter().any(|code| code == "unseen" || code == "hidden-behind"), "{codes:?}");
 }
 
-/// What may be meant so is at most a note, and nothing of it is changed.
+/// A possible intention gets at most a note, and no change.
 #[test]
 fn what_may_be_meant_is_left_alone() {
     let place = Place::new();
-    // A crescent moon; and no light but ambient light of 1, as in the first assignment.
+    // A crescent moon; and only ambient light of 1, as in the first assignment.
     let moon = "PerspectiveCamera { center 0 0 9 direction 0 0 -1 up 0 1 0 angle 20 }
 Lights { numLights 1 DirectionalLight { direction -1 -0.1 0.35 color 1 1 0.9 } }
 Materials { numMaterials 1 Material { diffuseColor 0.8 0.8 0.8 } }
@@ -173,7 +174,7 @@ Group { numObjects 1 MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }
     }
 }
 
-/// A colour of 5 is not 5 of 255, and a year is told its own words.
+/// A colour of 5 does not mean 5 of 255, and messages use the year's own words.
 #[test]
 fn help_is_what_was_meant() {
     let place = Place::new();
@@ -183,12 +184,12 @@ fn help_is_what_was_meant() {
     assert_eq!(place.bytes("five.txt"), before);
     let (_, text) = found(&place, "f16", "", &[("falloff 0.03", "falloff 0")]);
     assert!(!text.contains("attenuation"), "{text}");
-    // Nobody can move a directional light.
+    // A directional light has no position to move.
     let behind =
         ("PointLight { position 3 5 4 color 0.9 0.9 0.9", "DirectionalLight { direction 0.1 1 -0.1 color 0.9 0.9 0.9");
     let (_, text) = found(&place, "f12a4", "", &[behind]);
     assert!(text.contains("light-behind") && !text.contains("move it"), "{text}");
-    // Mirrors that give back more than they get are to blame, and not the lights.
+    // Mirrors that reflect more than they receive are at fault, not the lights.
     let mirrors = [
         ("color 0.2 0.3 0.4 ambientLight 0.1 0.1 0.1", "color 0.9 0.9 0.9 ambientLight 0.4 0.4 0.4"),
         ("diffuseColor 0.6 0.6 0.6", "diffuseColor 0.6 0.6 0.6 reflectiveColor 1 1 1"),
@@ -205,7 +206,7 @@ Scene { Node { Component<Object> { type sphere radius 1 } }
     place.put("nodes.txt", nodes);
     let told = place.run("check nodes.txt --dialect f23").out;
     assert!(told.contains("`Component<Material> { index 0 }`") && !told.contains("MaterialIndex"), "{told}");
-    // Each mention of `--fix` says to what.
+    // Each mention of `--fix` says what it changes.
     place.put("bytes.txt", scene("f04", &[("diffuseColor 0.7 0.3 0.2", "diffuseColor 204 51 51")]));
     let told = place.run("check bytes.txt --dialect f04 --bounces 3").out;
     assert!(told.contains("(`--fix` writes `0.8 0.2 0.2`)"), "{told}");
@@ -239,8 +240,7 @@ Background { color 0 0 0 ambient_light 0.1 0.1 0.1 }
 Materials { Material { diffuse 1 0 0 } }
 Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere radius 1 } } }
 ";
-    // One foreign word does not make another dialect of a file; it is named, and so is its
-    // counterpart.
+    // One foreign word does not change a file's dialect; the message names it and its equivalent.
     place.put("nodes.txt", nodes);
     let told = place.run("check nodes.txt").out;
     assert!(told.contains("`angle` is not a word of f23") && told.contains("in f23 it is `fov`"), "{told}");
@@ -251,10 +251,10 @@ Scene { Node { Component<Material> { index 0 } Component<Object> { type sphere r
     place.put("binary.txt", (0..4000_u32).map(|i| (i * 7919 % 251) as u8).collect::<Vec<u8>>());
     let ran = place.gives(2, "render binary.txt -q -o words.png");
     assert!(ran.err.contains("binary") && ran.err.lines().count() < 8, "{}", ran.err);
-    // A light's direction is no camera's.
+    // A light's direction is not a camera's.
     let still = ("PointLight { position 3 5 4", "DirectionalLight { direction 0 0 0");
     says("f12a4", &scene("f12a4", &[still]), "a light's is where the light goes");
-    // What the year's own program would refuse is a note.
+    // An input that the year's own program would reject gets a note.
     place.put("brace.txt", scene("f04", &[("Group {", "Group{")]));
     let ran = place.run("check brace.txt --dialect f04 --bounces 3");
     assert!(ran.out.contains("would refuse this file"), "{}{}", ran.out, ran.err);

@@ -1,5 +1,4 @@
-//! What an attack found: files that take all memory, options that destroy files, limits of the
-//! system.
+//! Hostile input: files that exhaust memory, options that would overwrite files, and system limits.
 #![cfg(unix)]
 
 mod common;
@@ -8,7 +7,7 @@ use common::{Place, SCENE};
 use std::os::unix::fs::symlink;
 use std::time::Duration;
 
-/// A chunk of a PNG.
+/// Returns a chunk of a PNG.
 fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     let mut chunk = (content.len() as u32).to_be_bytes().to_vec();
     chunk.extend(kind);
@@ -22,7 +21,7 @@ fn chunk(kind: &[u8; 4], content: &[u8]) -> Vec<u8> {
     chunk
 }
 
-/// A PNG of one colour, with something between its head and its pixels.
+/// Returns a PNG of one colour, with extra chunks between header and pixels.
 fn png(side: u32, between: &[u8]) -> Vec<u8> {
     let mut head = [side.to_be_bytes(), side.to_be_bytes()].concat();
     head.extend([8, 2, 0, 0, 0]);
@@ -30,7 +29,7 @@ fn png(side: u32, between: &[u8]) -> Vec<u8> {
     [b"\x89PNG\r\n\x1a\n", &chunk(b"IHDR", &head)[..], between, &chunk(b"IDAT", &pixels), &chunk(b"IEND", b"")].concat()
 }
 
-/// So many zeros, packed as far as deflate goes.
+/// Returns `count` zeros, compressed as far as deflate allows.
 fn zeros(count: u64) -> Vec<u8> {
     let mut packer = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
     std::io::copy(&mut std::io::Read::take(std::io::repeat(0), count), &mut packer).unwrap();
@@ -58,7 +57,7 @@ fn with_pictures(place: &Place, name: &str) -> [String; 3] {
     })
 }
 
-/// Half a gigabyte of address space for the whole program; on two threads.
+/// Half a gigabyte of address space for the whole program, with two threads.
 const LIMITED: &str = "ulimit -v 700000; export RAYON_NUM_THREADS=2; $DURER ";
 
 #[cfg(target_os = "linux")]
@@ -87,7 +86,7 @@ fn large_pictures_are_refused_by_their_heads() {
         assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
         assert!(ran.err.contains(words), "{}", ran.err);
     }
-    // Readers of other formats look at pictures themselves, within the same memory.
+    // Readers of other formats decode pictures themselves, within the same memory.
     let pbrt = "LookAt 0 0 5  0 0 0  0 1 0\nCamera \"perspective\"\nWorldBegin\n";
     let lit = r#"LightSource "infinite" "string filename" "large.png" Shape "sphere""#;
     let rough = r#"Texture "t" "float" "imagemap" "string filename" "large.png"
@@ -111,12 +110,12 @@ fn large_pictures_are_refused_by_their_heads() {
         assert_eq!(ran.code, Some(2), "{line}: {}", ran.err);
         assert!(ran.err.contains("need about") && ran.err.contains("see `--memory`"), "{line}: {}", ran.err);
     }
-    // What is decoded is copied once to where it stays, and both are there for a moment.
+    // A decoded picture is copied once, so both copies exist for a moment.
     place.put("large.png", png(5000, b""));
     let [texture, ..] = with_pictures(&place, "large.png");
     let ran = place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 120M"));
     assert!(ran.code == Some(2) && ran.err.contains("need about 191 MiB"), "{}", ran.err);
-    // Six faces are refused together that would each fit alone.
+    // Six faces exceed the limit together, though each would fit alone.
     place.put("large.png", png(2000, b""));
     let [texture, _, sky] = with_pictures(&place, "large.png");
     assert_eq!(place.shell(&format!("{LIMITED}{texture} --threads 2 --memory 32M")).code, Some(0));
@@ -171,23 +170,23 @@ fn no_file_is_read_and_replaced() {
         let before = ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name));
         let names = place.names();
         let ran = place.gives(2, &line);
-        assert!(ran.err.contains("it is read in this run"), "{line}: {}", ran.err);
+        assert!(ran.err.contains("it is an input of this run"), "{line}: {}", ran.err);
         assert!(before == ["scene.txt", "p.png", "m.obj"].map(|name| place.bytes(name)), "{line}");
         assert_eq!(place.names(), names, "{line}");
     }
-    let two = "two things cannot go into one file";
+    let two = "choose another name for one of them";
     place.refused(2, &format!("render scene.txt {size} -o o.png --preview here/o.png"), &[two]);
     place.refused(2, &format!("render scene.txt {size} -o o.png --checkpoint ./o.png"), &[two]);
     place.refused(2, "course -input scene.txt -output o.tga -normals ./o.tga", &[two]);
-    // A part that is to be merged, under the name of a picture.
+    // A part to merge, named like a picture.
     place.gives(0, &format!("render scene.txt {size} --shard 1/1 -o part.png --quiet"));
-    place.refused(2, "merge part.png -o here/part.png", &["it is read in this run"]);
-    // Work is never saved over what is no part.
+    place.refused(2, "merge part.png -o here/part.png", &["it is an input of this run"]);
+    // Saved work never replaces another file.
     for option in ["--checkpoint scene.txt", "--checkpoint here/m.obj", "--shard 1/1"] {
         let output = if option.starts_with("--sh") { "endless.txt" } else { "o.png" };
-        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["no part of a picture"]);
+        place.refused(2, &format!("render mesh.txt {size} {option} -o {output}"), &["not a part of a picture"]);
     }
-    // And nothing else over it.
+    // Other outputs never replace saved work.
     let part = place.bytes("part.png");
     for line in [
         format!("render scene.txt {size} -o part.png"),
@@ -196,11 +195,11 @@ fn no_file_is_read_and_replaced() {
         "compare p.png p.png --report part.png".into(),
         "check scene.txt --fix -o part.png".into(),
     ] {
-        place.refused(2, &line, &["is saved work"]);
+        place.refused(2, &line, &["holds saved work"]);
         assert_eq!(place.bytes("part.png"), part, "{line}");
     }
     place.put("o.png.part", "somebody's download");
-    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is no part of a picture"]);
+    place.refused(2, &format!("render scene.txt {size} -o o.png"), &["`o.png.part` is not a part of a picture"]);
     assert_eq!(place.bytes("o.png.part"), b"somebody's download");
 }
 
@@ -214,7 +213,7 @@ fn a_lesson_replaces_no_file_of_its_scene() {
     place.put("lesson/mine.txt", SCENE.replace("Sphere { center 0 0.5 0 radius 1 }", &field));
     let before = place.bytes(&format!("lesson/{picture}"));
     let ran = place.gives(2, "lesson lesson/mine.txt --dialect durer -o lesson --size 16x12 --samples 1 --quiet");
-    assert!(ran.err.contains("it is read in this run"), "{}", ran.err);
+    assert!(ran.err.contains("it is an input of this run"), "{}", ran.err);
     assert!(place.bytes(&format!("lesson/{picture}")) == before);
 }
 
@@ -230,7 +229,7 @@ fn places_that_are_no_files_are_written_through_or_refused_at_once() {
     place.refused(1, &format!("{work} -o loop.png"), &["leads nowhere"]);
     place.refused(1, &format!("{work} -o pipe.png"), &["nobody reads"]);
     place.refused(1, &format!("{work} -o o.png --preview pipe.png"), &["nobody reads"]);
-    place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is no file"]);
+    place.refused(2, &format!("{work} -o o.png --checkpoint null.png"), &["is not a regular file"]);
     place.gives(0, &format!("{work} -o null.png --no-checkpoint"));
     let reader = place.path("pipe.png");
     let reader = std::thread::spawn(move || std::fs::read(reader).unwrap());
@@ -256,7 +255,7 @@ fn unfinished_work_is_not_thrown_away_unasked() {
         place.refused(2, &format!("{work} {options} --resume --restart"), &["cannot be used with"]);
         assert!(place.bytes(place_of_part) == saved);
         place.gives(0, &format!("render scene.txt --size 48x32 --quiet {options} --restart"));
-        // A finished shard is replaced as any picture is.
+        // A finished shard is replaced like any picture.
         place.gives(0, &format!("render scene.txt --size 48x32 --seed 1 --quiet {options}"));
         assert!(!place.path("o.png.part").exists());
     }
@@ -273,7 +272,7 @@ fn signals_that_end_programs_save_the_work() {
         (&["INT"][..], 130),
         (&["TERM"], 143),
         (&["HUP"], 129),
-        // As `timeout` sends them, and closed terminals.
+        // Signals as sent by `timeout` and closed terminals.
         (&["INT", "INT"], 130),
         (&["TERM", "TERM"], 143),
         (&["HUP", "TERM"], 129),
@@ -283,7 +282,7 @@ fn signals_that_end_programs_save_the_work() {
         assert!(ran.err.contains("o.png.part (--resume"), "{signals:?}: {}", ran.err);
         assert!(latency < Duration::from_secs(5), "{latency:?}");
     }
-    // What is started to outlive its terminal does.
+    // A program started with nohup outlives its terminal.
     let ran = place.shell(
         "trap '' HUP; $DURER render scene.txt --size 200x150 --samples 400 --quiet --restart -o n.png & \
          sleep 0.3; kill -HUP $!; wait $!",
@@ -321,7 +320,7 @@ fn limits_of_the_system_are_errors_with_a_name() {
 #[test]
 fn without_threads_the_calling_thread_does_it_all() {
     let place = Place::new();
-    // The limit does not hold for the superuser, who becomes nobody, in a folder that nobody may
+    // The superuser has no such limit, so the test runs as nobody, in a folder that nobody may
     // write to.
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));

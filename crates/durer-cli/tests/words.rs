@@ -1,4 +1,4 @@
-//! What the program says of itself and of scenes.
+//! Help, manual, dialects, words, and `durer info`.
 
 mod common;
 
@@ -59,8 +59,8 @@ fn info_as_text_and_json() {
             .replace("numObjects 2", "numObjects 3"),
     );
     let json: serde_json::Value = serde_json::from_str(&place.gives(0, "info mesh.txt --json").out).unwrap();
-    // One leaf: the root and the one box in it, which is as large. 36 bytes of corners, 4 of a
-    // number, 256 of a node, and a leaf's room of 320 behind.
+    // One leaf: the root and its one box of equal size. 36 bytes of corners, 4 of an index, 256 of
+    // a node, and 320 of padding for a leaf.
     assert_eq!((json["tree_cost"].as_f64(), json["bytes_per_triangle"].as_f64()), (Some(2.0), Some(616.0)));
 }
 
@@ -76,9 +76,9 @@ fn a_scene_written_anew_is_the_same() {
         place.gives(0, &format!("convert again.txt -o twice.txt {options}"));
         assert_eq!(place.bytes("again.txt"), place.bytes("twice.txt"));
     }
-    // Not in place: what is read is not replaced.
+    // An input is never overwritten.
     let before = place.bytes("again.txt");
-    place.refused(2, "convert again.txt -o again.txt", &["again.txt", "is read in this run"]);
+    place.refused(2, "convert again.txt -o again.txt", &["again.txt", "is an input of this run"]);
     assert_eq!(place.bytes("again.txt"), before);
 }
 
@@ -91,10 +91,10 @@ fn words_are_looked_up() {
         assert!(all.contains(&format!("  {word} ")), "{word} is not in\n{all}");
     }
     let light = place.gives(0, "words pointlight").out;
-    for part in ["f23", "position", "must be given", "falloff", "Example:\n    PointLight {"] {
+    for part in ["f23", "position", "required", "falloff", "Example:\n    PointLight {"] {
         assert!(light.contains(part), "{part} is not in\n{light}");
     }
-    // A field tells where it is; a dialect has its own words only.
+    // A field lists its blocks; a dialect lists only its own words.
     assert!(place.gives(0, "words radius").out.contains("in Sphere\n"));
     assert!(!place.gives(0, "words --dialect f04").out.contains("Torus"));
     place.refused(2, "words Spere", &["did you mean `Sphere`?"]);

@@ -166,11 +166,11 @@ def test_wrong_options_are_told(whitted):
         ({"size": 64}, "^size must be width and height, whole numbers, but is 64$"),
         ({"size": (64,)}, "size must be width and height"),
         ({"size": (-64, 4)}, "size must be width and height"),
-        ({"size": "64"}, r'^size cannot be 64: say it as \(640, 480\) or "640x480"$'),
+        ({"size": "64"}, r'^size cannot be 64: expected \(640, 480\) or "640x480"$'),
         ({"crop": (1, 2)}, "crop must be left, top, width and height"),
         ({"samples": "many"}, "^samples cannot be many"),
         ({"noise_threshold": "a"}, "^noise_threshold cannot be a"),
-        ({"show": "dept"}, "^show cannot be dept: it is one of color, depth, "),
+        ({"show": "dept"}, "^show cannot be dept: expected one of color, depth, "),
         ({"depth_range": 3}, "depth_range must be two numbers"),
     ]:
         with pytest.raises(ValueError, match=said) as raised:

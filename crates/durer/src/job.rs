@@ -66,7 +66,7 @@ impl OptionValue for bool {
         match text {
             "on" => Ok(true),
             "off" => Ok(false),
-            _ => Err("say `on` or `off`".into()),
+            _ => Err("expected `on` or `off`".into()),
         }
     }
     fn shown(&self) -> String {
@@ -78,7 +78,7 @@ macro_rules! numbers {
     ($($type:ty: $what:literal),+) => {
         $(impl OptionValue for $type {
             fn parse(text: &str) -> Result<Self, String> {
-                text.parse().map_err(|_| concat!("say ", $what).into())
+                text.parse().map_err(|_| concat!("expected ", $what).into())
             }
             fn shown(&self) -> String {
                 self.to_string()
@@ -93,8 +93,8 @@ numbers!(u32: "a whole number", u64: "a whole number", f32: "a number", String: 
 impl OptionValue for (u32, u32) {
     fn parse(text: &str) -> Result<Self, String> {
         let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-        match parsed.ok_or("say it as 640x480")? {
-            (0, _) | (_, 0) => Err("a picture has at least one pixel".into()),
+        match parsed.ok_or("expected WIDTHxHEIGHT, as in 640x480")? {
+            (0, _) | (_, 0) => Err("width and height must be at least 1".into()),
             size => Ok(size),
         }
     }
@@ -107,7 +107,7 @@ impl OptionValue for (u32, u32) {
 impl OptionValue for [f32; 2] {
     fn parse(text: &str) -> Result<Self, String> {
         let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| "say two numbers".into())
+        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| "expected two numbers".into())
     }
     fn shown(&self) -> String {
         format!("{} {}", self[0], self[1])
@@ -152,16 +152,16 @@ macro_rules! options {
                 match option.map(|option| option.form) {
                     Some(OptionForm::Flag | OptionForm::Switch) if text.is_empty() => return self.set(name, "on"),
                     Some(OptionForm::Whole(least, most)) => {
-                        let value: u32 = text.parse().map_err(|_| "say a whole number".to_string())?;
+                        let value: u32 = text.parse().map_err(|_| "expected a whole number".to_string())?;
                         if !(least..=most).contains(&value) {
-                            return Err(format!("{value} is not in {least}..={most}"));
+                            return Err(format!("expected a number from {least} to {most}"));
                         }
                     }
                     Some(OptionForm::Number(_, test, otherwise)) if !text.parse().is_ok_and(test) => {
                         return Err(otherwise.into());
                     }
                     Some(OptionForm::Words(words)) if !words().contains(&text) => {
-                        return Err(format!("it is one of {}", words().join(", ")));
+                        return Err(format!("expected one of {}", words().join(", ")));
                     }
                     _ => {}
                 }
@@ -197,48 +197,48 @@ options! {
     RenderJob {
         /// Size in pixels [default: 512x512; with --dialect, that year's]
         size: (u32, u32) = "size", OptionForm::Value("WIDTHxHEIGHT");
-        /// Depths shown as the two ends of grey [default: those in the picture]
+        /// Depths at the two ends of the grey scale [default: the range in the picture]
         depth_range: [f32; 2] = "depth-range", OptionForm::Two("MIN", "MAX");
-        /// Luminance or illuminance shown as the first and the last false colour [default: 0 and what
-        /// 98 % of the picture stay below]
+        /// Luminance or illuminance of the first and the last false colour [default: 0 and the 98th
+        /// percentile of the picture]
         light_range: [f32; 2] = "light-range", OptionForm::Two("LOW", "HIGH");
-        /// False colours of light by equal ratios; --light-range begins above 0
+        /// Logarithmic false colours; --light-range must begin above 0
         light_log: bool = "light-log", OptionForm::Flag;
-        /// Levels of mirrored and transmitted rays; of paths, how often light is scattered after the
-        /// first time [default: 8, of paths 16; with --dialect, that year's]
+        /// Maximum depth of reflected and transmitted rays; for paths, maximum scattering events
+        /// after the first hit [default: 8; 16 for paths; with --dialect, that year's]
         bounces: u32 = "bounces", OptionForm::Whole(0, Settings::MAX_BOUNCES);
-        /// Whether things cast shadows [default: on; with --dialect, off]
+        /// Cast shadows [default: on; with --dialect, off]
         shadows: bool = "shadows", OptionForm::Switch;
-        /// Whether surfaces are shaded from behind too [default: on; with --dialect, off]
+        /// Shade the back of surfaces too [default: on; with --dialect, off]
         shade_back: bool = "shade-back", OptionForm::Switch;
-        /// Let transparent things cast coloured shadows
+        /// Let transparent objects cast coloured shadows
         transparent_shadows: bool = "transparent-shadows", OptionForm::Flag;
-        /// Leave mirrored rays out
+        /// Omit reflected rays
         no_reflection: bool = "no-reflection", OptionForm::Flag;
-        /// Leave transmitted rays out
+        /// Omit transmitted rays
         no_refraction: bool = "no-refraction", OptionForm::Flag;
-        /// Leave out rays that count for less than this [default: 1/256; with --dialect, 0]
+        /// Minimum throughput of a ray [default: 1/256; with --dialect, 0]
         min_throughput: f32 = "min-throughput",
-            OptionForm::Number("SHARE", |x| x.is_finite() && x >= 0.0, "say a number, 0 or more");
-        /// Samples a pixel; 1 is the pixel's centre [default: 16, or 64 through a lens or a hole; with
-        /// --dialect, 1; with --time-limit, no end; with --noise-threshold, 4096]
+            OptionForm::Number("SHARE", |x| x.is_finite() && x >= 0.0, "expected a number, 0 or more");
+        /// Samples per pixel; 1 samples the centre [default: 16; 64 with a lens, a pinhole or
+        /// random integrators; 1 with --dialect; unlimited with --time-limit; 4096 with
+        /// --noise-threshold]
         samples: u32 = "samples", OptionForm::Whole(1, Job::MAX_SAMPLES);
-        /// Where samples lie; all but sobol are the course's, with its filters
+        /// Sampler; all but sobol are the course's, with its filters
         sampler: String = "sampler", OptionForm::Words(|| Sampler::NAMES.map(|row| row.0).to_vec());
         /// Reconstruction filter [default: blackman-harris; none for the course's samplers]
         filter: String = "filter", OptionForm::Words(|| Filter::NAMES.map(|row| row.0).to_vec());
-        /// Radius of the filter in pixels; for the course's Gaussian, its standard deviation
+        /// Radius of the filter in pixels; for the course's Gaussian, the standard deviation
         filter_radius: f32 = "filter-radius", OptionForm::Value("PIXELS");
-        /// Three by three jittered sub-pixels, as in 2012
+        /// Jittered 3x3 subpixels, as in 2012
         jitter: bool = "jitter", OptionForm::Flag;
-        /// Blur by five taps, as in 2012
+        /// Blur with five taps, as in 2012
         blur: bool = "blur", OptionForm::Flag;
-        /// Stop where the estimated error of what is seen is below this; 0.01 is a hundredth of the way
-        /// from black to white
+        /// Stop sampling a pixel when its estimated display error is below this; 0.01 is 1 % of the
+        /// range from black to white
         noise_threshold: f32 = "noise-threshold",
-            OptionForm::Number("ERROR", |x| x.is_finite() && x > 0.0, "say a number more than 0");
-        /// Take --samples a pixel on average: more where the picture is noisier, as a quarter of them
-        /// tells
+            OptionForm::Number("ERROR", |x| x.is_finite() && x > 0.0, "expected a number above 0");
+        /// Distribute --samples per pixel by noise, measured with the first quarter of them
         adaptive: bool = "adaptive", OptionForm::Flag;
         /// Seed of the random numbers
         seed: u64 = "seed", OptionForm::Value("SEED");
@@ -322,16 +322,16 @@ impl RenderJob {
         use durer_scene::describe::Kind;
         let value = match kind {
             Kind::Word(_) => Value::Word(text.into()),
-            Kind::Int => Value::Int(text.parse().map_err(|_| "say a whole number".to_string())?),
-            _ => Value::Float(text.parse().map_err(|_| "say a number".to_string())?),
+            Kind::Int => Value::Int(text.parse().map_err(|_| "expected a whole number".to_string())?),
+            _ => Value::Float(text.parse().map_err(|_| "expected a number".to_string())?),
         };
         self.set_integrator_option(name, value)
     }
 
     fn unknown(&self, name: &str) -> String {
         match did_you_mean(name, RenderJob::OPTIONS.iter().map(|option| option.name)) {
-            Some(near) => format!("there is no option `{name}`; did you mean `{near}`?"),
-            None => format!("there is no option `{name}`"),
+            Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
+            None => format!("unknown option `{name}`"),
         }
     }
 
@@ -353,11 +353,11 @@ impl RenderJob {
         };
         let Some(mut method) = found else {
             let known: Vec<&str> = Method::kinds().iter().map(Method::name).collect();
-            return Err(format!("there is no integrator of that name: there are {}", known.join(", ")));
+            return Err(format!("unknown integrator; expected one of {}", known.join(", ")));
         };
         for (option, value) in &self.method_options {
             let Some(at) = option_index(&method, option) else {
-                return Err(format!("--{option} makes no sense with --integrator {}", method.name()));
+                return Err(format!("--{option} does not apply to --integrator {}", method.name()));
             };
             if let Err(wrong) = method.fields()[at].rule.validate(value) {
                 return Err(format!("--{option} {wrong}"));
@@ -390,7 +390,7 @@ impl RenderJob {
         let plenty = wishes.samples.unwrap_or(plenty);
         let is = |flag: Option<bool>| flag.unwrap_or(false);
         if method.is_random() && (is(self.jitter) || is(self.blur)) {
-            return Err(format!("--jitter and --blur make no sense with --integrator {}", method.name()));
+            return Err(format!("--jitter and --blur do not apply to --integrator {}", method.name()));
         }
         self.check_combination()?;
         let depth_range = self.depth_range.map(|[min, max]| (min, max));
@@ -403,8 +403,8 @@ impl RenderJob {
                 let least = if logarithmic { f32::MIN_POSITIVE } else { 0.0 };
                 if !(low >= least && high > low && high.is_finite()) {
                     return Err(match logarithmic {
-                        true => "--light-range needs two numbers above 0 with --light-log, the second greater".into(),
-                        false => "--light-range needs two numbers from 0 on, the second greater".into(),
+                        true => "--light-range with --light-log needs two numbers above 0, the second greater".into(),
+                        false => "--light-range needs two numbers, 0 or more, the second greater".into(),
                     });
                 }
                 Some(LightScale { low, high, logarithmic })
@@ -446,11 +446,11 @@ impl RenderJob {
         let wrong = if (is(self.jitter) || is(self.blur))
             && (self.samples.is_some() || self.sampler.is_some() || self.filter.is_some())
         {
-            "--jitter and --blur have samples of their own: leave out --samples, --sampler and --filter"
+            "--jitter and --blur set the samples: remove --samples, --sampler and --filter"
         } else if is(self.adaptive) && self.noise_threshold.is_some() {
-            "--adaptive and --noise-threshold each decide the samples: leave one of them out"
+            "--adaptive and --noise-threshold both set the samples: remove one of them"
         } else if is(self.adaptive) && (is(self.jitter) || is(self.blur)) {
-            "--adaptive cannot divide the samples of --jitter and --blur"
+            "--adaptive cannot distribute the samples of --jitter and --blur"
         } else if is(self.light_log) && self.light_range.is_none() {
             "--light-log needs --light-range"
         } else if self.filter_radius.is_some() && self.filter.is_none() {
@@ -467,17 +467,19 @@ impl RenderJob {
             return Ok(Sampling::Course2012 { jitter, blur });
         }
         if self.filter_radius.is_some_and(|r| !(r > 0.0 && r <= Job::MAX_FILTER_RADIUS)) {
-            return Err("--filter-radius must be more than 0 and at most 64".into());
+            return Err("--filter-radius must be above 0 and at most 64".into());
         }
         let noise = self.noise_threshold.is_some();
         let sampler = self.sampler.as_deref().and_then(Sampler::from_name).unwrap_or_default();
         if matches!(sampler, Sampler::Uniform | Sampler::Jittered) && (noise || context.timed) {
-            return Err("--noise-threshold and --time-limit need a sampler whose first samples are spread over the \
-                        pixel: sobol or random"
-                .into());
+            return Err(
+                "--noise-threshold and --time-limit need a sampler whose first samples cover the pixel: sobol or \
+                        random"
+                    .into(),
+            );
         }
         if self.adaptive == Some(true) && context.timed && self.samples.is_none() {
-            return Err("--adaptive divides a number of samples: with --time-limit, say how many with --samples".into());
+            return Err("--adaptive with --time-limit needs a number of samples: pass --samples".into());
         }
         let filter = self.filter.as_deref().and_then(Filter::from_name);
         let usual = match (context.emulates, noise, context.timed) {
@@ -498,7 +500,7 @@ impl RenderJob {
             Some(Filter::Box { .. }) => Some(CourseFilter::Box { radius: radius.unwrap_or(0.5) }),
             Some(Filter::Tent { .. }) => Some(CourseFilter::Tent { radius: radius.unwrap_or(1.0) }),
             Some(Filter::Gaussian { .. }) => Some(CourseFilter::Gaussian { sigma: radius.unwrap_or(0.5) }),
-            Some(_) => return Err("the course's samplers take the filters box, tent and gaussian".into()),
+            Some(_) => return Err("the course's samplers support only the filters box, tent and gaussian".into()),
         };
         Ok(Sampling::Course2004 { sampler, samples, filter })
     }

@@ -1,4 +1,4 @@
-//! After a render whose result looks wrong: why that may be.
+//! Diagnosis after a render whose result looks wrong.
 
 use crate::open::Opened;
 use crate::report;
@@ -11,10 +11,10 @@ use durer::image::{Display, Layer, Tone};
 use durer::math::Color;
 use durer::render::{Job, Statistics};
 
-/// At most so many findings are told.
+/// Maximum number of findings printed.
 const MOST: usize = 3;
 
-/// How the first of some pictures looks, if it is one of colours.
+/// Returns statistics of the first picture, if it is the colour picture.
 pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<Looks> {
     let color = pictures.first().filter(|_| job.color)?;
     let mut looks = Looks::new(exposure);
@@ -22,7 +22,7 @@ pub fn looks(job: &Job, pictures: &[Layer], exposure: f32) -> Option<Looks> {
     Some(looks)
 }
 
-/// After `durer render`: whatever looks wrong is told of.
+/// Reports every oddity of a picture made by `durer render`.
 pub fn after_render(
     opened: &Opened,
     job: &Job,
@@ -31,19 +31,19 @@ pub fn after_render(
     statistics: &Statistics,
     display: Display,
 ) {
-    // A curve brings back what is brighter than white.
+    // A tone curve maps values above white back into range.
     let is_odd = |oddity: &Oddity| display.tone == Tone::default() || *oddity != Oddity::White;
     After { opened, job, statistics, exposure: display.exposure }.look(looks, pictures, is_odd);
 }
 
-/// After `durer course`: pictures of one colour alone, for those are not meant in any year.
+/// Reports only single-colour pictures made by `durer course`: no year intends those.
 pub fn after_course(opened: &Opened, job: &Job, pictures: &[Layer], statistics: &Statistics) {
     let is_odd = |oddity: &Oddity| matches!(oddity, Oddity::Black | Oddity::OneColor);
     let looks = looks(job, pictures, 1.0);
     After { opened, job, statistics, exposure: 1.0 }.look(looks.as_ref(), pictures, is_odd);
 }
 
-/// What was rendered.
+/// A finished render.
 struct After<'a> {
     opened: &'a Opened,
     job: &'a Job,
@@ -59,13 +59,13 @@ impl After<'_> {
         }
     }
 
-    /// A picture of depths without any grey, where its range was asked for.
+    /// Warns of a depth picture without any grey if its range was given.
     fn depths(&self, pictures: &[Layer]) {
         let is_asked = self.job.depth_range.is_some();
         let Some(layer) = pictures.iter().find(|layer| layer.name == "depth").filter(|_| is_asked) else { return };
         let grey = |pixel: &Color| pixel.x > 0.0 && pixel.x < 1.0;
         if !layer.image.pixels.iter().any(grey) {
-            self.tell("the picture of depths is black and white");
+            self.tell("the depth picture has no grey between black and white");
         }
     }
 
@@ -76,7 +76,7 @@ impl After<'_> {
         let subject = Subject { scene, world, dialect, files, job: self.job, exposure: self.exposure, rejected };
         let found = check(&subject, &self.opened.diagnostics);
         let serious: Vec<_> = found.iter().filter(|f| f.is_serious()).map(|finding| &finding.diagnostic).collect();
-        // What was said before the render need not be said again.
+        // Skip findings that were printed before the render.
         let is_known = |diagnostic: &Diagnostic| {
             let same = |known: &Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
             self.opened.diagnostics.iter().any(same)
@@ -84,8 +84,8 @@ impl After<'_> {
         let told: Vec<_> = serious.iter().filter(|diagnostic| !is_known(diagnostic)).take(MOST).copied().collect();
         complain(&match (serious.is_empty(), told.is_empty()) {
             (true, _) => format!("warning: {what}"),
-            (false, true) => format!("warning: {what}: why is said above"),
-            (false, false) => format!("warning: {what}; `durer check` says:"),
+            (false, true) => format!("warning: {what}; the findings above say why"),
+            (false, false) => format!("warning: {what}; `durer check` reports:"),
         });
         report::print_to(StandardStream::stderr(report::colors(&std::io::stderr())), files, &told);
     }

@@ -1,9 +1,9 @@
-//! A change that `--fix` made.
+//! Changes made by `--fix`.
 
-/// A change that was made.
+/// A change made by `--fix`.
 pub struct Change {
     pub code: &'static str,
-    /// Where, in the text as it was at that time.
+    /// Position in the text at the time of the change, for JSON.
     pub place: serde_json::Value,
     pub at: String,
     pub old: String,
@@ -11,12 +11,12 @@ pub struct Change {
 }
 
 impl Change {
-    /// In one line.
+    /// Formats the change as one line.
     pub fn line(&self) -> String {
         let Change { at, old, new, code, .. } = self;
         let what = match (old.is_empty(), new.is_empty()) {
-            (true, _) => format!("put in `{}`", new.trim()),
-            (_, true) => format!("took out `{old}`"),
+            (true, _) => format!("inserted `{}`", new.trim()),
+            (_, true) => format!("removed `{old}`"),
             _ => format!("`{old}` is now `{new}`"),
         };
         format!("{at}: {what} [{code}]")

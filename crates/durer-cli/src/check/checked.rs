@@ -1,4 +1,4 @@
-//! A scene, and what was found in it.
+//! A checked scene.
 
 use super::args::CheckArgs;
 use crate::failure::Failure;
@@ -11,16 +11,16 @@ use durer::load_text;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A scene and what was found.
+/// A scene and its findings.
 pub struct Checked {
     pub path: PathBuf,
     pub files: Files,
     pub findings: Vec<Finding>,
-    /// Its dialect, where it could be read.
+    /// Dialect; `None` if the scene could not be read.
     pub dialect: Option<&'static str>,
-    /// Whether a picture can be made of it.
+    /// True if the scene can be rendered.
     pub readable: bool,
-    /// The files that it names.
+    /// Files named by the scene.
     pub named: Vec<PathBuf>,
 }
 
@@ -30,7 +30,7 @@ impl Checked {
     }
 }
 
-/// Reads and checks a text that is, or is to be, in a file.
+/// Reads and checks the text of a scene file, which need not be saved yet.
 pub fn look(path: &Path, bytes: Arc<[u8]>, args: &CheckArgs) -> Result<Checked, Failure> {
     let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
     let mut options = load_options(&args.reading);

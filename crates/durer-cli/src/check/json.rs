@@ -1,14 +1,14 @@
-//! `--json`: its form is told in the help of `durer check`.
+//! Output of `--json`; `durer check --help` describes its form.
 
 use super::change::Change;
 use super::checked::Checked;
 use durer::report::findings;
 use serde_json::{Value, json};
 
-/// The version of the JSON.
+/// Version of the JSON.
 const VERSION: u32 = 1;
 
-/// All scenes.
+/// Returns the document for the checked scenes and their changes.
 pub fn document(all: &[(Checked, Vec<Change>)]) -> Value {
     let scene = |(checked, changes): &(Checked, Vec<Change>)| {
         json!({

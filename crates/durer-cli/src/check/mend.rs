@@ -1,4 +1,4 @@
-//! `--fix`: one edit after the other, each kept only if it mends what it should.
+//! `--fix`: applies one edit after the other and keeps those that remove their finding.
 
 use super::args::CheckArgs;
 use super::change::Change;
@@ -9,10 +9,10 @@ use durer::diag::{Edit, Severity};
 use durer::report::place;
 use std::sync::Arc;
 
-/// At most so many findings of a scene are mended in one go.
+/// Maximum number of findings fixed in one run.
 const MOST: usize = 100;
 
-/// Mends what can be; `checked` is what is found in the new text.
+/// Applies all fixes that help. Leaves the findings of the new text in `checked`.
 pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Result<(Arc<[u8]>, Vec<Change>), Failure> {
     let mut changes = Vec::new();
     'again: for _ in 0..MOST {
@@ -34,10 +34,10 @@ pub fn mend(checked: &mut Checked, mut text: Arc<[u8]>, args: &CheckArgs) -> Res
     Ok((text, changes))
 }
 
-/// So many findings' edits are tried before they are offered.
+/// Maximum number of findings whose edits are tried before they are offered.
 const MAX_TRIED: usize = 8;
 
-/// Takes back the offers of edits that would not be kept.
+/// Withdraws offered edits that `--fix` would not keep.
 pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<(), Failure> {
     let offered = |finding: &&Finding| !finding.diagnostic.fix.is_empty();
     let mut kept = Vec::new();
@@ -55,12 +55,12 @@ pub fn withdraw(checked: &mut Checked, text: &[u8], args: &CheckArgs) -> Result<
     Ok(())
 }
 
-/// Whether a finding is gone, and nothing worse has come: no error, and nothing that stands before
-/// it in the order of causes.
+/// Returns true if `finding` is gone and nothing is worse: no new error, and no new finding that
+/// precedes it in causal order.
 fn is_better(before: &Checked, after: &Checked, finding: &Finding) -> bool {
     let code = finding.diagnostic.code;
     let errors = |checked: &Checked| checked.count(|f| f.diagnostic.severity == Severity::Error);
-    // One finding may stand for several that are alike.
+    // One finding may represent several similar ones.
     let alike = |checked: &Checked| checked.count(|f| f.diagnostic.code == code);
     if errors(after) < errors(before) {
         return true;

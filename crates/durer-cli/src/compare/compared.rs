@@ -1,4 +1,4 @@
-//! A pair of pictures, and what came of it.
+//! A compared pair of pictures.
 
 use super::named;
 use super::pairs::Pair;
@@ -6,26 +6,26 @@ use super::there::There;
 use durer::image::compare::{Comparison, Finding, Verdict};
 use durer::mistakes::Diagnosis;
 
-/// What came of a pair.
+/// Outcome of a comparison.
 pub enum Outcome {
     Compared(Box<Comparison>),
-    /// There is a reference only.
+    /// The reference has no counterpart.
     Missing,
-    /// Why they cannot be compared.
+    /// The pictures cannot be compared, for this reason.
     Failed(String),
 }
 
-/// A pair and what came of it.
+/// A pair of pictures and the outcome of its comparison.
 pub struct Compared {
     pub pair: Pair,
     pub outcome: Outcome,
-    /// The page's pictures of it, where there is a page.
+    /// Pictures for the report, if one is written.
     pub shown: Option<Shown>,
-    /// What of the scene is at each region, where a scene is given.
+    /// Ray hits at each region; empty without a scene.
     pub there: Vec<There>,
-    /// Which mistakes make the picture, where a scene is given.
+    /// Mistakes that reproduce the picture; `None` without a scene.
     pub diagnosis: Option<Diagnosis>,
-    /// What was found out of the reference's options.
+    /// Note on the options of the reference, if they were inferred.
     pub note: Option<String>,
 }
 
@@ -34,16 +34,16 @@ impl Compared {
         Compared { pair, outcome, shown, there: Vec::new(), diagnosis: None, note: None }
     }
 
-    /// What explains the difference, in lines.
+    /// Returns lines that explain the difference.
     pub fn causes(&self) -> Vec<String> {
         match (&self.outcome, &self.diagnosis) {
             (_, Some(diagnosis)) => named::lines(diagnosis),
-            (Outcome::Compared(found), None) => told(found),
+            (Outcome::Compared(found), None) => explained(found),
             _ => Vec::new(),
         }
     }
 
-    /// One word.
+    /// Returns the verdict as one word.
     pub fn verdict(&self) -> &'static str {
         match &self.outcome {
             Outcome::Compared(comparison) => comparison.verdict.name(),
@@ -53,34 +53,34 @@ impl Compared {
     }
 }
 
-/// The pictures of a pair, as a page holds them: PNG in base 64.
+/// Pictures of a pair for the report: PNG in base 64.
 pub struct Shown {
     pub reference: String,
     pub picture: String,
     pub heat: String,
 }
 
-/// The name of a pair, with its owner's.
+/// Returns the name of a pair, prefixed with its student's.
 pub fn name(pair: &Pair) -> String {
     pair.who.as_ref().map_or_else(|| pair.name.clone(), |who| format!("{who}/{}", pair.name))
 }
 
-/// What explains the difference, a line for each mistake.
-fn told(found: &Comparison) -> Vec<String> {
+/// Explains the difference from the pictures alone, one line for each mistake.
+fn explained(found: &Comparison) -> Vec<String> {
     if found.verdict != Verdict::Different {
         return Vec::new();
     }
     if found.findings.is_empty() {
         return vec![
-            "cannot be told from the pictures alone; give `--scene`, with the options that made the reference".into(),
+            "cause unknown from the pictures alone; pass `--scene` and the options that made the reference".into(),
         ];
     }
     let line = |(i, finding): (usize, &Finding)| {
         let percent = (1000.0 * finding.explained + 1e-6).floor() / 10.0;
         match i {
-            // Where it is tells nothing of why.
+            // A location does not explain the cause.
             0 if finding.kind.ends_with("-parts") => {
-                format!("{} ({percent:.1} % of the squared difference lie there)", finding.words)
+                format!("{} ({percent:.1} % of the squared difference is there)", finding.words)
             }
             0 => format!("{}: explains {percent:.1} % of the squared difference", finding.words),
             _ => format!("and {}: together {percent:.1} %", finding.words),

@@ -1,4 +1,4 @@
-//! What the pupil's program does wrong, in words.
+//! Mistakes of a student's program, as text and JSON.
 
 use super::stage::Stage;
 use crate::progress;
@@ -6,27 +6,25 @@ use durer::image::compare::Picture;
 use durer::mistakes::{Diagnosis, Named, Question, diagnose};
 use serde_json::{Value, json};
 
-/// Tries the mistakes on a pair of pictures.
+/// Tries the known mistakes on a pair of pictures.
 pub fn named(stage: &Stage, reference: &Picture, test: &Picture) -> Diagnosis {
     let Stage { opened, job, transfer, .. } = stage;
     let scene = &opened.loaded.scene;
     let question = Question { scene, world: &opened.world, job, transfer: *transfer, reference, test };
-    progress::shares("trying mistakes", |told| diagnose(&question, told))
+    progress::shares("trying mistakes", |share| diagnose(&question, share))
 }
 
-/// What was found, in lines: the first says it, those after it show the code.
+/// Formats a diagnosis as lines: the mistake first, then the code.
 pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
     if !diagnosis.is_of_scene() {
         return vec![format!(
-            "cannot be told: {:.0} % of the reference's pixels are not what this scene makes with these options; give those that \
-             made it (--dialect, --shadows, --bounces, --samples, --transfer)",
+            "cause unknown: {:.0} % of the reference's pixels differ from this scene with these options; pass the options \
+             that made it (--dialect, --shadows, --bounces, --samples, --transfer)",
             100.0 * diagnosis.off
         )];
     }
     let Some(first) = diagnosis.named.first() else {
-        return vec![
-            "cannot be told from the pictures: none of the mistakes that were tried explains the difference".into(),
-        ];
+        return vec!["cause unknown: none of the known mistakes explains the difference".into()];
     };
     let mut lines = vec![format!(
         "{}: explains {:.1} % of the squared difference",
@@ -40,18 +38,18 @@ pub fn lines(diagnosis: &Diagnosis) -> Vec<String> {
         lines.push(format!("  see the step `{}` of `durer lesson`", mistake.step));
     }
     lines.extend(
-        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, the same in this scene: {}", words(named))),
+        diagnosis.named.iter().skip(1).take(4).map(|named| format!("  or, equivalent in this scene: {}", words(named))),
     );
     lines
 }
 
-/// A mistake, or two, in words.
+/// Describes one or two mistakes.
 pub fn words(named: &Named) -> String {
     let each: Vec<String> = named.mistakes.iter().map(|(mistake, value)| mistake.told(*value)).collect();
     each.join("; and ")
 }
 
-/// For programs.
+/// Returns the diagnosis as JSON.
 pub fn json(diagnosis: &Diagnosis) -> Value {
     let one = |named: &Named| {
         let mistake = |(mistake, value): &(&durer::mistakes::Mistake, f32)| {

@@ -1,4 +1,4 @@
-//! Comparisons as a page for a browser, in one file that needs no network.
+//! The report of a comparison: one HTML file that needs no network.
 
 use super::args::CompareArgs;
 use super::compared::{Compared, Outcome, Shown, name};
@@ -10,10 +10,10 @@ use durer::image::{Image, Layer, Transfer, decode_linear};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 
-/// The page, but for its data.
+/// Page template without data.
 const PAGE: &str = include_str!("page.html");
 
-/// The pictures of a pair, for the page.
+/// Encodes the pictures of a pair for the page.
 pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Result<Shown, String> {
     let png = |(layer, transfer): (Layer, Transfer)| -> Result<String, String> {
         let png = page::png(layer, transfer).map_err(|_| "the picture is too large for a page")?;
@@ -26,14 +26,14 @@ pub fn shown(reference: &Picture, picture: &Picture, found: &Comparison) -> Resu
     })
 }
 
-/// The heat map as a layer.
+/// Returns the heat map as a layer.
 pub fn heat(found: &Comparison) -> Layer {
     let map = heat_map(found.width, found.height, &found.flip_map);
     let pixels = map.pixels.iter().map(|pixel| pixel.map(decode_linear).into()).collect();
     Layer::data("heat", Image { width: found.width, height: found.height, pixels })
 }
 
-/// A picture as a screen shows it.
+/// Returns a picture as a layer, with the transfer curve for display.
 fn screen(picture: &Picture) -> (Layer, Transfer) {
     match picture.scale {
         Scale::Display => (Layer::data("", picture.image.clone()), Transfer::Linear),
@@ -41,7 +41,7 @@ fn screen(picture: &Picture) -> (Layer, Transfer) {
     }
 }
 
-/// The page's bytes.
+/// Returns the page as text.
 pub fn page(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Result<String, Failure> {
     let data = json!({
         "reference": args.reference.to_string_lossy(),

@@ -1,35 +1,35 @@
-//! Which pictures belong together.
+//! Pairs of pictures in two files or folders.
 
 use crate::failure::{Failure, bad};
 use durer::image::format_for;
 use std::path::{Path, PathBuf};
 
-/// A reference and where its counterpart should be.
+/// A reference and its counterpart.
 pub struct Pair {
-    /// Whose it is, where a folder has a folder for each student.
+    /// Student, if the folder has one folder for each student.
     pub who: Option<String>,
-    /// Its name: that of the file, or the path below the folder.
+    /// Name of the file, or its path below the folder.
     pub name: String,
     pub reference: PathBuf,
-    /// `None` where there is none.
+    /// `None` if there is no counterpart.
     pub picture: Option<PathBuf>,
 }
 
-/// All pairs of two pictures or two folders, and pictures that have no reference.
+/// Pairs of two pictures or two folders, and pictures without a reference.
 pub struct Pairs {
     pub pairs: Vec<Pair>,
     pub extra: Vec<PathBuf>,
-    /// Whether folders are compared.
+    /// True if folders are compared.
     pub folders: bool,
 }
 
-/// Folders below folders are followed so far: links may lead in circles.
+/// Maximum depth of folders: links may form cycles.
 const DEPTH: usize = 16;
 
 pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     for path in [reference, picture] {
         if !path.exists() {
-            return Err(bad(format!("cannot read `{}`: there is no such file or folder", path.display())));
+            return Err(bad(format!("cannot read `{}`: no such file or folder", path.display())));
         }
     }
     match (reference.is_dir(), picture.is_dir()) {
@@ -40,7 +40,7 @@ pub fn find(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
         }
         (true, true) => folders(reference, picture),
         _ => Err(bad(format!(
-            "`{}` and `{}`: one is a folder, the other is not; give two pictures or two folders",
+            "`{}` and `{}`: one is a folder and the other is a file; pass two pictures or two folders",
             reference.display(),
             picture.display()
         ))),
@@ -51,12 +51,12 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
     let mut references = Vec::new();
     pictures(reference, Path::new(""), DEPTH, &mut references)?;
     if references.is_empty() {
-        return Err(bad(format!("there are no pictures in `{}`", reference.display())));
+        return Err(bad(format!("no pictures in `{}`", reference.display())));
     }
     let mut found = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
     let matched = found.add(None, reference, picture, &references)?;
     if matched == 0 {
-        // A folder of folders: one for each student.
+        // The picture folder contains one folder for each student.
         let mut class = Pairs { pairs: Vec::new(), extra: Vec::new(), folders: true };
         let mut any = 0;
         for name in names(picture)? {
@@ -78,7 +78,7 @@ fn folders(reference: &Path, picture: &Path) -> Result<Pairs, Failure> {
 }
 
 impl Pairs {
-    /// Adds the pairs of one folder; gives how many references have a counterpart.
+    /// Adds the pairs of one folder. Returns the number of references with a counterpart.
     fn add(
         &mut self,
         who: Option<String>,
@@ -110,7 +110,7 @@ impl Pairs {
     }
 }
 
-/// Names in a folder, sorted, without hidden ones.
+/// Returns the names in a folder, sorted, without hidden files.
 fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
     let unreadable = |error: std::io::Error| bad(format!("cannot read the folder `{}`: {error}", folder.display()));
     let mut names = Vec::new();
@@ -122,7 +122,7 @@ fn names(folder: &Path) -> Result<Vec<std::ffi::OsString>, Failure> {
     Ok(names)
 }
 
-/// Collects files in and below a folder whose extension is that of a picture.
+/// Collects the pictures in and below a folder, recognised by extension.
 fn pictures(root: &Path, below: &Path, depth: usize, found: &mut Vec<PathBuf>) -> Result<(), Failure> {
     for name in names(&root.join(below))? {
         let path = below.join(&name);

@@ -14,25 +14,25 @@ use durer::mistakes::{Question, off};
 use durer::render::{Job, Sampling};
 use std::path::{Path, PathBuf};
 
-/// The reference is made by these options where fewer of its pixels differ.
+/// Options are accepted as the reference's if at most this share of its pixels differs.
 const SAME: f64 = 0.01;
-/// The same where samples count for more pixels than one.
+/// [`SAME`] for filters wider than a pixel.
 const MAX_OFF: f64 = 0.2;
 
-/// A scene that was opened, and how the reference was made of it.
+/// An opened scene and the options that reproduce the reference.
 pub struct Stage {
     pub opened: Opened,
     pub job: Job,
     pub transfer: Transfer,
-    /// The scene file.
+    /// Scene file.
     pub path: PathBuf,
-    /// The options of `durer` that make this picture, beside its size.
+    /// Command-line options that reproduce the picture, without its size.
     pub options: String,
-    /// What was found out of the options, where others were given.
+    /// Note on the options, if they were inferred.
     pub note: Option<String>,
 }
 
-/// One way in which the reference may have been made.
+/// Candidate options of the reference.
 struct Way {
     dialect: Option<Dialect>,
     center: bool,
@@ -40,9 +40,8 @@ struct Way {
     bounces: Option<u32>,
 }
 
-/// Opens the scene of a pair, and finds the options that make the reference: those that are given,
-/// or else what a student forgets to say, one sample a pixel, that year's program, shadows,
-/// bounces.
+/// Opens the scene of a pair and finds the options that reproduce the reference: the given ones, or
+/// those that students commonly forget (one sample a pixel, the year's dialect, shadows, bounces).
 pub fn stage(
     args: &CompareArgs,
     pair: &Pair,
@@ -55,7 +54,7 @@ pub fn stage(
     let first = opened(args, &path, &asked, reference, guard)?;
     let transfer = Transfer::from_name(&args.transfer).unwrap_or_default();
     let mut best = (way_off(&first, reference, transfer), first, transfer, None);
-    // Where samples count for pixels around too, edges are not the same to the bit.
+    // Filters wider than a pixel make edges inexact.
     let enough = if best.1.1.sampling.is_local() { SAME } else { MAX_OFF };
     if best.0 <= enough {
         return Ok(Some(finished(args, path, best.1, best.2, None)));
@@ -76,7 +75,7 @@ pub fn stage(
     };
     'found: for dialect in dialects {
         let options = LoadOptions { dialect, ..load_options(&args.reading) };
-        // A year whose words are others cannot be meant.
+        // Skip dialects in which the scene cannot be read.
         let Ok((opened, job)) = opened(args, &path, &options, reference, guard) else { continue };
         let mut current = (opened, job);
         for way in shadows.iter().flat_map(|&shadows| {
@@ -103,7 +102,7 @@ pub fn stage(
     let (off, found, transfer, _) = best;
     let mut stage = finished(args, path, found, transfer, None);
     if off <= SAME {
-        stage.note = Some(format!("the reference is what `{}` makes of the scene: taken so", stage.options));
+        stage.note = Some(format!("inferred that the reference was rendered with `{}`", stage.options));
     }
     Ok(Some(stage))
 }
@@ -141,7 +140,7 @@ fn opened(
     let opened = open(path, options, true, guard)?;
     let job = job::job(&args.job, Some(&args.view), &opened.loaded, false)?;
     if !job.color || !job.aovs.is_empty() {
-        return Err(bad("`--scene` tells the mistakes of pictures of colour: leave `--show` away, or `--scene`"));
+        return Err(bad("`--scene` needs colour pictures: remove `--show` or `--scene`"));
     }
     let (width, height) = (reference.image.width, reference.image.height);
     let job = Job { width, height, crop: None, color: true, aovs: Vec::new(), ..job };
@@ -167,7 +166,7 @@ fn finished(
 }
 
 impl Stage {
-    /// The command that explains a pixel of the reference.
+    /// Returns the command that explains a pixel of the reference.
     pub fn explain(&self, (x, y): (u32, u32)) -> String {
         let shown = self.path.to_string_lossy();
         let quoted = shlex::try_quote(&shown).unwrap_or_default();
@@ -177,7 +176,7 @@ impl Stage {
     }
 }
 
-/// The scene of a pair: in a folder, that of the picture's name.
+/// Returns the scene of a pair; in a folder, the file with the picture's name.
 fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     if !scene.is_dir() {
         return Ok(scene.into());
@@ -186,6 +185,6 @@ fn path(scene: &Path, pair: &Pair) -> Result<PathBuf, Failure> {
     let path = scene.join(&name);
     match path.exists() {
         true => Ok(path),
-        false => Err(bad(format!("there is no `{}` in `{}`", name.display(), scene.display()))),
+        false => Err(bad(format!("no `{}` in `{}`", name.display(), scene.display()))),
     }
 }

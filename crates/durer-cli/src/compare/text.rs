@@ -12,10 +12,10 @@ use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// Version of the JSON: grows when a field changes its meaning or goes.
+/// Version of the JSON. It increases when a field changes its meaning or is removed.
 const VERSION: u32 = 1;
 
-/// One pair of pictures.
+/// Prints the comparison of one pair.
 pub fn single(compared: &Compared, options: &Options) {
     let Outcome::Compared(found) = &compared.outcome else { return };
     let measures = &found.measures;
@@ -42,7 +42,7 @@ pub fn single(compared: &Compared, options: &Options) {
     ));
     say(&format!(
         "  SSIM      {}",
-        measures.ssim.map_or("- (a side has less than 11 pixels)".into(), |s| format!("{s:.5}"))
+        measures.ssim.map_or("- (a side has fewer than 11 pixels)".into(), |s| format!("{s:.5}"))
     ));
     say(&format!("  FLIP      {:.5}", measures.flip));
     if let Some(flip) = measures.hdr_flip {
@@ -74,7 +74,7 @@ pub fn single(compared: &Compared, options: &Options) {
     }
 }
 
-/// A region in words.
+/// Describes a region.
 pub fn place(region: &Region) -> String {
     let Region { x, y, width, height, pixels, mean_difference, share, worst } = region;
     let [r, g, b] = mean_difference.to_array();
@@ -87,13 +87,13 @@ pub fn place(region: &Region) -> String {
     )
 }
 
-/// A difference, as 255ths where it is whole ones.
+/// Formats a difference, as n/255 if it is a whole number of steps.
 fn tolerance(value: f32) -> String {
     let steps = value * 255.0;
     if (steps - steps.round()).abs() < 1e-3 && steps < 256.0 { format!("{steps:.0}/255") } else { format!("{value}") }
 }
 
-/// Folders: a line for each picture, and one for each student.
+/// Prints a line for each picture of a folder, and one for each student.
 pub fn table(all: &[Compared], extra: &[PathBuf]) {
     let names: Vec<String> = all.iter().map(|compared| name(&compared.pair)).collect();
     let wide = names.iter().map(|name| name.chars().count()).max().unwrap_or(0).max(7);
@@ -130,7 +130,7 @@ pub fn table(all: &[Compared], extra: &[PathBuf]) {
     }
 }
 
-/// For each student how many pictures are the same, different, missing and not readable.
+/// Counts the pictures of each student: same, different, missing, unreadable.
 pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
     let mut students = BTreeMap::new();
     for compared in all {
@@ -145,7 +145,8 @@ pub fn students(all: &[Compared]) -> BTreeMap<String, [usize; 4]> {
     students
 }
 
-/// Everything. `psnr` is null where it is infinite, `ssim` where a picture is too small for it.
+/// Returns all results as JSON. `psnr` is null if it is infinite, `ssim` if a picture is too small
+/// for it.
 pub fn json(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Value {
     let verdicts = |wanted: &str| all.iter().filter(|compared| compared.verdict() == wanted).count();
     json!({
@@ -162,7 +163,7 @@ pub fn json(all: &[Compared], extra: &[PathBuf], args: &CompareArgs) -> Value {
     })
 }
 
-/// One pair.
+/// Returns one pair as JSON.
 pub fn pair(compared: &Compared) -> Value {
     let pair = &compared.pair;
     let mut value = json!({
@@ -188,7 +189,7 @@ pub fn pair(compared: &Compared) -> Value {
     value
 }
 
-/// Warns of what is left out.
+/// Prints a note.
 fn note(line: &str) {
     complain(&format!("note: {line}"));
 }

@@ -1,4 +1,4 @@
-//! What of the scene is where pictures differ.
+//! Ray hits where pictures differ.
 
 use super::stage::Stage;
 use crate::explain::shown;
@@ -12,14 +12,13 @@ use durer::render::{Job, center_ray, raster};
 use durer::sampler::SampleId;
 use serde_json::{Value, json};
 
-/// What the ray through the middle of a pixel meets.
+/// The ray through a pixel's centre, and the surface that it hits.
 pub struct There {
-    /// The object, its place in the file, its material, the distance and the normal, where anything
-    /// is hit.
+    /// Hit; `None` if the ray hits nothing.
     pub hit: Option<Hit>,
-    /// Why the ray has its colour, by our rules: lines as `durer explain` prints them.
+    /// Explanation of the ray's colour, in the lines of `durer explain`.
     pub explanation: Vec<String>,
-    /// The command that tells it of the whole pixel.
+    /// Command that explains the whole pixel.
     pub command: String,
 }
 
@@ -30,7 +29,7 @@ pub struct Hit {
     pub normal: [f32; 3],
 }
 
-/// For each region what is at the pixel that differs most.
+/// Traces the ray through the pixel of each region that differs most.
 pub fn there(stage: &Stage, found: &Comparison) -> Result<Vec<There>, Failure> {
     let Stage { opened, job, .. } = stage;
     let raster = raster(&opened.world, job.width, job.height);
@@ -57,13 +56,13 @@ fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(O
 }
 
 impl There {
-    /// In one line.
+    /// Formats the hit as one line.
     pub fn line(&self) -> String {
         match &self.hit {
             Some(Hit { object, material, t, normal: [x, y, z] }) => {
                 format!("{object}, {material}, t {t}, normal {x:.3} {y:.3} {z:.3}")
             }
-            None => "nothing is hit there".into(),
+            None => "the ray hits nothing".into(),
         }
     }
 

@@ -1,8 +1,8 @@
-//! Open Image Denoise 2, loaded when it is asked for: the few functions of its C interface that one
-//! picture needs.
+//! Open Image Denoise 2, loaded at run time: the functions of its C interface that denoise one
+//! picture.
 //!
-//! Source: the documentation at <https://www.openimagedenoise.org>. Its pictures differ from
-//! machine to machine in their last bits.
+//! Source: the documentation at <https://www.openimagedenoise.org>. Results differ in their last
+//! bits between machines.
 
 #![expect(unsafe_code, reason = "a library of C is called")]
 
@@ -14,10 +14,10 @@ use std::ffi::{CStr, c_char, c_int, c_void};
 use std::path::{Path, PathBuf};
 use std::ptr::null;
 
-/// Where the library is looked for first: its folder, or the one above `lib`.
+/// Environment variable with the library's folder, or the folder above `lib`.
 const FOLDER: &str = "OIDN_DIR";
 
-/// The file's name.
+/// File name of the library.
 const NAME: &str = if cfg!(windows) {
     "OpenImageDenoise.dll"
 } else if cfg!(target_os = "macos") {
@@ -32,20 +32,20 @@ const FLOAT3: c_int = 3;
 
 type Object = *mut c_void;
 
-/// The picture without its noise, or why there is none.
+/// Denoises a picture.
 pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
     let library = load()?;
     let (width, height) = (noisy.picture.width as usize, noisy.picture.height as usize);
     let count = noisy.picture.pixels.len();
     if [&noisy.albedo, &noisy.normal].iter().any(|guide| guide.len() != count) || count != width * height {
-        return Err("the picture lacks its guides".into());
+        return Err("the picture has no albedo and normals".into());
     }
-    // The library wants colours between 0 and 1 of surfaces, and nothing that is not finite.
+    // The library expects albedo in 0..=1 and finite values.
     let albedo: Vec<Vec3> = noisy.albedo.iter().map(|albedo| albedo.clamp(Vec3::ZERO, Vec3::ONE)).collect();
     let mut clean = vec![Vec3::ZERO; count];
-    // SAFETY: names and types are those of oidn.h of version 2. `Vec3` is three floats without a
-    // gap. All four pictures have width * height of them and live until the filter is released, and
-    // the output is read only after it was executed.
+    // SAFETY: names and types are those of oidn.h, version 2. `Vec3` is three floats without
+    // padding. All four pictures have width * height elements and live until the filter is
+    // released. The output is read only after the filter has run.
     unsafe {
         let new_device: Symbol<unsafe extern "C" fn(c_int) -> Object> = symbol(&library, c"oidnNewDevice")?;
         let set_device: Symbol<unsafe extern "C" fn(Object, *const c_char, c_int)> =
@@ -67,7 +67,7 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
 
         let device = new_device(CPU);
         if device.is_null() {
-            return Err("Open Image Denoise finds no processor that it can use".into());
+            return Err("Open Image Denoise does not support this processor".into());
         }
         if let Some(threads) = threads.and_then(|threads| c_int::try_from(threads).ok()) {
             set_device(device, c"numThreads".as_ptr(), threads);
@@ -75,7 +75,7 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
         commit_device(device);
         let filter = new_filter(device, c"RT".as_ptr());
         if !filter.is_null() {
-            // What is only read is given as what may be written: C knows one pointer for both.
+            // C takes one pointer type for inputs and outputs.
             for (name, pixels) in [
                 (c"color", noisy.picture.pixels.as_ptr().cast_mut()),
                 (c"albedo", albedo.as_ptr().cast_mut()),
@@ -91,33 +91,32 @@ pub fn denoise(noisy: &Noisy, threads: Option<usize>) -> Result<Image, String> {
         }
         let mut message = null();
         let code = error(device, &mut message);
-        let told = match message.is_null() {
+        let reason = match message.is_null() {
             true => String::new(),
             false => CStr::from_ptr(message).to_string_lossy().into_owned(),
         };
         release_device(device);
         if filter.is_null() || code != 0 {
-            return Err(format!("Open Image Denoise failed: {told}"));
+            return Err(format!("Open Image Denoise failed: {reason}"));
         }
     }
     Image::from_pixels(noisy.picture.width, noisy.picture.height, clean).map_err(|error| error.to_string())
 }
 
-/// A function of the library.
+/// Returns a function of the library.
 ///
 /// # Safety
-/// The type must be that of the function.
+/// `T` must be the type of the function.
 unsafe fn symbol<'l, T>(library: &'l Library, name: &CStr) -> Result<Symbol<'l, T>, String> {
-    // SAFETY: whoever calls knows the function's type.
+    // SAFETY: the caller guarantees the function's type.
     unsafe { library.get(name.to_bytes_with_nul()) }
-        .map_err(|_| format!("this Open Image Denoise is not of version 2: it has no {}", name.to_string_lossy()))
+        .map_err(|_| format!("this Open Image Denoise is not version 2: it has no {}", name.to_string_lossy()))
 }
 
 fn load() -> Result<Library, String> {
     let folder = std::env::var_os(FOLDER).map(PathBuf::from);
     let folders = folder.iter().flat_map(|folder| [folder.join(NAME), folder.join("lib").join(NAME)]);
     let file = folders.into_iter().find(|file| file.is_file()).unwrap_or_else(|| Path::new(NAME).to_path_buf());
-    // SAFETY: what loading it starts is the library's own, which the user has put there or the
-    // system has.
+    // SAFETY: the library's initialisers run; the user or the system installed it.
     unsafe { Library::new(&file) }.map_err(|_| "Open Image Denoise is not found".into())
 }

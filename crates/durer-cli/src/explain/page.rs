@@ -1,4 +1,4 @@
-//! The explanation as a page of its own.
+//! The explanation as an HTML page.
 
 use crate::failure::Failure;
 use crate::page;
@@ -7,10 +7,9 @@ use durer::report::{lights, outlines};
 use durer::world::World;
 use serde_json::{Value, json};
 
-/// The page without its data.
+/// Page template without data.
 const PAGE: &str = include_str!("page.html");
-/// A page that needs nothing else: the picture, the tree of one sample to begin with, and the rays
-/// in space.
+/// Returns a self-contained page: the picture, the tree of `sample`, and the rays in space.
 pub fn page(
     explanation: Value,
     sample: usize,

@@ -1,5 +1,5 @@
-@still """@NAME@: renders in @SHARDS@ shards on a Dask cluster. Give the scheduler's address, or nothing for one on this machine."""
-@frames """@NAME@: renders frames @FIRST@-@LAST@:@STEP@ on a Dask cluster. Give the scheduler's address, or nothing for one on this machine."""
+@still """@NAME@: renders in @SHARDS@ shards on a Dask cluster. Pass the scheduler's address, or nothing to start one on this machine."""
+@frames """@NAME@: renders frames @FIRST@-@LAST@:@STEP@ on a Dask cluster. Pass the scheduler's address, or nothing to start one on this machine."""
 
 @frames import re
 import sys

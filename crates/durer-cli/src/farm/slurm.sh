@@ -3,10 +3,10 @@
 #SBATCH --array=1-@TASKS@
 #SBATCH --output=@NAME@-%A_%a.log
 #SBATCH --requeue
-@still # One shard of @SHARDS@. A task that is done again goes on with what it saved.
-@still # When all have ended:  durer merge shards/@NAME@/*.part -o @OUTPUT@ --hash
-@frames # One shard of @SHARDS@ of one frame of @FIRST@-@LAST@:@STEP@. A task that is done again goes on with what it saved.
-@frames # When all have ended:
+@still # One shard of @SHARDS@. A repeated task continues its saved work.
+@still # When all tasks have finished:  durer merge shards/@NAME@/*.part -o @OUTPUT@ --hash
+@frames # One shard of @SHARDS@ of one frame of @FIRST@-@LAST@:@STEP@. A repeated task continues its saved work.
+@frames # When all tasks have finished:
 @frames #   for frame in $(seq @FIRST@ @STEP@ @LAST@); do
 @frames #       durer merge shards/@NAME@/"$frame".*.part -o "$(printf @OUTPUT@ "$frame")"
 @frames #   done

@@ -1,4 +1,4 @@
-//! The folder of a lesson: only a lesson's own files are ever replaced.
+//! The folder of a lesson. Only files of a lesson are replaced.
 
 use super::written::TEXT;
 use crate::failure::{Failure, bad};
@@ -9,24 +9,24 @@ use std::collections::BTreeSet;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// The first line of a lesson's text.
+/// First line of a lesson's text.
 pub const MARK: &str =
     "<!-- Written by durer lesson, which also replaces or removes the files that are linked here. -->";
 
-/// Where a lesson goes.
+/// The folder of a lesson.
 pub struct Folder {
     path: PathBuf,
-    /// Whether it is still to be made.
+    /// True if the folder does not exist yet.
     new: bool,
-    /// Files in it that an earlier lesson wrote.
+    /// Files written by an earlier lesson.
     own: BTreeSet<String>,
 }
 
 impl Folder {
-    /// Says now what is known to prevent writing.
+    /// Reports before the render what would prevent writing.
     pub fn new(path: PathBuf, guard: &mut Guard) -> Result<Self, Failure> {
         if path.exists() && !path.is_dir() {
-            return Err(bad(format!("`{}` is a file; a lesson is written to a folder", path.display())));
+            return Err(bad(format!("`{}` is a file; a lesson needs a folder", path.display())));
         }
         let new = !path.exists();
         let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -41,19 +41,18 @@ impl Folder {
         Ok(Folder { path, new, own })
     }
 
-    /// Writes all files or none, and removes what an earlier lesson wrote and this one did not.
-    /// Gives the folder.
+    /// Writes all files or none, and removes stale files of an earlier lesson. Returns the folder.
     pub fn write(self, files: Vec<(String, Vec<u8>)>, guard: &mut Guard) -> Result<PathBuf, Failure> {
         let foreign = |name: &String| !self.own.contains(name) && self.path.join(name).exists();
         if let Some((name, _)) = files.iter().find(|(name, _)| foreign(name)) {
             let path = self.path.join(name);
             return Err(bad(format!(
-                "`{}` is not of an earlier lesson: choose another folder, or move it",
+                "`{}` does not belong to an earlier lesson: choose another folder, or move the file",
                 path.display()
             )));
         }
         if self.new {
-            let failed = |error| anyhow::anyhow!("cannot make the folder `{}`: {error}", self.path.display());
+            let failed = |error| anyhow::anyhow!("cannot create the folder `{}`: {error}", self.path.display());
             std::fs::create_dir(&self.path).map_err(failed)?;
         }
         let names: BTreeSet<String> = files.iter().map(|file| file.0.clone()).collect();
@@ -67,7 +66,7 @@ impl Folder {
             save_silently(&places.iter().zip(bytes).collect::<Vec<_>>())
         });
         if let Err(failure) = saved {
-            // A folder that was made for nothing goes; where that fails it stays, empty.
+            // Remove a folder that this run created; if that fails, it stays empty.
             let _ = if self.new { std::fs::remove_dir(&self.path) } else { Ok(()) };
             return Err(failure);
         }
@@ -83,13 +82,13 @@ impl Folder {
     }
 }
 
-/// The files of a lesson by its text; none if it is another text.
+/// Returns the files that a lesson's text links to; empty for any other text.
 fn linked(text: &str) -> BTreeSet<String> {
     if text.lines().next() != Some(MARK) {
         return BTreeSet::new();
     }
     let names = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
-    // Nothing that lies elsewhere can be named.
+    // Ignore paths outside the folder.
     let names = names.filter(|name| !name.is_empty() && !name.contains(['/', '\\']) && !name.starts_with('.'));
     names.map(str::to_string).chain([TEXT.to_string()]).collect()
 }

@@ -1,24 +1,24 @@
-//! The lesson as Markdown, with pictures beside it.
+//! The lesson as Markdown, with pictures as files.
 
 use super::folder::MARK;
 use super::written::{Lesson, PAGE, Written};
 use durer::lesson::OWN_SCENE_NAME;
 use std::fmt::Write;
 
-/// The text of the whole lesson.
+/// Returns the text of the whole lesson.
 pub fn text(lesson: &Lesson) -> String {
     let scene = &lesson.scene;
     let mut text = format!(
-        "{MARK}\n# {}, in the order of the lecture\n\nThe same as a page for a browser, with sliders: [{PAGE}]({PAGE}).\n",
+        "{MARK}\n# {}, in the order of the lecture\n\nAs a page for a browser, with sliders: [{PAGE}]({PAGE}).\n",
         plain(scene)
     );
     for (number, written) in (1..).zip(&lesson.steps) {
         step(&mut text, number, written, scene);
     }
-    text + "\n`durer explain` says of any pixel why it has its colour.\n"
+    text + "\n`durer explain` explains the colour of any pixel.\n"
 }
 
-/// Writes one step; a string takes all that is written to it.
+/// Appends one step. Writing to a string cannot fail.
 fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     let _ = writeln!(text, "\n## {number}. {}\n", step.title);
     if let Some(elsewhere) = step.elsewhere(scene) {
@@ -28,7 +28,7 @@ fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     if !step.goes_on {
         let _ = writeln!(text, "{}\n\n```text\n{}\n```\n", step.topic.words, step.topic.equations.join("\n"));
     }
-    // Pictures side by side, with what they show above them.
+    // Pictures side by side in a table, captions above.
     let mut columns: Vec<(&str, &str)> =
         step.before.iter().chain([&step.after]).map(|figure| (figure.caption, figure.file.as_str())).collect();
     columns.extend(step.change.as_ref().map(|file| ("what changed: lighter or darker than grey", file.as_str())));
@@ -46,7 +46,7 @@ fn step(text: &mut String, number: usize, step: &Written, scene: &str) {
     let _ = writeln!(text, "In the source:\n\n- {}", places.join("\n- "));
 }
 
-/// Text with a name in it that somebody else chose: it makes no link and no element.
+/// Escapes text that contains a foreign name, so that it makes no link and no element.
 fn plain(text: &str) -> String {
     text.replace('[', "&#91;").replace(']', "&#93;").replace('<', "&lt;")
 }

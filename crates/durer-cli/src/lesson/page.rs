@@ -1,14 +1,14 @@
-//! The lesson as a page for a browser.
+//! The lesson as an HTML page.
 
 use super::written::{Figure, Lesson, Written};
 use crate::page::{uri, with_data};
 use durer::lesson::OWN_SCENE;
 use serde_json::{Map, Value, json};
 
-/// The page without its data.
+/// Page template without data.
 const PAGE: &str = include_str!("page.html");
 
-/// A page that needs nothing else.
+/// Returns a self-contained page.
 pub fn page(lesson: &Lesson) -> String {
     let pictures: Map<String, Value> =
         lesson.pictures.iter().map(|(name, png)| (name.clone(), uri(png).into())).collect();
@@ -26,7 +26,7 @@ fn step(step: &Written, scene: &str) -> Value {
     json!({
         "title": step.title,
         "elsewhere": step.elsewhere(scene),
-        // What the steps of one topic have in common is said once.
+        // Print a topic's text once, at its first step.
         "words": (!step.goes_on).then_some(step.topic.words),
         "equations": (!step.goes_on).then_some(step.topic.equations),
         "before": step.before.as_ref().map(figure),

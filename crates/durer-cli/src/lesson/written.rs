@@ -1,49 +1,49 @@
-//! A lesson that is to be written: its steps, whose pictures are files.
+//! A lesson ready to be written: its steps, with pictures as files.
 
 use crate::failure::Failure;
 use crate::page::png;
 use durer::image::{Layer, Transfer};
 use durer::lesson::{OWN_SCENE_NAME, Picture, Step, Topic};
 
-/// The text of the lesson, and the page.
+/// File names of the lesson's text and page.
 pub const TEXT: &str = "lesson.md";
 pub const PAGE: &str = "index.html";
 
-/// A picture's caption and its file.
+/// A picture's caption and file.
 pub struct Figure {
     pub caption: &'static str,
     pub file: String,
 }
 
-/// A step whose pictures are files.
+/// A step with its pictures as files.
 pub struct Written {
     pub topic: &'static Topic,
     pub title: String,
     pub words: String,
     pub ours: bool,
-    /// Why the scene cannot show it.
+    /// Reason why the scene cannot show the step.
     pub lacking: &'static str,
-    /// Whether it goes on with the topic of the step before.
+    /// True if the step continues the topic of the step before.
     pub goes_on: bool,
     pub before: Option<Figure>,
     pub after: Figure,
     pub change: Option<String>,
-    /// A drawing and its file.
+    /// Drawing as SVG, and its file.
     pub plan: Option<(String, String)>,
 }
 
-/// A lesson that is to be written.
+/// A lesson ready to be written.
 pub struct Lesson {
-    /// The scene's file, without its folder.
+    /// Name of the scene's file, without its folder.
     pub scene: String,
     pub steps: Vec<Written>,
-    /// The pictures, each once, by their files' names.
+    /// Pictures by file name, without duplicates.
     pub pictures: Vec<(String, Vec<u8>)>,
     pub transfer: Transfer,
 }
 
 impl Lesson {
-    /// Adds a step, whose pictures' files begin with its number.
+    /// Adds a step. The names of its files begin with its number.
     pub fn add(&mut self, step: Step) -> Result<(), Failure> {
         let name = format!("{:02}-{}", self.steps.len() + 1, step.topic.name);
         let figure = |lesson: &mut Lesson, picture: &Picture, end: &str| -> Result<Figure, Failure> {
@@ -60,7 +60,8 @@ impl Lesson {
         Ok(())
     }
 
-    /// The file of a picture: what one step ends with, the next may begin with.
+    /// Returns the file of a picture. Equal pictures share a file: a step may begin with the
+    /// picture that ends the previous one.
     fn picture(&mut self, name: String, layer: &Layer) -> Result<String, Failure> {
         let png = png(layer.clone(), self.transfer)?;
         if let Some((there, _)) = self.pictures.iter().find(|picture| picture.1 == png) {
@@ -70,19 +71,19 @@ impl Lesson {
         Ok(name)
     }
 
-    /// Whether some step is shown in our own scene.
+    /// Returns true if some step uses the built-in scene.
     pub fn shows_ours(&self) -> bool {
         self.steps.iter().any(|step| step.ours)
     }
 }
 
 impl Written {
-    /// That the step is shown in another scene, and why.
+    /// Returns a sentence that says why the step uses the built-in scene; `None` if it does not.
     pub fn elsewhere(&self, scene: &str) -> Option<String> {
         let lacking = self.lacking;
-        // The steps after the first are shown in the same scene.
+        // Later steps of the topic use the same scene.
         (self.ours && !self.goes_on).then(|| {
-            format!("{scene} cannot show this: {lacking}. It is shown in a small scene of ours, {OWN_SCENE_NAME}.")
+            format!("{scene} cannot show this: {lacking}. This step uses a small built-in scene, {OWN_SCENE_NAME}.")
         })
     }
 }

@@ -1,4 +1,4 @@
-//! Options of the picture, as the library states them, and of the structure that finds objects.
+//! Options of the picture, as stated by the library, and of the acceleration structure.
 
 use super::method::MethodArgs;
 use crate::failure::{Failure, bad};
@@ -9,27 +9,27 @@ use durer::compile::AccelKind;
 use durer::job::{JobOption, OptionForm, RenderJob};
 use durer::options::{doc as meaning, grid_cells, one_line};
 
-/// What the picture is: the options that the library states, and what finds objects.
+/// Options of the picture and of the acceleration structure.
 pub struct JobArgs {
     /// Options of the picture.
     pub options: RenderJob,
     accel: AccelArgs,
 }
 
-/// What finds objects
+/// Options of the acceleration structure
 #[derive(Args)]
 struct AccelArgs {
-    #[arg(long, help = meaning("accel"), default_value = "bvh", default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
+    #[arg(long, help = meaning("accel"), default_value = "bvh", hide_default_value = true, default_value_if("grid", ArgPredicate::IsPresent, "grid"), value_parser = ["bvh", "grid", "none"])]
     accel: String,
     #[arg(long, help = meaning("grid"), value_name = "XxYxZ", value_parser = grid_cells)]
     grid: Option<[u32; 3]>,
 }
 
-/// An option as the command line has it.
+/// Builds the clap argument of an option.
 fn arg(option: &'static JobOption) -> Arg {
     let JobOption { name, doc, form } = *option;
     let arg = Arg::new(name).long(name).help(one_line(doc));
-    // Checks a text, and keeps it.
+    // Check the text, but keep it as text.
     let checked = move |text: &str| RenderJob::default().set(name, text).map(|()| text.to_string());
     let arg = match form {
         OptionForm::Flag => arg.action(ArgAction::SetTrue),
@@ -105,11 +105,11 @@ impl FromArgMatches for JobArgs {
     }
 }
 
-/// The structure that the options ask for.
+/// Returns the requested acceleration structure.
 pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     let AccelArgs { accel, grid } = &args.accel;
     if grid.is_some() && accel != "grid" {
-        return Err(bad(format!("--grid makes no sense with --accel {accel}")));
+        return Err(bad(format!("--grid does not apply to --accel {accel}")));
     }
     Ok(match accel.as_str() {
         "grid" => AccelKind::Grid(*grid),
@@ -118,7 +118,7 @@ pub fn accel(args: &JobArgs) -> Result<AccelKind, Failure> {
     })
 }
 
-/// The width over the height of the picture that the options ask for.
+/// Returns the requested aspect ratio, width over height.
 pub fn aspect(args: &JobArgs) -> Option<f32> {
     args.options.given_size().map(|(width, height)| width as f32 / height.max(1) as f32)
 }

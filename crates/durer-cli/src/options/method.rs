@@ -1,4 +1,4 @@
-//! What computes the light, from options. The integrators state their own.
+//! Options of the integrators, as the integrators state them.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser, ValueParser};
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
@@ -7,7 +7,7 @@ use durer::integrator::Method;
 use durer::job::{RenderJob, option_name};
 use durer::options::{integrator_help, integrator_options};
 
-/// What computes the light: the options that are given.
+/// The integrator options that were given.
 #[derive(Clone, Default)]
 pub struct MethodArgs(pub RenderJob);
 
@@ -56,6 +56,6 @@ impl FromArgMatches for MethodArgs {
 }
 
 fn number(text: &str) -> Result<Value, String> {
-    let number: f32 = text.parse().map_err(|_| "no number".to_string())?;
-    if number.is_finite() { Ok(Value::Float(number)) } else { Err("must be finite".into()) }
+    let number: f32 = text.parse().map_err(|_| "expected a number".to_string())?;
+    if number.is_finite() { Ok(Value::Float(number)) } else { Err("expected a finite number".into()) }
 }

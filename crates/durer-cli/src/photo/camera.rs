@@ -1,4 +1,4 @@
-//! `durer photo camera`.
+//! `durer photo camera`: computes the camera of one photograph.
 
 use super::args::CameraArgs;
 use super::inputs::{bytes, wrong};
@@ -38,12 +38,12 @@ pub fn run(args: &CameraArgs) -> Result<(), Failure> {
         let found = camera(&pairs, &known).map_err(wrong)?;
         tell(format!("{} of {} points agree; rms {:.3} pixels", found.inliers.len(), pairs.len(), found.rms));
         for i in (0..pairs.len()).filter(|i| !found.inliers.contains(i)) {
-            tell(format!("point {} does not: it is no such point, or its pixel is wrong", i + 1));
+            tell(format!("point {} does not: its position or its pixel is wrong", i + 1));
         }
-        tell(format!("conditioning {:.2e}: the least determined direction against the best", found.conditioning));
+        tell(format!("conditioning {:.2e}: ratio of the least to the best determined direction", found.conditioning));
         (found.lens, found.pose)
     } else {
-        return Err(bad("say what is known of the photograph: --points FILE or --lines FILE"));
+        return Err(bad("pass known points or lines of the photograph: --points FILE or --lines FILE"));
     };
     let (c, f) = (pose.center(), lens.focal);
     tell(format!("taken at ({:.6}, {:.6}, {:.6}); focal length {f:.3} pixels", c.x, c.y, c.z));

@@ -1,4 +1,4 @@
-//! `durer photo explain`.
+//! `durer photo explain`: explains a camera or a point.
 
 use super::args::ExplainArgs;
 use super::inputs::{read, wrong};

@@ -1,4 +1,4 @@
-//! Files that are read: photographs, and cameras with points.
+//! Input files: photographs, and cameras with points.
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
@@ -10,19 +10,19 @@ pub fn wrong(error: Error) -> Failure {
     bad(error.to_string())
 }
 
-/// A file's bytes.
+/// Reads a file.
 pub fn bytes(path: &Path, guard: &mut Guard) -> Result<Vec<u8>, Failure> {
     guard.reads(path)?;
     std::fs::read(path).map_err(|error| bad(format!("cannot read `{}`: {error}", path.display())))
 }
 
-/// Runs on so many threads.
+/// Runs `work` on a number of threads; all processors if `None`.
 pub fn threaded<R: Send>(threads: Option<u16>, work: impl FnOnce() -> R + Send) -> Result<R, Failure> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, usize::from)).build()?;
     Ok(pool.install(work))
 }
 
-/// The photographs of a folder, by name.
+/// Returns the photographs of a folder, sorted by name.
 pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let entries = std::fs::read_dir(folder)
         .map_err(|error| bad(format!("cannot read the folder `{}`: {error}", folder.display())))?;
@@ -36,7 +36,7 @@ pub fn photographs(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     paths.retain(known);
     paths.sort();
     match paths.is_empty() {
-        true => Err(bad(format!("there are no photographs in `{}`: no .jpg, .jpeg or .png", folder.display()))),
+        true => Err(bad(format!("no photographs (.jpg, .jpeg, .png) in `{}`", folder.display()))),
         false => Ok(paths),
     }
 }
@@ -45,8 +45,8 @@ pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 
-/// Cameras and points of a file. Where that has no names and sizes of photographs, they are those
-/// of a folder, in order.
+/// Reads cameras and points. If the file lacks names and sizes of photographs, those of a folder
+/// are used, in order.
 pub fn read(file: &Path, pictures: Option<&Path>, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     inputs(file).iter().try_for_each(|path| guard.reads(path))?;
     let mut all = durer_photo::format::read(file).map_err(wrong)?;

@@ -1,4 +1,4 @@
-//! `durer photo match`.
+//! `durer photo match`: finds and matches features.
 
 use super::args::MatchArgs;
 use super::inputs::{bytes, name, photographs, threaded, wrong};
@@ -11,7 +11,7 @@ use crate::terminal::say;
 use durer_photo::matching::{GUESS, Matches, Options, describe, match_all};
 use durer_photo::photo;
 
-/// The share of the time that features take; matching takes the rest.
+/// Share of the progress bar for features; matching takes the rest.
 const FEATURES: f64 = 0.5;
 
 pub fn run(args: &MatchArgs) -> Result<(), Failure> {
@@ -37,7 +37,8 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         let mut described = Vec::new();
         let mut doubts = Vec::new();
         for (i, path) in paths.iter().enumerate() {
-            // One at a time: photographs are large, and their features are found on all threads.
+            // Process one photograph at a time: they are large, and feature detection uses all
+            // threads.
             let photo = photo::read(&name(path), &bytes(path, &mut Guard::default())?).map_err(wrong)?;
             doubts.extend(photo.exif.doubt.as_ref().map(|doubt| format!("{}: {doubt}", photo.name)));
             described.push(threaded(args.run.threads, || describe(&photo, &options))?);
@@ -55,7 +56,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     save(&[(&place, matches.to_json().into_bytes())], args.run.quiet)
 }
 
-/// Says what was found.
+/// Prints a summary of the matches.
 fn table(matches: &Matches) {
     for (i, picture) in matches.pictures.iter().enumerate() {
         let partners = matches.links.iter().filter(|link| link.pictures.contains(&i));
@@ -64,13 +65,13 @@ fn table(matches: &Matches) {
         let (name, features, focal, from) = (&picture.name, picture.features, picture.focal, &picture.focal_from);
         let from = if from.starts_with(GUESS) { from.clone() } else { format!("EXIF: {from}") };
         say(&format!(
-            "{name}: {width}x{height}, {features} salient points, focal length {focal:.0} ({from}); matches {count} others, at most \
-             {most} points"
+            "{name}: {width}x{height}, {features} features, focal length {focal:.0} ({from}); matches {count} others, \
+             with at most {most} points"
         ));
     }
     for link in matches.links.iter().filter(|link| link.moved < 0.5) {
         let [a, b] = link.pictures.map(|i| &matches.pictures[i].name);
-        complain(&format!("warning: {a} and {b} are the same picture: together they tell no depth"));
+        complain(&format!("warning: {a} and {b} are the same picture: together they determine no depth"));
     }
     let longest = matches.tracks.iter().map(|track| track.seen.len()).max().unwrap_or(0);
     say(&format!("{} tracks, the longest in {longest} photographs", matches.tracks.len()));

@@ -1,9 +1,9 @@
-//! `durer photo place`: things of a scene in a photograph, with the shadows that they cast there.
+//! `durer photo place`: inserts objects of a scene into a photograph, with their shadows.
 //!
-//! The scene is rendered twice, with the things and without them. What the photograph shows gets as
-//! much darker or brighter as its stand-ins do. Source: Debevec, *Rendering Synthetic Objects into
-//! Real Scenes*, SIGGRAPH 1998, section 5.3; a ratio in the place of its difference, so that the
-//! stand-ins' colours do not matter.
+//! The scene is rendered with and without the objects. The photograph is multiplied by the ratio of
+//! the two renders on the stand-ins. Source: Debevec, *Rendering Synthetic Objects into Real
+//! Scenes*, SIGGRAPH 1998, section 5.3; a ratio instead of a difference, so that the stand-ins'
+//! colours cancel.
 
 use super::args::PlaceArgs;
 use super::inputs::{bytes, wrong};
@@ -25,11 +25,11 @@ use durer::world::World;
 use durer_photo::photo;
 use std::sync::Arc;
 
-/// Rays across and down a pixel that tell how much of it is covered.
+/// Rays per pixel along each axis, for coverage.
 const ACROSS: u32 = 4;
-/// Rows of pixels whose rays are kept at once.
+/// Rows of pixels traced at once.
 const BAND: u32 = 64;
-/// How far neighbours lie that tell of the shadow in a pixel that is covered in part.
+/// Radius in pixels of the neighbourhood that gives a partly covered pixel its shadow.
 const NEAR: usize = 2;
 
 pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
@@ -46,16 +46,16 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let stand_in = stand_ins(&with, &args.stand_in)?;
     let mut job = job::job(&args.job, None, &with.loaded, false)?;
     if args.job.options.given_size().is_some_and(|size| size != (width, height)) {
-        return Err(bad(format!("the picture has the photograph's size, {width}x{height}: leave --size out")));
+        return Err(bad(format!("the picture has the photograph's size, {width}x{height}: remove --size")));
     }
     (job.width, job.height) = (width, height);
     if let (Sampling::Filtered { filter, .. }, None) = (&mut job.sampling, args.job.options.get("filter")) {
-        // A pixel of a photograph is the mean of what is in it.
+        // A photograph's pixel is the mean over its area.
         *filter = Filter::Box { radius: 0.5 };
     }
     if raster(&with.world, width, height).empty() != (0, 0) {
         return Err(bad(format!(
-            "the scene's camera is not of `{name}`, which is {width}x{height}: `durer photo camera` finds one that is"
+            "the scene's camera does not fit `{name}`, which is {width}x{height}: compute it with `durer photo camera`"
         )));
     }
     let control = Arc::new(Control { threads, memory: options.memory, ..Control::default() });
@@ -68,7 +68,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let root = with.loaded.scene.root.take();
     with.loaded.scene.root = root.map(|root| Group { objects: kept(root.objects, &stand_in) });
     let without = with.loaded.compile(&options, &mut Files::default(), &mut Diagnostics::default());
-    let empty = color(&without.ok_or_else(|| bad("the scene is none without the things in it"))?)?;
+    let empty = color(&without.ok_or_else(|| bad("the scene without the inserted objects does not compile"))?)?;
     let plate: Vec<Vec3> = photo.pixels.pixels().map(|p| Vec3::from(p.0.map(decode_srgb))).collect();
     let pixels = composed(width as usize, &plate, &colors, &empty, &covered);
     let layer = Layer::color("color", Image::from_pixels(width, height, pixels).map_err(|e| bad(e.to_string()))?);
@@ -76,13 +76,14 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     save(&[(&place, file)], args.quiet)
 }
 
-/// Of each material, whether what has it stands in for something of the photograph.
+/// Returns a flag for each material: true for stand-ins.
 fn stand_ins(opened: &Opened, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
     let count = opened.loaded.scene.materials.len();
     let mut all = vec![false; count];
     for number in numbers {
         let slot = all.get_mut(*number as usize);
-        *slot.ok_or_else(|| bad(format!("--stand-in {number}: the scene has {count} materials, from 0")))? = true;
+        *slot.ok_or_else(|| bad(format!("--stand-in {number}: the scene has {count} materials, numbered from 0")))? =
+            true;
     }
     let objects = opened.loaded.scene.root.iter().flat_map(|root| &root.objects);
     let (there, others) = objects.fold((false, false), |(a, b), object| {
@@ -90,13 +91,13 @@ fn stand_ins(opened: &Opened, numbers: &[u32]) -> Result<Vec<bool>, Failure> {
         (a || c, b || d)
     });
     match (there, others) {
-        (false, _) => Err(bad("nothing in the scene has a material of --stand-in: nothing can catch a shadow")),
-        (_, false) => Err(bad("all of the scene has materials of --stand-in: there is nothing to place")),
+        (false, _) => Err(bad("no object has a material of --stand-in: nothing can catch a shadow")),
+        (_, false) => Err(bad("every object has a material of --stand-in: there is nothing to insert")),
         _ => Ok(all),
     }
 }
 
-/// The objects within one.
+/// Returns the children of a node.
 fn parts(node: &Node) -> &[Object] {
     match node {
         Node::Group(group) => &group.objects,
@@ -106,7 +107,7 @@ fn parts(node: &Node) -> &[Object] {
     }
 }
 
-/// Whether some shape in an object stands in for something, or does not.
+/// Returns true if an object contains a shape that is a stand-in (`wanted`), or one that is not.
 fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     let own = object.material.is_some_and(|number| stand_in.get(number as usize) == Some(&true));
     match parts(&object.node) {
@@ -115,7 +116,7 @@ fn has(object: &Object, stand_in: &[bool], wanted: bool) -> bool {
     }
 }
 
-/// The objects that stand in for something. A solid is one thing: it stays if some part of it does.
+/// Keeps the stand-ins. A solid is one unit: it stays if any part is a stand-in.
 fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     let one = |mut object: Object| {
         if !has(&object, stand_in, true) {
@@ -131,7 +132,7 @@ fn kept(objects: Vec<Object>, stand_in: &[bool]) -> Vec<Object> {
     objects.into_iter().filter_map(one).collect()
 }
 
-/// The share of each pixel in which something is seen that stands in for nothing.
+/// Returns the share of each pixel covered by inserted objects.
 fn coverage(
     world: &World,
     job: &Job,
@@ -150,7 +151,7 @@ fn coverage(
         let Some(layer) = seen.layers.first() else { continue };
         for (i, material) in layer.image.pixels.iter().enumerate() {
             let (x, y) = (i as u32 % width, top + i as u32 / width);
-            // What is no material is the background.
+            // A negative material is the background.
             let thing = material.x >= 0.0 && stand_in.get(material.x as usize) != Some(&true);
             let pixel = (y / ACROSS) as usize * (width / ACROSS) as usize + (x / ACROSS) as usize;
             covered[pixel] += f32::from(u8::from(thing)) / (ACROSS * ACROSS) as f32;
@@ -159,9 +160,9 @@ fn coverage(
     Ok(covered)
 }
 
-/// The photograph with things in it: with them W, without them G, the photograph P, coverage a and
-/// shadow r = W / G give W + (1 - a) r (P - G). That is W where a = 1 and P W / G where a = 0;
-/// where a pixel is covered in part, r is that of its neighbours.
+/// Composes the photograph: with the render with objects W, without them G, the photograph P,
+/// coverage a and shadow r = W / G, the result is W + (1 - a) r (P - G). That is W for a = 1 and P
+/// W / G for a = 0. In a partly covered pixel, r is the mean of its neighbours.
 fn composed(width: usize, plate: &[Vec3], with: &[Vec3], without: &[Vec3], covered: &[f32]) -> Vec<Vec3> {
     let height = plate.len() / width.max(1);
     let ratio = |w: f32, g: f32| if g > 0.0 { w / g } else { 1.0 };
@@ -200,17 +201,16 @@ mod tests {
     #[test]
     fn shadows_darken_the_photograph_and_things_cover_it() {
         let [plate, ground, thing] = [0.6, 0.4, 0.9].map(Vec3::splat);
-        // Lit far away; in half a shadow, and half covered and covered beside that.
+        // Three lit pixels; one in half shadow; one half covered, half in shadow; one covered.
         let without = [ground; 6];
         let with = [ground, ground, ground, 0.5 * ground, 0.5 * thing + 0.25 * ground, thing];
         let covered = [0.0, 0.0, 0.0, 0.0, 0.5, 1.0];
         let placed = composed(1, &[plate; 6], &with, &without, &covered);
-        // The neighbours of what is half covered let three quarters of the light through on
-        // average.
+        // The neighbours of the half covered pixel have a mean shadow of three quarters.
         let mixed = 0.5 * thing + 0.25 * ground + 0.5 * 0.75 * (plate - ground);
         let expected = [plate, plate, plate, 0.5 * plate, mixed, thing];
         assert!(placed.iter().zip(expected).all(|(a, b)| (*a - b).length() < 1e-6), "{placed:?}");
-        // Where no light falls on what stands in, nothing is known of shadows.
+        // A black stand-in leaves the photograph unchanged.
         assert_eq!(composed(1, &[plate], &[Vec3::ZERO], &[Vec3::ZERO], &[0.0]), [plate]);
     }
 }

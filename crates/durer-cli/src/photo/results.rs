@@ -1,4 +1,4 @@
-//! What came of it: told, and written.
+//! Results: printed and written.
 
 use super::args::ResultArgs;
 use super::inputs::wrong;
@@ -11,18 +11,18 @@ use durer_photo::Reconstruction;
 use durer_photo::format::Output;
 use std::path::{Path, PathBuf};
 
-/// Says how many there are of everything, and how well it fits.
+/// Prints a summary of a reconstruction and its residuals.
 pub fn tell(all: &Reconstruction) {
     let (fit, count) = (all.fit(), all.registered());
-    say(&format!("{count} of {} photographs have a place; {} points", all.views.len(), all.points.len()));
+    say(&format!("{count} of {} photographs registered; {} points", all.views.len(), all.points.len()));
     if fit.observations > 0 {
         let (track, n) = (all.track_length(), fit.observations);
         let (rms, max, cost) = (fit.rms, fit.max, fit.cost);
-        say(&format!("{n} observations, {track:.2} a point; rms {rms:.4} pixels, at most {max:.2}; cost {cost:.6e}"));
+        say(&format!("{n} observations, {track:.2} per point; rms {rms:.4} pixels, at most {max:.2}; cost {cost:.6e}"));
     }
 }
 
-/// Where cameras and points go, each in its format.
+/// Output files, each with its format.
 pub struct Results {
     outputs: Vec<(Output, PathBuf, Vec<Destination>)>,
     folders: Vec<PathBuf>,
@@ -30,8 +30,8 @@ pub struct Results {
 }
 
 impl Results {
-    /// Says now what is known to prevent writing. Folders are made when there is something to put
-    /// into them.
+    /// Reports before the work what would prevent writing. Folders are created when there is
+    /// something to write.
     pub fn new(args: &ResultArgs, guard: &mut Guard) -> Result<Self, Failure> {
         let mut results = Results { outputs: Vec::new(), folders: Vec::new(), files: Vec::new() };
         for path in &args.output {
@@ -52,7 +52,7 @@ impl Results {
         Ok(results)
     }
 
-    /// Makes the files' contents.
+    /// Encodes the files.
     pub fn add(&mut self, all: &Reconstruction) -> Result<(), Failure> {
         for (output, ..) in &self.outputs {
             self.files.extend(output.write(all).map_err(wrong)?);
@@ -64,7 +64,7 @@ impl Results {
     pub fn save(mut self, quiet: bool) -> Result<(), Failure> {
         for folder in &self.folders {
             std::fs::create_dir(folder)
-                .map_err(|error| anyhow::anyhow!("cannot make the folder `{}`: {error}", folder.display()))?;
+                .map_err(|error| anyhow::anyhow!("cannot create the folder `{}`: {error}", folder.display()))?;
         }
         let saved = (|| {
             for (output, path, places) in &mut self.outputs {
@@ -76,7 +76,7 @@ impl Results {
             save(&places.zip(std::mem::take(&mut self.files)).collect::<Vec<_>>(), quiet)
         })();
         if saved.is_err() {
-            // Folders that were made for nothing go; where that fails they stay, empty.
+            // Remove the folders that this run created; if that fails, they stay empty.
             self.folders.iter().for_each(|folder| drop(std::fs::remove_dir(folder)));
         }
         saved

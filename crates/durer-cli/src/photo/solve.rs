@@ -1,4 +1,4 @@
-//! `durer photo solve`.
+//! `durer photo solve`: computes or adjusts cameras and points.
 
 use super::args::SolveArgs;
 use super::inputs::{bytes, read, threaded, wrong};
@@ -40,7 +40,7 @@ pub fn run(args: &SolveArgs) -> Result<(), Failure> {
         let worst = left.iter().fold(0.0_f64, |m, d| m.max(*d));
         if !args.run.quiet {
             let (count, scale) = (left.len(), similarity.scale);
-            say(&format!("put on {count} control points, {scale:.6} times as large; the farthest is {worst:.4} off"));
+            say(&format!("aligned with {count} control points, scale {scale:.6}; largest distance {worst:.4}"));
         }
     }
     if !args.run.quiet {
@@ -60,13 +60,13 @@ fn lens_line(all: &Reconstruction, number: usize, lens: &Lens) -> String {
     format!("lens {}: focal length {f:.3} pixels, k1 {k1:.6}, k2 {k2:.6}; {views} photographs", number + 1)
 }
 
-/// The control points, before all else: who mistyped a row need not wait.
+/// Reads the control points, before the work, so that a typo is reported at once.
 fn control(args: &SolveArgs, names: &[&str], guard: &mut Guard) -> Result<Option<Vec<Control>>, Failure> {
     let Some(path) = &args.control else { return Ok(None) };
     read_control(&path.to_string_lossy(), &bytes(path, guard)?, names).map(Some).map_err(wrong)
 }
 
-/// From tracks.
+/// Solves for cameras and points from matches.
 fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Failure> {
     let options = Options {
         fixed_focal: args.fixed_focal,
@@ -93,7 +93,7 @@ fn incremental(args: &SolveArgs, matches: &Matches) -> Result<Reconstruction, Fa
     Ok(solved.all)
 }
 
-/// What has cameras already, as it is in the file.
+/// Reads a file that has cameras.
 fn given(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure> {
     let mut all = read(&args.file, args.pictures.as_deref(), guard)?;
     if args.own_lenses {
@@ -103,14 +103,11 @@ fn given(args: &SolveArgs, guard: &mut Guard) -> Result<Reconstruction, Failure>
     Ok(all)
 }
 
-/// Adjusts it.
+/// Adjusts cameras and points.
 fn adjusted(args: &SolveArgs, mut all: Reconstruction) -> Result<Reconstruction, Failure> {
     let before = all.fit();
     if before.observations == 0 {
-        return Err(crate::bad(format!(
-            "`{}` has nothing that photographs see: there is nothing to adjust",
-            args.file.display()
-        )));
+        return Err(crate::bad(format!("`{}` has no observations: there is nothing to adjust", args.file.display())));
     }
     let options = options(args);
     let report = progress::shares("adjusting", |share| {
@@ -139,17 +136,17 @@ fn options(args: &SolveArgs) -> adjust::Options {
     adjust::Options { loss, focal: !args.fixed_focal, radial: !args.no_distortion, ..adjust::Options::default() }
 }
 
-/// Says how exactly cameras are known.
+/// Prints the standard deviations of the cameras.
 fn exactness(args: &SolveArgs, all: &Reconstruction) -> Result<(), Failure> {
     let found = covariance(all, &options(args)).map_err(wrong)?;
     say(&format!(
-        "standard deviations, for {:.3} pixels in each coordinate; the first photograph is held:",
+        "standard deviations, for {:.3} pixels in each coordinate; the first photograph is fixed:",
         found.sigma
     ));
     for (view, _) in &found.views {
         let (name, place) = (&all.views[*view].name, found.place(all, *view).unwrap_or(0.0));
         let turn = found.pose(*view).map_or(0.0, |c| c.fixed_view::<3, 3>(0, 0).trace().max(0.0).sqrt());
-        say(&format!("{name}: place {place:.6}, direction {:.4} degrees", turn.to_degrees()));
+        say(&format!("{name}: position {place:.6}, direction {:.4} degrees", turn.to_degrees()));
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! `durer photo tour`: a page on which one walks among photographs.
+//! `durer photo tour`: an HTML page for walking among photographs.
 
 use super::args::TourArgs;
 use super::inputs::{bytes, read, wrong};
@@ -12,7 +12,7 @@ use durer_photo::photo;
 use durer_photo::tour::shown;
 use serde_json::json;
 
-/// The page without its data.
+/// Page template without data.
 const PAGE: &str = include_str!("tour.html");
 
 pub fn run(args: &TourArgs) -> Result<(), Failure> {
@@ -21,7 +21,7 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
     let place = guard.writes("--output", &args.output)?;
     let photographs = shown(&all);
     if photographs.is_empty() {
-        return Err(bad(format!("nobody knows where any photograph of `{}` was taken", args.file.display())));
+        return Err(bad(format!("no photograph of `{}` has a camera position", args.file.display())));
     }
     let names: Vec<String> = photographs.iter().map(|shown| shown.name.clone()).collect();
     let pictures = progress::each(&names, photographs.iter().collect(), args.quiet, |shown| {
@@ -29,13 +29,16 @@ pub fn run(args: &TourArgs) -> Result<(), Failure> {
         let photo = photo::read(&path.to_string_lossy(), &bytes(&path, &mut guard)?).map_err(wrong)?;
         if photo.size() != shown.size {
             let ([w, h], [x, y]) = (photo.size(), shown.size);
-            return Err(bad(format!("`{}` is {w}x{h}, and its camera is of a photograph of {x}x{y}", path.display())));
+            return Err(bad(format!(
+                "`{}` is {w}x{h}, but its camera belongs to a photograph of {x}x{y}",
+                path.display()
+            )));
         }
         let jpeg = photo.small(args.side).map_err(wrong)?;
         Ok(format!("data:image/jpeg;base64,{}", STANDARD.encode(jpeg)))
     });
     let pictures = pictures.into_iter().collect::<Result<Vec<_>, Failure>>()?;
-    // Six digits are more than a screen shows.
+    // Six decimals are more than a screen shows.
     let short = |value: f64| (value * 1e6).round() / 1e6;
     let points: Vec<_> = all.points.iter().map(|point| point.position.map(short).as_slice().to_vec()).collect();
     let colors: Vec<_> = all.points.iter().map(|point| point.color).collect();

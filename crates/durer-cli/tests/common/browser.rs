@@ -1,11 +1,10 @@
-//! Pages in a real browser: headless Chromium, from file://.
+//! Pages in a real browser: headless Chromium, from file:// URLs.
 
 use super::Place;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a page's script may say of itself, put at its end: `see(text)` notes something, `done()`
-/// ends.
+/// Functions for a script at the end of a page: `see(text)` records a text, `done()` ends the run.
 const HELPERS: &str = r#"
 const seen = [];
 const see = text => seen.push(text);
@@ -19,7 +18,7 @@ const mouse = (target, type, x, y, buttons = 1) => {
   const at = { clientX: box.left + x * box.width, clientY: box.top + y * box.height };
   target.dispatchEvent(new PointerEvent(type, { ...at, buttons, bubbles: true, pointerId: 1 }));
 };
-// No finger is on the screen that could be held on to.
+// Headless runs have no pointer to capture.
 Element.prototype.setPointerCapture = () => {};
 window.addEventListener("error", e => { see(`ERROR ${e.message}`); done(); });
 "#;
@@ -35,11 +34,11 @@ fn chromium() -> Option<PathBuf> {
     found
 }
 
-/// Opens a page, runs a script at its end, and wants it to see all of some texts. Nothing is done
-/// where there is no browser.
+/// Opens a page, runs a script at its end, and checks that it records all of some texts. Skipped
+/// without a browser.
 ///
-/// The page must fetch nothing: no file, no network. It must be readable in windows of all sizes,
-/// light and dark.
+/// The page must fetch nothing, from disk or network. It must be readable in windows of several
+/// widths, light and dark.
 #[track_caller]
 pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
     let Some(chromium) = chromium() else { return };
@@ -47,7 +46,7 @@ pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
     for wanted in wanted.iter().chain(&["fetched 0"]) {
         assert!(title.contains(wanted), "`{wanted}` is not in {title}");
     }
-    // Frames are windows of their own to what is in them.
+    // Content in a frame sees the frame as its window.
     put_with(place, page, "framed.html", READABLE);
     let frames =
         WIDTHS.map(|width| format!("<iframe src=framed.html style='width:{width}px;height:1000px;border:0'></iframe>"));
@@ -56,10 +55,10 @@ pub fn sees(place: &Place, page: &str, script: &str, wanted: &[&str]) {
     assert_eq!(title.matches(": readable").count(), 2 * WIDTHS.len(), "{page}: {title}");
 }
 
-/// The widths of windows in which pages are looked at.
+/// Widths of the windows in which pages are tested.
 const WIDTHS: [u32; 3] = [400, 900, 1600];
 
-/// Waits for what the frames say.
+/// Waits for the frames' messages.
 const FRAMES: &str = r#"
 const told = [];
 window.onmessage = event => {
@@ -68,9 +67,9 @@ window.onmessage = event => {
 };
 "#;
 
-/// In light and dark: whether all text has the contrast that WCAG 2.1 AA wants (1.4.3: 4.5 : 1,
-/// large text 3 : 1), what is drawn in colours that of 1.4.11 (3 : 1), and nothing makes the page
-/// wider than its window.
+/// Checks, in light and dark, that text has the contrast of WCAG 2.1 AA (1.4.3: 4.5 : 1, large text
+/// 3 : 1), that coloured drawings have that of 1.4.11 (3 : 1), and that the page is not wider than
+/// its window.
 const READABLE: &str = r#"
 const parts = color => { const [r, g, b, a = 1] = color.match(/[\d.]+/g).map(Number); return { rgb: [r, g, b], a }; };
 const light = rgb => rgb.map(c => c / 255).map(c => c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4).reduce((sum, c, i) => sum + c * [0.2126, 0.7152, 0.0722][i], 0);
@@ -111,18 +110,18 @@ setTimeout(() => {
 }, 500);
 "#;
 
-/// A page with a script at its end, as another.
+/// Writes a copy of a page with a script at its end.
 fn put_with(place: &Place, page: &str, name: &str, script: &str) {
     let text = String::from_utf8(place.bytes(page)).unwrap();
     let end = text.rfind("</body>").unwrap();
     place.put(name, format!("{}<script>{script}</script>{}", &text[..end], &text[end..]));
 }
 
-/// The title of a page after a script at its end.
+/// Returns the title of a page after a script at its end has run.
 #[track_caller]
 fn title_of(place: &Place, chromium: &Path, page: &str, name: &str, script: &str) -> String {
     let text = String::from_utf8(place.bytes(page)).unwrap();
-    // The name of SVG's language is an address that nobody opens.
+    // The SVG namespace is an address that is never fetched.
     let links = text.replace("http://www.w3.org/2000/svg", "");
     assert!(!links.contains("http://") && !links.contains("https://"), "{page} names an address");
     put_with(place, page, name, script);

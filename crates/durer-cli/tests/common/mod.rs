@@ -1,5 +1,4 @@
-//! What the tests of the command share: a folder of their own with a scene in it, and the program
-//! run there.
+//! Shared helpers: a temporary folder with a scene, and the program run in it.
 
 #![allow(dead_code, reason = "each test file is a program of its own and uses a part")]
 
@@ -23,7 +22,7 @@ Group { numObjects 2
   MaterialIndex 1 Plane { normal 0 1 0 offset -0.5 } }
 ";
 
-/// Mirrors and glass between which every ray becomes two: with many bounces, no pixel is ever done.
+/// Mirrors and glass that split every ray in two: with many bounces, no pixel finishes.
 pub const ENDLESS: &str = "PerspectiveCamera { center 0 0 0 direction 0.3 0.1 -1 up 0 1 0 angle 60 }
 Lights { numLights 1 PointLight { position 0 0 0 color 1 1 1 } }
 Materials { numMaterials 1
@@ -32,12 +31,12 @@ Group { numObjects 3 MaterialIndex 0
   Plane { normal 0 0 1 offset -2 } Plane { normal 0 0 1 offset 2 } Sphere { center 0 0 -1 radius 0.5 } }
 ";
 
-/// A folder in which the program runs, with `scene.txt` and `endless.txt`.
+/// A temporary folder with `scene.txt` and `endless.txt`, in which the program runs.
 pub struct Place {
     folder: TempDir,
 }
 
-/// What a run gave.
+/// Output of a run.
 pub struct Ran {
     pub code: Option<i32>,
     pub out: String,
@@ -60,7 +59,7 @@ impl Place {
         std::fs::write(self.path(name), content).unwrap();
     }
 
-    /// The program with arguments that stand between blanks.
+    /// Prepares a run with arguments separated by blanks.
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(durer());
         command.current_dir(self.folder.path()).args(arguments.split_whitespace()).stdin(Stdio::null());
@@ -71,7 +70,7 @@ impl Place {
         Ran::of(self.command(arguments).output().unwrap())
     }
 
-    /// Runs, and wants an exit code.
+    /// Runs the program and checks its exit code.
     #[track_caller]
     pub fn gives(&self, code: i32, arguments: &str) -> Ran {
         let ran = self.run(arguments);
@@ -80,7 +79,7 @@ impl Place {
         ran
     }
 
-    /// Runs, and wants it refused with words, and nothing written.
+    /// Runs the program and checks that it fails with these words and writes nothing.
     #[track_caller]
     pub fn refused(&self, code: i32, arguments: &str, words: &[&str]) {
         let before = self.names();
@@ -92,7 +91,7 @@ impl Place {
         assert_eq!(self.names(), before, "{arguments}");
     }
 
-    /// What is in the folder, sorted.
+    /// Returns the names in the folder, sorted.
     pub fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();
         let mut names: Vec<_> = entries.map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -112,13 +111,13 @@ impl Place {
         read8(&self.bytes(name), name).unwrap()
     }
 
-    /// Interrupts a run after a while. Gives what it gave, and how long it took to end.
+    /// Interrupts a run after a while. Returns its output and the time it took to end.
     #[cfg(unix)]
     pub fn interrupted(&self, arguments: &str, after: Duration) -> (Ran, Duration) {
         self.signalled(arguments, after, &["INT"])
     }
 
-    /// The same with some signals one right after the other.
+    /// Sends several signals in quick succession to a run. See [`Self::interrupted`].
     #[cfg(unix)]
     pub fn signalled(&self, arguments: &str, after: Duration, signals: &[&str]) -> (Ran, Duration) {
         let mut command = self.command(arguments);
@@ -133,7 +132,7 @@ impl Place {
         (ran, start.elapsed())
     }
 
-    /// Runs a script, in which `$DURER` is the program and may be limited in what it gets.
+    /// Runs a shell script in which `$DURER` is the program, for example under resource limits.
     #[cfg(unix)]
     pub fn shell(&self, script: &str) -> Ran {
         let mut command = Command::new("bash");
@@ -153,7 +152,7 @@ pub fn durer() -> &'static str {
     env!("CARGO_BIN_EXE_durer")
 }
 
-/// The course's scenes and pictures, if they are here.
+/// Returns the course's scenes and pictures, if they are available.
 pub fn corpus() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("course");

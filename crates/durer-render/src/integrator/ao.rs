@@ -14,9 +14,9 @@ use durer_scene::math::{Color, Ray, Ray64};
 use durer_scene::sampler::SampleId;
 
 described! {
-    /// how much of the sky is free
+    /// ambient occlusion
     AoParameters ["ao" in set::DURER] {
-        /// How far things count, in units of the world [default: all count]
+        /// Maximum distance of occluders, in world units [default: unlimited]
         radius: Option<f32> = None, optional, Rule::Positive, ["ao-radius" in set::DURER];
     }
 }

@@ -50,7 +50,7 @@ impl Settings {
 }
 
 described! {
-    /// local light, mirrors, glass
+    /// local illumination, mirrors, glass
     WhittedParameters ["whitted" in set::DURER] {}
 }
 

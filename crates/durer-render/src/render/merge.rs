@@ -162,7 +162,7 @@ fn shards_missing(parts: &[(String, PartialRender)]) -> String {
     }
     for (name, part) in parts.iter().filter(|(_, part)| !part.is_finished()) {
         let (all, done) = part.work();
-        let _ = writeln!(text, "  `{name}` is not finished: {done} of {all} samples; `--resume` goes on with it");
+        let _ = writeln!(text, "  `{name}` is not finished: {done} of {all} samples; `--resume` continues it");
     }
     text
 }

@@ -69,14 +69,14 @@ fn options_are_set_by_name_and_spelled_again() {
 #[test]
 fn wrong_options_are_refused_in_a_sentence() {
     let wrong = |name: &str, text: &str| RenderJob::default().set(name, text).unwrap_err();
-    assert_eq!(wrong("sample", "1"), "there is no option `sample`; did you mean `samples`?");
-    assert_eq!(wrong("samples", "0"), "0 is not in 1..=1048576");
-    assert_eq!(wrong("size", "0x3"), "a picture has at least one pixel");
-    assert_eq!(wrong("noise-threshold", "0"), "say a number more than 0");
-    assert!(wrong("filter", "cubic").starts_with("say one of box, tent"));
+    assert_eq!(wrong("sample", "1"), "unknown option `sample`; did you mean `samples`?");
+    assert_eq!(wrong("samples", "0"), "expected a number from 1 to 1048576");
+    assert_eq!(wrong("size", "0x3"), "width and height must be at least 1");
+    assert_eq!(wrong("noise-threshold", "0"), "expected a number above 0");
+    assert!(wrong("filter", "cubic").starts_with("expected one of box, tent"));
     let scene = Scene::default();
     let refused = |job: RenderJob| job.resolve(&context(&scene, Dialect::Durer.rules()), None).unwrap_err();
-    assert!(refused(RenderJob::default().integrator("paths")).starts_with("there is no integrator"));
+    assert!(refused(RenderJob::default().integrator("paths")).starts_with("unknown integrator; expected one of"));
     assert!(refused(RenderJob::default().jitter(true).integrator("path")).contains("--jitter"));
     assert!(refused(RenderJob::default().filter_radius(65.0)).contains("--filter-radius"));
     assert!(refused(RenderJob::default().depth_range([1.0, 1.0])).contains("two different"));

@@ -11,7 +11,7 @@
 //! options.set("samples", "64").unwrap();
 //! options.set("accel", "grid").unwrap();
 //! let error = options.set("size", "64").unwrap_err();
-//! assert_eq!(error, "--size cannot be 64: say it as 640x480");
+//! assert_eq!(error, "--size cannot be 64: expected WIDTHxHEIGHT, as in 640x480");
 //! ```
 
 pub mod memory;
@@ -121,10 +121,10 @@ fn check(form: OptionForm, text: &str) -> Result<(), String> {
     match form {
         OptionForm::Whole(least, most) => match text.parse::<u32>() {
             Ok(number) if (least..=most).contains(&number) => Ok(()),
-            Ok(_) => Err(format!("it is a number from {least} to {most}")),
-            Err(_) => Err("it is a whole number".into()),
+            Ok(_) => Err(format!("expected a number from {least} to {most}")),
+            Err(_) => Err("expected a whole number".into()),
         },
-        OptionForm::Words(words) if !words().contains(&text) => Err(format!("it is one of {}", words().join(", "))),
+        OptionForm::Words(words) if !words().contains(&text) => Err(format!("expected one of {}", words().join(", "))),
         OptionForm::Number(_, test, otherwise) if !text.parse().is_ok_and(test) => Err(otherwise.into()),
         _ => Ok(()),
     }
@@ -203,8 +203,8 @@ fn is_known(name: &str) -> bool {
 fn unknown(name: &str) -> String {
     let all = statements();
     match did_you_mean(name, all.iter().map(|option| option.name)) {
-        Some(near) => format!("there is no option `{name}`; did you mean `{near}`?"),
-        None => format!("there is no option `{name}`"),
+        Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
+        None => format!("unknown option `{name}`"),
     }
 }
 
@@ -213,8 +213,8 @@ pub fn integrator_help() -> String {
     let kinds = Method::kinds();
     let listed: Vec<String> = kinds.iter().map(|kind| format!("{} ({})", kind.name(), one_line(kind.doc()))).collect();
     format!(
-        "What computes the light: {} [default: path for scenes with principled materials or an environment, else \
-         whitted]",
+        "Integrator: {} [default: path for scenes with principled materials, an environment, fog or emissive surfaces, \
+         else whitted]",
         listed.join(", ")
     )
 }

@@ -25,7 +25,7 @@ const fn row(
     Row { option: JobOption { name, doc, form }, set }
 }
 
-const SAY_NUMBER: &str = "it is a number";
+const SAY_NUMBER: &str = "expected a number";
 
 /// Options of reading and compiling a scene.
 pub(super) const READING: &[Row] = &[
@@ -33,38 +33,38 @@ pub(super) const READING: &[Row] = &[
         "dialect",
         OptionForm::Words(|| Dialect::ALL.map(Dialect::name).to_vec()),
         |to, text| Ok(to.load.dialect = Dialect::from_name(text)),
-        "The scene's dialect, with all quirks of that year's program [default: guessed, without quirks]",
+        "Dialect of the scene, with all quirks of that year's program [default: detected, without quirks]",
     ),
     row(
         "compat",
         OptionForm::Value("NAME"),
         |to, text| text.split(',').try_for_each(|name| Ok(to.load.compat.push(compat(name)?))),
-        "Turn an old program's quirk on, or off with `no-` before it (see `durer dialects`)",
+        "Enable a quirk of an old program, or disable it with `no-` before its name (see `durer dialects`)",
     ),
     row(
         "strict",
         OptionForm::Flag,
         |to, text| Ok(to.load.strict = flag(text)?),
-        "Allow only the words of the dialect: no comments, nothing of our own",
+        "Accept only the words of the dialect: no comments, no extensions",
     ),
     row(
         "allow-outside",
         OptionForm::Flag,
         |to, text| Ok(to.load.allow_outside = flag(text)?),
-        "Let the scene name files outside its own folder",
+        "Let the scene read files outside its own folder",
     ),
     row(
         "assets",
         OptionForm::Value("FOLDER"),
         |to, text| Ok(to.load.assets.push(text.into())),
-        "Look for missing meshes and pictures in this folder too",
+        "Folder to search for missing meshes and pictures; may be given several times",
     ),
     row(
         "memory",
         OptionForm::Value("SIZE"),
         |to, text| Ok(to.memory = Memory::parse(text)?),
-        "Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or control group's \
-         [default: 80%]",
+        "Memory limit of scene and picture: bytes as in 512M or 8G, or a percentage of the machine's or control group's \
+         memory [default: 80%]",
     ),
     row(
         "accel",
@@ -77,13 +77,13 @@ pub(super) const READING: &[Row] = &[
             };
             Ok(())
         },
-        "What finds the objects that a ray may hit [default: bvh]",
+        "Acceleration structure of the objects [default: bvh]",
     ),
     row(
         "grid",
         OptionForm::Value("XxYxZ"),
         |to, text| Ok(to.load.accel = AccelKind::Grid(Some(grid_cells(text)?))),
-        "Cells of the grid, which is used then [default: by the number of objects]",
+        "Cells of the grid along each axis; implies the grid [default: chosen by the number of objects]",
     ),
     row(
         "up",
@@ -96,61 +96,61 @@ pub(super) const READING: &[Row] = &[
             });
             Ok(())
         },
-        "Axis of a model that points up [default: y; z for Radiance and STL]",
+        "Axis of the model that points up [default: y; z for Radiance and STL]",
     ),
     row(
         "view",
         OptionForm::Words(|| VIEWS.map(|row| row.0).to_vec()),
         |to, text| Ok(to.load.staging.view = VIEWS.iter().find(|row| row.0 == text).map(|row| row.1)),
-        "Side from which a model is seen that has no camera, or instead of its own [default: three-quarter]",
+        "View of a model without a camera; overrides the model's own camera [default: three-quarter]",
     ),
     row(
         "studio",
         OptionForm::Words(|| STUDIOS.map(|row| row.0).to_vec()),
         |to, text| Ok(to.load.staging.studio = STUDIOS.iter().find(|row| row.0 == text).map(|row| row.1)),
-        "Light for a model that has none, or instead of its own [default: soft]",
+        "Lights of a model without lights; overrides the model's own lights [default: soft]",
     ),
     row(
         "environment",
         OptionForm::Value("FILE"),
         |to, text| Ok(to.load.staging.environment = Some(text.into())),
-        "A picture of all directions (.hdr, .exr) that lights the model, instead of its own sky or a studio",
+        "Environment map (.hdr, .exr) that lights the model; overrides its own sky and the studio",
     ),
     row(
         "view-file",
         OptionForm::Value("FILE"),
         |to, text| Ok(to.load.staging.view_file = Some(text.into())),
-        "A file of Radiance views (.vf), the last of which is the camera",
+        "Radiance view file (.vf); its last view is the camera",
     ),
     row(
         "camera",
         OptionForm::Value("NAME"),
         |to, text| Ok(to.load.staging.camera = Some(text.into())),
-        "Name or number of the model's camera to use [default: the first]",
+        "Name or number of the model's camera [default: the first]",
     ),
     row(
         "variant",
         OptionForm::Value("NAME"),
         |to, text| Ok(to.load.staging.variant = Some(text.into())),
-        "Name or number of the material variant of a glTF file [default: its own materials]",
+        "Name or number of the material variant of a glTF file [default: the file's own materials]",
     ),
     row(
         "fit",
         OptionForm::Flag,
         |to, text| Ok(to.load.staging.fit = flag(text)?),
-        "Move the model's own camera along its direction until it sees the whole model",
+        "Move the model's own camera along its direction until the whole model is visible",
     ),
     row(
         "turned",
         OptionForm::Number("DEGREES", f32::is_finite, SAY_NUMBER),
         |to, text| Ok(to.load.staging.turned = text.parse().ok()),
-        "Degrees by which the view is turned around the model [default: 0]",
+        "Rotate the camera around the model by this many degrees [default: 0]",
     ),
     row(
         "at",
-        OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "it is a number of seconds, 0 or more"),
+        OptionForm::Number("SECONDS", |x| x.is_finite() && x >= 0.0, "expected seconds, 0 or more"),
         |to, text| Ok(to.load.staging.at = text.parse().ok()),
-        "Moment of the model's animation in seconds [default: its pose without animation]",
+        "Time of the model's animation in seconds [default: the pose without animation]",
     ),
 ];
 
@@ -160,7 +160,7 @@ pub(super) const VIEW: &[Row] = &[
         "crop",
         OptionForm::Value("LEFT,TOP,WIDTHxHEIGHT"),
         |to, text| Ok(to.view.crop = Some(crop(text)?)),
-        "Make only a part of the picture",
+        "Render only this part of the picture, in pixels",
     ),
     row(
         "show",
@@ -169,12 +169,12 @@ pub(super) const VIEW: &[Row] = &[
             let known = shown();
             let wrong = text.split(',').find(|name| !known.contains(name));
             if wrong.is_some() {
-                return Err(format!("it is one of {}", known.join(", ")));
+                return Err(format!("expected one of {}", known.join(", ")));
             }
             to.view.show = text.split(',').map(String::from).collect();
             Ok(())
         },
-        "Pictures to make, joined by commas [default: color]",
+        "Pictures to write, joined by commas [default: color]",
     ),
 ];
 
@@ -184,22 +184,22 @@ pub(super) const WORK: &[Row] = &[
         "threads",
         OptionForm::Whole(1, 1024),
         |to, text| Ok(to.threads = text.parse().ok()),
-        "Threads that build and render [default: one for each processor]",
+        "Threads that build and render [default: one per processor]",
     ),
     row(
         "tile",
         OptionForm::Whole(8, 4096),
         |to, text| Ok(to.tile = text.parse().ok()),
-        "Width and height in pixels of the tiles that threads take, in steps of 8 [default: by the picture's size]",
+        "Width and height of a tile in pixels, in steps of 8 [default: chosen by the picture's size]",
     ),
     row(
         "time-limit",
         OptionForm::Value("TIME"),
         |to, text| {
-            let time = humantime::parse_duration(text).map_err(|_| "say it as 30s, 10m or 1h30m")?;
+            let time = humantime::parse_duration(text).map_err(|_| "expected a time, as in 30s, 10m or 1h30m")?;
             Ok(to.time_limit = Some(time))
         },
-        "Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample",
+        "Stop after this time, as in 30s, 10m or 1h30m, once every pixel has a sample",
     ),
     row(
         "shard",
@@ -210,13 +210,13 @@ pub(super) const WORK: &[Row] = &[
             to.shard.by = by;
             Ok(())
         },
-        "Make only one of several parts, for `durer merge`",
+        "Render only one of several parts, for `durer merge`",
     ),
     row(
         "shard-by",
         OptionForm::Words(|| vec!["tiles", "samples"]),
         |to, text| Ok(to.shard.by = if text == "samples" { ShardBy::Samples } else { ShardBy::Tiles }),
-        "Whether parts have different pixels or different samples [default: tiles]",
+        "Split the picture into parts by tiles or by samples [default: tiles]",
     ),
 ];
 
@@ -240,7 +240,7 @@ fn flag(text: &str) -> Result<bool, String> {
     match text {
         "" | "on" => Ok(true),
         "off" => Ok(false),
-        _ => Err("it takes no value".into()),
+        _ => Err("expected no value".into()),
     }
 }
 
@@ -260,8 +260,8 @@ pub fn compat(text: &str) -> Result<(Compat, bool), String> {
     Compat::from_name(name).map(|compat| (compat, on)).ok_or_else(|| {
         let names = Compat::ALL.iter().map(|row| row.1);
         match did_you_mean(name, names) {
-            Some(near) => format!("there is no such quirk; did you mean `{near}`?"),
-            None => "there is no such quirk; see `durer dialects`".into(),
+            Some(near) => format!("no such quirk; did you mean `{near}`?"),
+            None => "no such quirk; see `durer dialects`".into(),
         }
     })
 }
@@ -279,7 +279,9 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
         let number = |text: &str| text.trim().parse::<u32>().ok();
         Some((number(left)?, number(top)?, number(width)?, number(height)?))
     };
-    numbers().filter(|crop| crop.2 > 0 && crop.3 > 0).ok_or_else(|| "say it as 10,20,64x48".into())
+    numbers()
+        .filter(|crop| crop.2 > 0 && crop.3 > 0)
+        .ok_or_else(|| "expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48".into())
 }
 
 /// Reads the number of cells of a grid along each axis, as in `10x10x10`.
@@ -290,5 +292,5 @@ pub fn crop(text: &str) -> Result<(u32, u32, u32, u32), String> {
 pub fn grid_cells(text: &str) -> Result<[u32; 3], String> {
     let numbers: Option<Vec<u32>> = text.split(['x', 'X']).map(|n| n.parse().ok()).collect();
     let cells: Option<[u32; 3]> = numbers.and_then(|n| n.try_into().ok());
-    cells.filter(|c| !c.contains(&0)).ok_or_else(|| "say it as 10x10x10".into())
+    cells.filter(|c| !c.contains(&0)).ok_or_else(|| "expected XxYxZ, as in 10x10x10".into())
 }

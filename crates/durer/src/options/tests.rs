@@ -26,13 +26,13 @@ fn every_statement_can_be_set_and_is_stated_once() {
 #[test]
 fn wrong_values_are_refused_with_what_is_right() {
     for (name, text, error) in [
-        ("threads", "0", "--threads cannot be 0: it is a number from 1 to 1024"),
-        ("accel", "tree", "--accel cannot be tree: it is one of bvh, grid, none"),
-        ("crop", "1,2", "--crop cannot be 1,2: say it as 10,20,64x48"),
-        ("crop", "1,2,0x4", "--crop cannot be 1,2,0x4: say it as 10,20,64x48"),
-        ("at", "-1", "--at cannot be -1: it is a number of seconds, 0 or more"),
-        ("memory", "8X", "--memory cannot be 8X: say it as 8G, 512M or 80%"),
-        ("sample", "3", "there is no option `sample`; did you mean `samples`?"),
+        ("threads", "0", "--threads cannot be 0: expected a number from 1 to 1024"),
+        ("accel", "tree", "--accel cannot be tree: expected one of bvh, grid, none"),
+        ("crop", "1,2", "--crop cannot be 1,2: expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48"),
+        ("crop", "1,2,0x4", "--crop cannot be 1,2,0x4: expected LEFT,TOP,WIDTHxHEIGHT, as in 10,20,64x48"),
+        ("at", "-1", "--at cannot be -1: expected seconds, 0 or more"),
+        ("memory", "8X", "--memory cannot be 8X: expected a size, as in 8G, 512M or 80%"),
+        ("sample", "3", "unknown option `sample`; did you mean `samples`?"),
     ] {
         assert_eq!(set(name, text).unwrap_err(), error);
     }

@@ -9,18 +9,16 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 described! {
-    /// all light
+    /// path tracing: all light
     Transport ["path" in set::DURER] {
-        /// Largest brightness, in a sample, of light that was scattered more than once; each
-        /// contribution (one light seen from one vertex of a path) is clamped alone; removes bright
-        /// specks, and some light with them [default: no limit]
+        /// Maximum brightness of a contribution (one light seen from one path vertex) after more
+        /// than one scattering; removes fireflies, and some light with them [default: no limit]
         clamp: Option<f32> = None, optional, Rule::Positive, ["clamp" in set::DURER];
-        /// What light is made of: rgb, or spectral (four wavelengths at a time: coloured light on
-        /// coloured things, prisms) [default: rgb]
+        /// Colour mode: rgb, or spectral (four wavelengths per path, for coloured light on coloured
+        /// surfaces and dispersion) [default: rgb]
         color: ColorMode = ColorMode::Rgb, optional, Rule::Any, ["color" in set::DURER];
-        /// How light straight from lamps is found: both (by points of lamps and by the directions
-        /// in which surfaces scatter, weighed), lights or bsdf (one of these alone: the same mean
-        /// and more noise, to see what each is good for) [default: both]
+        /// Sampling of direct light: both (lights and BSDFs, combined by MIS), lights or bsdf (one
+        /// alone: the same mean and more noise, for comparison) [default: both]
         direct: Direct = Direct::Both, optional, Rule::Any, ["direct" in set::DURER];
     }
 }
@@ -63,7 +61,7 @@ impl Default for PhotonParameters {
 
 impl Describe for PhotonParameters {
     const KEYWORDS: &'static [(&'static str, DialectSet)] = &[("photons", set::DURER)];
-    const DOC: &'static str = "all light, with what mirrors and glass throw on things by photons: caustics";
+    const DOC: &'static str = "path tracing with a photon map for caustics";
     const FIELDS: &'static [Field] = &[
         Transport::FIELDS[0],
         Transport::FIELDS[1],
@@ -74,7 +72,7 @@ impl Describe for PhotonParameters {
             required: false,
             rule: Rule::Numbered(100_000_000),
             spellings: &[("photons", set::DURER)],
-            doc: "How many each sample sends out [default: 100000]",
+            doc: "Photons emitted per sample [default: 100000]",
         },
         Field {
             name: "radius",
@@ -82,8 +80,8 @@ impl Describe for PhotonParameters {
             required: false,
             rule: Rule::Positive,
             spellings: &[("photon-radius", set::DURER)],
-            doc: "How far the first sample looks for them, in units of the world; later ones look less far [default: a \
-                  twentieth of the radius of the smallest thing that mirrors or refracts]",
+            doc: "Search radius for photons in the first sample, in world units; it shrinks in later samples [default: a \
+                  twentieth of the radius of the smallest object that reflects or refracts]",
         },
     ];
 
