@@ -13,7 +13,8 @@ pub struct Control {
     pub tile: Option<u32>,
     /// After this time no more samples are taken, once every pixel has one.
     pub time: Option<Duration>,
-    /// After so many tiles no more work is done, as if it were cancelled: for tests of resuming.
+    /// After so many tiles no more work is done, as if it were cancelled: for callers that do other work
+    /// in between.
     pub most_tiles: Option<u64>,
     /// How often the watcher is told that it is time to save.
     pub save_every: Option<Duration>,
