@@ -20,6 +20,7 @@ mod job;
 mod keep;
 mod large;
 mod lesson;
+mod live;
 mod manual;
 mod measure;
 mod memory;
@@ -79,6 +80,7 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
             Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
             Command::Lesson(args) => lesson::run(&args),
+            Command::Live(args) => live::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Check(args) => check::run(&args),
             Command::Info(args) => info::run(&args),

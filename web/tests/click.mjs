@@ -1,0 +1,138 @@
+/** Clicks through the page in Chromium: `node tests/click.mjs ADDRESS [FOLDER FOR PICTURES]`. */
+import { mkdirSync } from "node:fs";
+import { chromium } from "playwright-core";
+
+const [address, folder = "/tmp/durer-pictures"] = process.argv.slice(2);
+mkdirSync(folder, { recursive: true });
+const browser = await chromium.launch({
+  executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
+  args: ["--no-sandbox", "--disable-gpu"],
+});
+const wants = new RegExp(process.env.ONLY ?? ".");
+let failed = 0;
+
+async function test(name, options, work) {
+  if (!wants.test(name)) return;
+  const context = await browser.newContext(options);
+  const page = await context.newPage();
+  const errors = [];
+  page.on("pageerror", (error) => errors.push(String(error)));
+  page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
+  try {
+    await work(page);
+    if (errors.length > 0) throw new Error(errors.join("\n"));
+    console.log(`ok      ${name}`);
+  } catch (error) {
+    failed++;
+    console.log(`FAILED  ${name}: ${error.message}`);
+    await page.screenshot({ path: `${folder}/failed-${name.replaceAll(" ", "-")}.png` });
+  }
+  await context.close();
+}
+
+const wide = { viewport: { width: 1440, height: 900 } };
+const middle = { viewport: { width: 900, height: 1100 } };
+const narrow = { viewport: { width: 400, height: 820 }, hasTouch: true };
+const finished = (page) => page.waitForSelector(".status .hash", { timeout: 60_000 });
+const shot = (page, name) => page.screenshot({ path: `${folder}/${name}.png` });
+
+async function open(page, hash = "#/viewer") {
+  await page.goto(`${address}${hash}`);
+}
+
+for (const [width, size] of [
+  ["wide", wide],
+  ["middle", middle],
+  ["narrow", narrow],
+]) {
+  for (const colorScheme of ["light", "dark"]) {
+    await test(`viewer ${width} ${colorScheme}`, { ...size, colorScheme }, async (page) => {
+      await open(page);
+      await finished(page);
+      const box = await page.locator(".picture canvas").boundingBox();
+      await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+      await page.waitForSelector(".tree .term");
+      await page.waitForSelector(".tests .test");
+      await shot(page, `viewer-${width}-${colorScheme}`);
+    });
+  }
+}
+
+await test("orbit makes coarse pictures and settles", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const before = await page.locator(".status .hash").textContent();
+  const box = await page.locator(".picture canvas").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  await page.mouse.move(x, y);
+  await page.mouse.down();
+  for (let i = 1; i <= 12; i++) await page.mouse.move(x + 12 * i, y + 3 * i);
+  await page.mouse.up();
+  await page.waitForFunction(
+    (old) => {
+      const hash = document.querySelector(".status .hash")?.textContent;
+      return hash && hash !== old;
+    },
+    before,
+    { timeout: 60_000 },
+  );
+});
+
+await test("an error is underlined and mended", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const editor = page.locator(".cm-content");
+  await editor.click();
+  await page.keyboard.press("Control+End");
+  await page.keyboard.type("\nGroup { Sphre ");
+  await page.waitForSelector(".findings .error");
+  await page.waitForSelector(".cm-lintRange-error");
+  await shot(page, "error");
+  for (let i = 0; i < 16; i++) await page.keyboard.press("Backspace");
+  await page.waitForFunction(() => !document.querySelector(".findings .error"));
+});
+
+await test("step by step", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  const box = await page.locator(".picture canvas").boundingBox();
+  await page.mouse.click(box.x + 0.4 * box.width, box.y + 0.42 * box.height);
+  await page.getByRole("tab", { name: "Step by step" }).click();
+  await page.waitForSelector(".stepper .code");
+  for (let i = 0; i < 6; i++) await page.getByRole("button", { name: "Next", exact: true }).click();
+  await shot(page, "steps");
+});
+
+await test("settings", wide, async (page) => {
+  await open(page);
+  await finished(page);
+  await page.getByRole("tab", { name: "Camera and render" }).click();
+  await page.getByRole("tab", { name: "Normals", exact: true }).click();
+  await finished(page);
+  await shot(page, "settings");
+});
+
+const topics = (
+  process.env.TOPICS ??
+  "machine,ray,camera,projection,plane,sphere,triangle,transform,normals,shading,shadow,mirror,glass"
+).split(",");
+for (const topic of topics) {
+  await test(`lecture ${topic}`, wide, async (page) => {
+    await open(page, `#/lecture/${topic}`);
+    await page.waitForSelector(".equation .numbers");
+    await page.waitForTimeout(1800);
+    await shot(page, `lecture-${topic}`);
+    const handles = page.locator(".handle");
+    const numbers = () => page.locator(".equations").innerText();
+    for (let i = 0; i < (await handles.count()); i++) {
+      const before = await numbers();
+      await handles.nth(i).focus();
+      for (let k = 0; k < 4; k++) await page.keyboard.press("ArrowLeft");
+      await page.waitForTimeout(250);
+      if (before === (await numbers())) throw new Error(`handle ${i} changes no number`);
+    }
+  });
+}
+
+await browser.close();
+process.exit(failed === 0 ? 0 : 1);
