@@ -148,7 +148,11 @@ name: string, } | { "kind": "save",
 /**
  * Whether what others wrote meanwhile is overwritten.
  */
-force: boolean, } | { "kind": "close" };
+force: boolean, } | { "kind": "pause", 
+/**
+ * Whether to stop.
+ */
+pause: boolean, } | { "kind": "close" };
 
 export type Event = { "kind": "opened", 
 /**

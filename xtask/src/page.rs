@@ -53,7 +53,8 @@ fn files(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>> {
 pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let root = root()?;
     let folder = PathBuf::from(value(arguments, "-o").context("say where it goes: -o FOLDER")?);
-    let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("playground");
+    let target =
+        std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root.join("target"), PathBuf::from).join("playground");
     let flags = format!("{} -C target-feature=+simd128", std::env::var("RUSTFLAGS").unwrap_or_default());
     let manifest = root.join("crates/durer-wasm/Cargo.toml");
     let wasm = "wasm32-unknown-unknown";
@@ -69,7 +70,14 @@ pub fn playground(arguments: &[String]) -> Result<ExitCode> {
     let bindgen = std::env::var_os("WASM_BINDGEN").unwrap_or_else(|| "wasm-bindgen".into());
     call(
         Command::new(bindgen)
-            .args(["--target", "web", "--no-typescript", "--out-dir"])
+            .args([
+                "--target",
+                "web",
+                "--no-typescript",
+                "--remove-name-section",
+                "--remove-producers-section",
+                "--out-dir",
+            ])
             .arg(folder.join("wasm"))
             .arg(target.join(wasm).join("release/durer_wasm.wasm")),
     )?;

@@ -49,8 +49,7 @@ impl Server {
         let mut random = [0_u8; 16];
         getrandom::fill(&mut random).map_err(io::Error::other)?;
         let token = random.iter().map(|byte| format!("{byte:02x}")).collect();
-        let shared =
-            Shared { token, start: Start { file }, open: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+        let shared = Shared { token, start: Start { file }, open: AtomicUsize::new(0), stop: AtomicBool::new(false) };
         Ok(Server { listener, shared: Arc::new(shared) })
     }
 
@@ -80,14 +79,15 @@ impl Server {
                         continue;
                     }
                     // Without a thread the connection is dropped, and the browser tries again.
-                    let _ = std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(
-                        move || {
+                    let _ =
+                        std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(move || {
                             let _held = held;
                             connection::serve(stream, &shared);
-                        },
-                    );
+                        });
                 }
-                Err(error) if error.kind() == io::ErrorKind::WouldBlock => std::thread::sleep(LOOK.min(Duration::from_millis(5))),
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                    std::thread::sleep(LOOK.min(Duration::from_millis(5)))
+                }
                 // One that was reset before it was accepted.
                 Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
                 Err(error) => return Err(error),

@@ -68,7 +68,9 @@ fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Messa
     }
     match read {
         Ok(message) => Ok(Some(message)),
-        Err(Error::Io(error)) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => Ok(None),
+        Err(Error::Io(error)) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+            Ok(None)
+        }
         Err(error) => Err(error),
     }
 }

@@ -131,7 +131,10 @@ fn a_page_opens_edits_and_saves_its_scene_and_hears_of_conflicts() {
     // Another program writes.
     std::fs::write(&file, format!("# mine\n{text}")).unwrap();
     let changed = hear(&mut socket, "text");
-    assert_eq!((changed["from_disk"].as_bool(), changed["text"].as_str()), (Some(true), Some(&*format!("# mine\n{text}"))));
+    assert_eq!(
+        (changed["from_disk"].as_bool(), changed["text"].as_str()),
+        (Some(true), Some(&*format!("# mine\n{text}")))
+    );
     ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
     hear(&mut socket, "conflict");
     assert_eq!(std::fs::read_to_string(&file).unwrap(), format!("# mine\n{text}"));

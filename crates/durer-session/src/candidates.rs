@@ -52,10 +52,9 @@ fn test(compiled: &Compiled, number: u32, object: &Object, ray: &Ray64, first: O
         (Some(hit), _, Some(first)) if hit.object == first.object => {
             (Verdict::Closest, format!("it is hit first, at t = {}", self::number(hit.t.into())))
         }
-        (Some(hit), _, Some(first)) => (
-            Verdict::Farther,
-            format!("it is hit at t = {}, behind the first hit at {}", text(hit.t), text(first.t)),
-        ),
+        (Some(hit), _, Some(first)) => {
+            (Verdict::Farther, format!("it is hit at t = {}, behind the first hit at {}", text(hit.t), text(first.t)))
+        }
         (Some(hit), ..) => (Verdict::Closest, format!("it is hit at t = {}", text(hit.t))),
         (None, Some(hit), _) if hit.t <= ray.rounded.t_min => {
             (Verdict::Behind, format!("the line meets it at t = {}, behind the start of the ray", text(hit.t)))

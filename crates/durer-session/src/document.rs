@@ -4,6 +4,7 @@ use crate::protocol::{Change, Finding, Place, Severity};
 use durer::camera::Camera;
 use durer::check::{Subject, check};
 use durer::compile::Kept;
+use durer::describe::DescribedList;
 use durer::diag::{self, Diagnostic, Diagnostics, Files, Span};
 use durer::dialect::Dialect;
 use durer::job::JobContext;
@@ -116,6 +117,15 @@ impl Compiled {
             rejected: None,
         };
         check(&subject, &self.diagnostics).iter().map(|found| finding(&found.diagnostic, &self.files)).collect()
+    }
+
+    /// A light's keyword and line.
+    pub fn light(&self, number: usize) -> String {
+        let light = self.loaded.scene.lights.iter().flatten().nth(number);
+        match light.and_then(|light| Some((light.value.own_keyword(), self.place(light.span)?.line))) {
+            Some((keyword, line)) => format!("{keyword} of line {line}"),
+            None => self.names().light(number),
+        }
     }
 
     /// The place of a span, if it is in the scene's own text.

@@ -1,6 +1,5 @@
 //! A picture as a file.
 
-
 use durer::image::{Display, Layer, WriteOptions, format_for};
 
 /// The bytes of a picture in the format that a name's ending says.

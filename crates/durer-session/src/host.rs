@@ -12,14 +12,16 @@ pub struct Host {
     start: Start,
     clock: Clock,
     sessions: BTreeMap<u32, Session>,
-    /// The session that was asked last: its pictures come first.
+    /// The session that was asked last: its coarse pictures come first.
     latest: u32,
+    /// The session that worked last: the others have their turns before it.
+    worked: u32,
 }
 
 impl Host {
     /// A host without sessions.
     pub fn new(start: Start, clock: Clock) -> Self {
-        Host { start, clock, sessions: BTreeMap::new(), latest: 0 }
+        Host { start, clock, sessions: BTreeMap::new(), latest: 0, worked: 0 }
     }
 
     /// Answers a message, which is the JSON of an [`Ask`].
@@ -54,15 +56,21 @@ impl Host {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Does some milliseconds of work: for the session that was asked last, else for the first that has any.
+    /// Does some milliseconds of work: for a session of which nothing is seen yet, best the one that was asked last;
+    /// else for each in turn.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
-        let is_busy = |sessions: &BTreeMap<u32, Session>, id: u32| sessions.get(&id).is_some_and(Session::is_busy);
-        let next = match is_busy(&self.sessions, self.latest) {
-            true => Some(self.latest),
-            false => self.sessions.iter().find(|(_, session)| session.is_busy()).map(|(id, _)| *id),
-        };
-        let Some((session, found)) = next.and_then(|id| Some((id, self.sessions.get_mut(&id)?))) else { return };
+        let Some(session) = self.next() else { return };
+        self.worked = session;
+        let Some(found) = self.sessions.get_mut(&session) else { return };
         found.step(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
+    }
+
+    /// The session whose turn it is.
+    fn next(&self) -> Option<u32> {
+        let urgent = |id: &u32| self.sessions.get(id).is_some_and(Session::is_urgent);
+        let first = [self.latest].into_iter().chain(self.sessions.keys().copied()).find(urgent);
+        let turns = self.sessions.range(self.worked.saturating_add(1)..).chain(self.sessions.range(..=self.worked));
+        first.or_else(|| turns.filter(|(_, session)| session.is_busy()).map(|(id, _)| *id).next())
     }
 
     /// Tells pages of files that were changed on disk.

@@ -1,5 +1,6 @@
 //! A scene in lines, to be drawn in space.
 
+use crate::document::Compiled;
 use crate::protocol::{Lamp, Outline};
 use durer::light::Emitter;
 use durer::math::{Aabb, Vec3};
@@ -27,8 +28,8 @@ pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
 }
 
 /// The lights, those without a place beside the scene.
-pub(crate) fn lamps(names: &Names) -> Vec<Lamp> {
-    let world = names.world;
+pub(crate) fn lamps(compiled: &Compiled) -> Vec<Lamp> {
+    let world = &compiled.world;
     let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
     let reach = 0.6 * bounds.size().length();
     let lamps = world.lights().iter().take(MAX_LAMPS).enumerate();
@@ -36,7 +37,7 @@ pub(crate) fn lamps(names: &Names) -> Vec<Lamp> {
         let seen = light.illuminate(bounds.center().as_dvec3());
         let far = seen.distance.is_infinite();
         let at = bounds.center() + if far { reach } else { seen.distance } * seen.to_light;
-        Lamp { at: at.into(), far, name: names.light(i) }
+        Lamp { at: at.into(), far, name: compiled.light(i) }
     };
     lamps.map(one).collect()
 }

@@ -45,6 +45,7 @@ pub struct Session {
     distance: f32,
     /// Whether the scene is still to be checked.
     unchecked: bool,
+    paused: bool,
     /// What the scene's file was when it was read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
@@ -65,6 +66,7 @@ impl Session {
             viewer: Viewer::new(),
             distance: 1.0,
             unchecked: false,
+            paused: false,
             #[cfg(feature = "fs")]
             stamp: None,
             #[cfg(feature = "fs")]
@@ -75,7 +77,12 @@ impl Session {
 
     /// Whether there is work for [`Session::step`].
     pub fn is_busy(&self) -> bool {
-        self.viewer.is_busy() || self.unchecked
+        !self.paused && (self.viewer.is_busy() || self.unchecked)
+    }
+
+    /// Whether there is nothing to be seen yet of the last change.
+    pub(crate) fn is_urgent(&self) -> bool {
+        !self.paused && self.viewer.is_urgent()
     }
 
     /// Answers a request at once.
@@ -157,8 +164,8 @@ impl Session {
                 tell(Event::Cast { cast });
             }
             Request::Outlines => {
-                let names = self.compiled()?.names();
-                tell(Event::Outlines { outlines: outlines(&names), lamps: lamps(&names) });
+                let compiled = self.compiled()?;
+                tell(Event::Outlines { outlines: outlines(&compiled.names()), lamps: lamps(compiled) });
             }
             Request::Language => tell(Event::Language { words: language::words() }),
             Request::Export { name } => {
@@ -169,6 +176,7 @@ impl Session {
                 let saved = self.save(force)?;
                 tell(saved);
             }
+            Request::Pause { pause } => self.paused = pause,
             Request::Close => self.document = None,
         }
         Ok(())
@@ -304,7 +312,7 @@ impl Session {
             objects: objects.map(|(i, object)| thing(names.short_object(i as u32), object.span)).collect(),
             object_count: world.objects().len() as u32,
             triangles: triangles.sum(),
-            lights: lights.map(|(i, light)| thing(names.light(i), light.span)).collect(),
+            lights: lights.map(|(i, light)| thing(compiled.light(i), light.span)).collect(),
             bounds: match bounds.is_empty() {
                 true => [[-1.0; 3], [1.0; 3]],
                 false => [bounds.min.into(), bounds.max.into()],
@@ -346,8 +354,7 @@ impl Session {
     fn write_camera(&mut self) -> Result<String, String> {
         let statement = self.camera()?.statement;
         let document = self.document.as_ref().ok_or("there is no scene")?;
-        let (start, end) =
-            document.camera_statement().ok_or("this file has no camera that could be written anew")?;
+        let (start, end) = document.camera_statement().ok_or("this file has no camera that could be written anew")?;
         let text = document.text().ok_or("this file is no text")?;
         Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
     }

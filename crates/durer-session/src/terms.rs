@@ -115,11 +115,9 @@ impl Teller<'_> {
 
     fn around(&self, node: &TraceNode, outer: &Around) -> Around {
         match &node.what {
-            TermKind::Ray { ray, hit, .. } => Around {
-                dir: ray.dir,
-                n: hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n),
-                ..Around::default()
-            },
+            TermKind::Ray { ray, hit, .. } => {
+                Around { dir: ray.dir, n: hit.as_ref().map_or(Vec3::ZERO, |hit| hit.n), ..Around::default() }
+            }
             TermKind::Light { to_light, .. } => Around { to_light: *to_light, ..outer.clone() },
             _ => outer.clone(),
         }
@@ -142,7 +140,7 @@ impl Teller<'_> {
             TermKind::Sky => "Background".into(),
             TermKind::Ambient { .. } => "Ambient light".into(),
             TermKind::Light { light, shadow, .. } => {
-                let name = self.names.light(*light);
+                let name = self.compiled.light(*light);
                 match shadow.as_ref().and_then(|shadow| shadow.blocker) {
                     Some((object, _)) => format!("{name}, hidden by {}", self.names.short_object(object)),
                     None => name,
@@ -157,7 +155,7 @@ impl Teller<'_> {
             TermKind::Emission { .. } => "The surface shines".into(),
             TermKind::Direct { light, shadow, .. } => {
                 let name = match light {
-                    LightId::Light(number) => self.names.light(*number as usize),
+                    LightId::Light(number) => self.compiled.light(*number as usize),
                     LightId::Surface(object, _) => self.names.short_object(*object),
                     LightId::Environment => "the environment".into(),
                 };
@@ -256,7 +254,10 @@ impl Teller<'_> {
             TermKind::Diffuse { cosine } => {
                 let numbers = format!("{} · {}", vector(around.n), vector(around.to_light));
                 rows.push(row("n · l", "the cosine; below 0 it counts as 0", numbers, (*cosine).into()));
-                rows.push(words("L", &format!("max(0, n · l) k_d = {} · {}", number(cosine.max(0.0).into()), color(node.value))));
+                rows.push(words(
+                    "L",
+                    &format!("max(0, n · l) k_d = {} · {}", number(cosine.max(0.0).into()), color(node.value)),
+                ));
             }
             TermKind::Highlight { model, base, exponent } => {
                 let power = durer::math::fp::pow(base.max(0.0), *exponent);
@@ -265,7 +266,12 @@ impl Teller<'_> {
                     "N·H" => {
                         let half = (around.to_light - around.dir.normalize_or_zero()).normalize_or_zero();
                         rows.push(vector_row("h", "(l − d) / |l − d|", "", half));
-                        rows.push(row("n · h", "Blinn", format!("{} · {}", vector(around.n), vector(half)), base.into()));
+                        rows.push(row(
+                            "n · h",
+                            "Blinn",
+                            format!("{} · {}", vector(around.n), vector(half)),
+                            base.into(),
+                        ));
                     }
                     _ => rows.push(row("r · l", "Phong", "", base.into())),
                 }
@@ -280,7 +286,8 @@ impl Teller<'_> {
                 let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
                 let beyond = f64::from(sine) * f64::from(*here) / f64::from(*there);
                 if here != there {
-                    let numbers = format!("{} · {} / {}", number((*here).into()), number(sine.into()), number((*there).into()));
+                    let numbers =
+                        format!("{} · {} / {}", number((*here).into()), number(sine.into()), number((*there).into()));
                     rows.push(row("sin θ′", "η sin θ / η′ (Snell)", numbers, beyond));
                 }
                 if *total {
@@ -298,7 +305,12 @@ impl Teller<'_> {
                     rows.push(row("r", "distance of the light", "", (*distance).into()));
                 }
                 rows.push(words("f cos θ", &color(*bsdf)));
-                rows.push(row("p", "chance · density", format!("{} · {}", number((*choice).into()), number((*pdf).into())), f64::from(*choice) * f64::from(*pdf)));
+                rows.push(row(
+                    "p",
+                    "chance · density",
+                    format!("{} · {}", number((*choice).into()), number((*pdf).into())),
+                    f64::from(*choice) * f64::from(*pdf),
+                ));
                 rows.push(row("MIS", "weight of being chosen", "", (*mis).into()));
                 rows.extend(shadow.as_ref().map(|shadow| self.shadow_row(shadow)));
             }
@@ -308,7 +320,9 @@ impl Teller<'_> {
             }
             TermKind::OneWavelength { .. } | TermKind::Sky | TermKind::Spent => {}
         }
-        if !node.factor.is(1.0) && !matches!(node.what, TermKind::Ambient { .. } | TermKind::Diffuse { .. } | TermKind::Highlight { .. }) {
+        if !node.factor.is(1.0)
+            && !matches!(node.what, TermKind::Ambient { .. } | TermKind::Diffuse { .. } | TermKind::Highlight { .. })
+        {
             rows.push(words("factor", &color(node.factor)));
         }
         if let Some(throughput) = node.throughput {

@@ -97,6 +97,11 @@ impl Viewer {
         (self.cost, self.shown) = (None, None);
     }
 
+    /// Whether no picture was made yet of the last change.
+    pub fn is_urgent(&self) -> bool {
+        matches!(self.stage, Stage::Coarse)
+    }
+
     /// Leaves the picture as it is.
     pub fn rest(&mut self) {
         self.stage = Stage::Rest;
@@ -140,7 +145,14 @@ impl Viewer {
         };
         let divisor = DIVISORS.into_iter().find(affordable).unwrap_or(16);
         let side = |side: u32| side.div_ceil(divisor).max(1);
-        let coarse = Job { width: side(job.width), height: side(job.height), sampling: Sampling::Center, noise: None, adaptive: false, ..job.clone() };
+        let coarse = Job {
+            width: side(job.width),
+            height: side(job.height),
+            sampling: Sampling::Center,
+            noise: None,
+            adaptive: false,
+            ..job.clone()
+        };
         let start = clock();
         let mut render = ProgressiveRender::new(&compiled.world, &coarse).map_err(wrong)?;
         let control = Control::default();

@@ -57,9 +57,13 @@ fn hash(scene: &CompiledScene, job: RenderJob) -> String {
 
 #[test]
 fn finished_pictures_have_the_hash_of_the_command() {
-    for (name, integrator) in
-        [("whitted.txt", ""), ("cornell-box.txt", ""), ("mirrors.txt", "ao"), ("transforms.txt", ""), ("caustic.txt", "photons")]
-    {
+    for (name, integrator) in [
+        ("whitted.txt", ""),
+        ("cornell-box.txt", ""),
+        ("mirrors.txt", "ao"),
+        ("transforms.txt", ""),
+        ("caustic.txt", "photons"),
+    ] {
         let mut page = Page::new(Some(scene(name)));
         let opened = page.ask(r#"{"kind":"open","name":"","text":null}"#);
         assert!(matches!(opened[0].0, Event::Opened { saves: true, .. }), "{name}: {opened:?}");

@@ -78,6 +78,7 @@ function state(store: Store, language: Compartment): EditorState {
       highlightActiveLine(),
       highlightSelectionMatches(),
       bracketMatching(),
+      EditorView.lineWrapping,
       closeBrackets(),
       indentUnit.of("    "),
       language.of(sceneLanguage(store.words)),

@@ -36,7 +36,8 @@ export function points(pixel: PixelAccount | null, camera: CameraState | null): 
   const all: Vec[] = camera ? [camera.eye] : [];
   for (const { segment } of segments(pixel)) {
     all.push(segment.from);
-    if (!segment.escapes) all.push(segment.to);
+    // A far light would make all else small.
+    if (!segment.escapes && segment.role !== "lit") all.push(segment.to);
   }
   return all;
 }

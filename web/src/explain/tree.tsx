@@ -29,6 +29,7 @@ function Branch({ store, term, path, level }: { store: Store; term: Term; path: 
   const hidden = order.length - large.length;
   const chosen = store.chosen === path;
   const choose = () => {
+    store.unfolded = !(chosen && store.unfolded);
     store.choose(path);
     if (term.place) store.goTo(term.place);
   };
@@ -59,7 +60,7 @@ function Branch({ store, term, path, level }: { store: Store; term: Term; path: 
           <span class="share">{percent(term.share)}</span>
         </button>
       </div>
-      {chosen && (
+      {chosen && store.unfolded && (
         <div class="detail">
           <Rows rows={term.rows} />
           <p class="value">

@@ -25,6 +25,15 @@ export function useScene(text: string, options: Setting[] = few): Session {
   useEffect(() => {
     session.tell({ kind: "options", options });
   }, [session, key]);
+  useEffect(
+    () =>
+      session.on((event) => {
+        // A figure that writes a wrong scene would show an old one.
+        if (event.kind !== "scene" || event.contents) return;
+        console.error(event.findings.map((finding) => finding.message).join("; "));
+      }),
+    [session],
+  );
   useEffect(() => () => session.close(), [session]);
   return session;
 }

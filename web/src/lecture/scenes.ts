@@ -33,5 +33,5 @@ export const paint = {
   sand: "diffuseColor 0.78 0.62 0.36 specularColor 0.08 0.08 0.08 exponent 20",
   sage: "diffuseColor 0.30 0.48 0.34 specularColor 0.08 0.08 0.08 exponent 20",
   stone: "diffuseColor 0.58 0.57 0.55",
-  mirror: "diffuseColor 0.03 0.03 0.035 specularColor 0.7 0.7 0.7 exponent 200 reflectiveColor 0.8 0.81 0.82",
+  mirror: "diffuseColor 0.03 0.03 0.035 specularColor 0.7 0.7 0.7 exponent 200 reflectiveColor 0.6 0.62 0.65",
 } as const;

@@ -5,6 +5,7 @@ import { machine } from "./figures/machine";
 import { mirror } from "./figures/mirror";
 import { normals } from "./figures/normals";
 import { paths } from "./figures/paths";
+import { pinhole } from "./figures/pinhole";
 import { plane } from "./figures/plane";
 import { projection } from "./figures/projection";
 import { ray } from "./figures/ray";
@@ -20,6 +21,7 @@ import type { Topic } from "./topic";
 export const topics: Topic[] = [
   machine,
   ray,
+  pinhole,
   camera,
   projection,
   plane,

@@ -1,4 +1,5 @@
 import { useRef, useState } from "preact/hooks";
+import { gallery } from "./gallery";
 import { linkOf } from "./link";
 import { type Store, useStore } from "./store";
 
@@ -21,6 +22,23 @@ export function FileMenu({ store }: { store: Store }) {
         hidden
         onChange={(event) => giveFiles(store, [...(event.currentTarget.files ?? [])])}
       />
+      <select
+        class="button"
+        aria-label="Examples"
+        value=""
+        onChange={(event) => {
+          const scene = gallery.find(({ name }) => name === event.currentTarget.value);
+          if (scene) store.open(scene.name, scene.text);
+          event.currentTarget.value = "";
+        }}
+      >
+        <option value="">Examples</option>
+        {gallery.map(({ name }) => (
+          <option key={name} value={name}>
+            {name.replace(".txt", "").replaceAll("-", " ")}
+          </option>
+        ))}
+      </select>
       <button type="button" class="button" onClick={() => input.current?.click()}>
         Open
       </button>
@@ -30,7 +48,7 @@ export function FileMenu({ store }: { store: Store }) {
         </button>
       )}
       {store.opened?.text != null && (
-        <button type="button" class="button" onClick={copy}>
+        <button type="button" class="button link" onClick={copy}>
           {copied ? "Link copied" : "Copy link"}
         </button>
       )}

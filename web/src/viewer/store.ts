@@ -37,6 +37,8 @@ export class Store {
   cast: CastAccount | null = null;
   /** Path of the chosen term in the tree. */
   chosen = "0";
+  /** Whether its formulas are shown. */
+  unfolded = false;
   hovered: string | null = null;
   outlines: Outline[] = [];
   lamps: Lamp[] = [];
@@ -140,6 +142,7 @@ export class Store {
       this.chosen = "0";
       this.hovered = null;
       this.cast = null;
+      this.unfolded = false;
       this.choose("0");
     } catch (error) {
       this.refused = String(error);
@@ -203,6 +206,7 @@ export class Store {
         this.edited = false;
         this.diskText = null;
         this.conflict = false;
+        this.contents = null;
         break;
       case "scene":
         this.findings = event.findings;

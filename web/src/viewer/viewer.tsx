@@ -31,6 +31,11 @@ export function Viewer({ store }: { store: Store }) {
   }, [store]);
 
   useEffect(() => {
+    store.session.tell({ kind: "pause", pause: false });
+    return () => store.session.tell({ kind: "pause", pause: true });
+  }, [store]);
+
+  useEffect(() => {
     if (store.pixel) setSide("explain");
   }, [store.pixel]);
 

@@ -29,11 +29,11 @@ function CameraFigure() {
   const seen = useScene(text, [{ name: "samples", value: "4" }]);
   const canvas = useRef<HTMLCanvasElement>(null);
   const [eye, setEye] = useState<Eye>({
-    target: [-0.4, 0, 0.6],
-    distance: 11,
+    target: [-0.3, 0.35, 0.6],
+    distance: 12,
     yaw: 1.0,
     pitch: 0.42,
-    angle: 38,
+    angle: 40,
   });
   const [angle, setAngle] = useState(46);
   const [pixel, setPixel] = useState({ x: 96, y: 52 });

@@ -16,7 +16,7 @@ function GlassFigure() {
   const [side, setSide] = useState<Side>("outside");
   const text = sceneOf({
     paper: usePaper(),
-    materials: [`diffuseColor 0 0 0 transparentColor 1 1 1 refractionIndex ${index}`],
+    materials: [`diffuseColor 0 0 0 specularColor 1 1 1 transparentColor 1 1 1 refractionIndex ${index}`],
     group: "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }",
   });
   const probe = useScene(text, [

@@ -41,11 +41,11 @@ function MachineFigure() {
   const stage = useScene(text);
   const drawn = useScene(text, [{ name: "samples", value: "1" }]);
   const [eye, setEye] = useState<Eye>({
-    target: [-1.1, 0.1, 0],
-    distance: 12,
+    target: [-0.75, -0.05, 0],
+    distance: 12.5,
     yaw: 0.42,
     pitch: 0.26,
-    angle: 40,
+    angle: 42,
   });
   const [colors, setColors] = useState<Uint8Array | null>(null);
   const [at, setAt] = useState(9 * columns + 14);

@@ -13,8 +13,8 @@ import type { Topic } from "../topic";
 function MirrorFigure() {
   const paper = usePaper();
   const [bounces, setBounces] = useState(2);
-  const [from, setFrom] = useState<Vec>([-3.4, 0.9, 1.6]);
-  const [aim, setAim] = useState<Vec>([-0.55, 0.05, 0.75]);
+  const [from, setFrom] = useState<Vec>([-3.2, 0.55, 2.3]);
+  const [aim, setAim] = useState<Vec>([-0.586, 0.07, 0.889]);
   const text = sceneOf({
     paper,
     ambient: "0.3 0.3 0.31",
@@ -29,11 +29,11 @@ function MirrorFigure() {
   const session = useScene(text, options);
   const probe = useScene(text, [...options, { name: "samples", value: "1" }]);
   const [eye, setEye] = useState<Eye>({
-    target: [-0.2, -0.1, 0],
-    distance: 10.5,
+    target: [-0.5, -0.1, 0],
+    distance: 12,
     yaw: 0.25,
     pitch: 0.42,
-    angle: 36,
+    angle: 38,
   });
   const direction = unit(sub(aim, from));
   const pixel = useTrace(probe, from, direction, `${text} ${bounces}`);

@@ -17,7 +17,7 @@ function NormalsFigure() {
   const text = sceneOf({
     paper: usePaper(),
     materials: [paint.clay],
-    group: `MaterialIndex 0 Transform { Matrix 1 ${shear} 0 0  0 ${squash} 0 0  0 0 1 0  0 0 0 1 Sphere { center 0 0 0 radius 1.4 } }`,
+    group: `MaterialIndex 0 Transform { Matrix { 1 ${shear} 0 0  0 ${squash} 0 0  0 0 1 0  0 0 0 1 } Sphere { center 0 0 0 radius 1.4 } }`,
   });
   const session = useScene(text);
   const angle = (turn * Math.PI) / 180;

@@ -20,11 +20,11 @@ function RayFigure() {
   });
   const session = useScene(text);
   const [eye, setEye] = useState<Eye>({
-    target: [0, -0.1, 0],
-    distance: 9.5,
+    target: [0.25, -0.2, 0],
+    distance: 11.5,
     yaw: 0.3,
     pitch: 0.3,
-    angle: 36,
+    angle: 38,
   });
   const [origin, setOrigin] = useState<Vec>([-3, 0.5, 0.4]);
   const [tip, setTip] = useState<Vec>([-2, 0.32, 0.3]);

@@ -24,7 +24,7 @@ function SamplesFigure() {
   const text = sceneOf({
     paper: usePaper(),
     materials: [paint.clay, paint.sky, "diffuseColor 0.85 0.84 0.8", "diffuseColor 0.12 0.12 0.13"],
-    group: `Transform { Translate 0 -1 0 MaterialIndex 2 Group {
+    group: `Transform { Translate 0 -1 0 Group {
         ${stripes()} } }
       MaterialIndex 0 Sphere { center -1 0.05 0 radius 1.05 }
       MaterialIndex 1 Box { min 0.5 -1 -1.2 max 2 1.1 -0.2 }`,

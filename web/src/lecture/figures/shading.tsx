@@ -12,8 +12,8 @@ import type { Topic } from "../topic";
 
 function ShadingFigure() {
   const paper = usePaper();
-  const [lamp, setLamp] = useState<Vec>([-2.2, 2.5, 2.2]);
-  const [toward, setToward] = useState<Vec>(unit([0.28, 0.3, 0.9]));
+  const [lamp, setLamp] = useState<Vec>([-2.7, 1.9, 1.1]);
+  const [toward, setToward] = useState<Vec>(unit([-0.12, 0.42, 0.9]));
   const [diffuse, setDiffuse] = useState(0.75);
   const [specular, setSpecular] = useState(0.5);
   const [exponent, setExponent] = useState(24);
@@ -29,11 +29,11 @@ function ShadingFigure() {
   const session = useScene(text);
   const probe = useScene(text, [{ name: "samples", value: "1" }]);
   const [eye, setEye] = useState<Eye>({
-    target: [0, 0.25, 0],
-    distance: 8,
+    target: [-0.5, 0.3, 0],
+    distance: 10.5,
     yaw: 0.1,
     pitch: 0.12,
-    angle: 38,
+    angle: 40,
   });
   const seenFrom: Vec = [
     eye.target[0] + eye.distance * Math.sin(eye.yaw) * Math.cos(eye.pitch),

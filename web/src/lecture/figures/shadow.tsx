@@ -11,7 +11,7 @@ import type { Topic } from "../topic";
 
 function ShadowFigure() {
   const paper = usePaper();
-  const [lamp, setLamp] = useState<Vec>([-1.6, 2.6, 0.9]);
+  const [lamp, setLamp] = useState<Vec>([-1.7, 2.3, 0.7]);
   const [point, setPoint] = useState<Vec>([1.5, -1, -0.4]);
   const [radius, setRadius] = useState(0.75);
   const text = sceneOf({
@@ -25,11 +25,11 @@ function ShadowFigure() {
   });
   const session = useScene(text);
   const [eye, setEye] = useState<Eye>({
-    target: [0, 0.1, 0],
-    distance: 10.5,
+    target: [0, 0.55, 0],
+    distance: 12.5,
     yaw: 0.35,
-    pitch: 0.36,
-    angle: 36,
+    pitch: 0.34,
+    angle: 40,
   });
   const away = sub(lamp, point);
   const distance = length(away);

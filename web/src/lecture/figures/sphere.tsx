@@ -181,8 +181,8 @@ function Parabola({
   roots: number[];
   first: number | null;
 }) {
-  // The deepest point lies at the same height for all rays.
-  const steep = Math.max(6, Math.abs(b * b - 4 * a * c) / (4 * a));
+  // The lowest point lies at the same height for all rays but those that nearly touch.
+  const steep = 1.15 * Math.max(0.4, Math.abs(b * b - 4 * a * c) / (4 * a));
   const points = [];
   for (let t = -2.5; t <= 8.5; t += 0.04)
     points.push(`${scale.x(t)},${scale.y((0.8 * (a * t * t + b * t + c)) / steep)}`);
