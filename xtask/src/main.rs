@@ -16,6 +16,7 @@ mod long;
 mod manual;
 mod page;
 mod peers;
+mod prose;
 mod sheet;
 mod solids;
 mod teach;
@@ -96,6 +97,9 @@ const USAGE: &str = "Commands:
       wasm-bindgen, of the version in crates/durer-wasm/Cargo.toml.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
+  cargo xtask prose [--count] [PATH ...]
+      Words and patterns of xtask/prose.txt in comments, messages and documents, and comments beyond 100 columns. --count: only
+      how often. PATH: only files whose name contains it.
 The course is found in ../shared, or where DURER_CORPUS says.";
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -129,6 +133,7 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("manual") => manual::run(),
         Some("page") => page::run(&arguments[1..]),
         Some("playground") => page::playground(&arguments[1..]),
+        Some("prose") => prose::run(&arguments[1..]),
         _ => {
             println!("{USAGE}");
             Ok(ExitCode::from(2))

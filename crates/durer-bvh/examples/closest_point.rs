@@ -1,10 +1,10 @@
-//! How far places are from a mesh: `cargo run --release --example closest_point`.
+//! Distances of points from a mesh: `cargo run --release --example closest_point`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildQuality, TriangleBvh};
 
 pub(crate) fn main() {
-    // A cube from -1 to 1, each side as two triangles that look outwards.
+    // A cube from -1 to 1, with two outward-facing triangles per side.
     let corner = |i: u32| Vec3::from_array([0, 1, 2].map(|axis| if i >> axis & 1 == 1 { 1.0 } else { -1.0 }));
     let corners: Vec<Vec3> = (0..8).map(corner).collect();
     let sides = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
@@ -13,13 +13,13 @@ pub(crate) fn main() {
 
     for place in [Vec3::new(3.0, 0.2, 0.1), Vec3::new(2.0, 2.0, 2.0), Vec3::new(0.5, 0.0, 0.0)] {
         let nearest = bvh.nearest_point(place, f64::INFINITY).expect("there are triangles");
-        // A ray to anywhere leaves a closed mesh an odd number of times from inside.
+        // From inside, a ray in any direction crosses a closed mesh an odd number of times.
         let is_inside = bvh.hit_count(&Ray::new(place, Vec3::new(0.3, 0.2, 0.9))) % 2 == 1;
         let sign = if is_inside { -1.0 } else { 1.0 };
         println!("{place} is {:.3} from {}", sign * nearest.distance, nearest.point);
         let expected = (place.abs() - 1.0).max(Vec3::ZERO).length() + (place.abs() - 1.0).max_element().min(0.0);
         assert!((sign * nearest.distance - f64::from(expected)).abs() < 1e-6);
     }
-    // With a limit, what lies beyond is not looked at.
+    // With a limit, geometry beyond it is skipped.
     assert!(bvh.nearest_point(Vec3::new(3.0, 0.2, 0.1), 1.5).is_none());
 }

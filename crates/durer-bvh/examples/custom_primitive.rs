@@ -1,4 +1,4 @@
-//! A tree over things of one's own, here balls: `cargo run --release --example custom_primitive`.
+//! A tree over custom primitives, here balls: `cargo run --release --example custom_primitive`.
 
 use durer_bvh::Bvh;
 use durer_bvh::TraversalStats;
@@ -14,7 +14,7 @@ impl Ball {
         Aabb { min: self.center - self.radius, max: self.center + self.radius }
     }
 
-    /// The first `t` in the ray's interval, for a direction of length 1.
+    /// First `t` in the ray's interval, for a direction of length 1.
     fn intersect(&self, ray: &Ray) -> Option<f32> {
         let from = ray.origin - self.center;
         let b = from.dot(ray.dir);
@@ -23,11 +23,11 @@ impl Ball {
     }
 }
 
-/// The first ball that a ray hits, and where.
+/// Closest ball that a ray hits, and its `t`.
 fn closest(bvh: &Bvh, balls: &[Ball], ray: &Ray, stats: &mut TraversalStats) -> Option<(usize, f32)> {
     let mut best = None;
-    // The tree offers what the ray may hit, roughly from near to far, by its place in the leaves;
-    // what is answered is how far the ray still has to look.
+    // The tree passes positions of primitives that the ray may hit, roughly from near to far. The
+    // closure returns the new end of the ray.
     bvh.traverse(ray, stats, |place, t_max, _| {
         let ball = bvh.primitive_indices()[place] as usize;
         match balls[ball].intersect(&Ray { t_max, ..*ray }) {
@@ -54,7 +54,7 @@ pub(crate) fn main() {
     println!("ball {ball} at {t}, after {} nodes", stats.nodes);
     assert_eq!(ball, 43);
 
-    // Things that have moved a little need no new tree.
+    // Primitives that have moved a little need no new tree.
     balls[43].center.x += 0.5;
     bvh.refit(&bounds(&balls));
     let (ball, t) = closest(&bvh, &balls, &ray, &mut stats).expect("another lies behind it");

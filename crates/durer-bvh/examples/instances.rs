@@ -1,15 +1,15 @@
-//! One mesh in many places that move: `cargo run --release --example instances`.
+//! One mesh in many moving instances: `cargo run --release --example instances`.
 
 use durer_bvh::glam::{DAffine3, DQuat, DVec3};
 use durer_bvh::math::{Affine, Ray, Vec3};
 use durer_bvh::{BuildQuality, Instance, InstanceBvh, TriangleBvh};
 use std::sync::Arc;
 
-/// What rays may see, a bit for each kind.
+/// Bits of the mask, one for each kind of instance.
 const SOLID: u32 = 1;
 const GHOST: u32 = 2;
 
-/// A place on a circle, turned with it. Any affine map that can be inverted will do.
+/// A rotated place on a circle. Any invertible affine map is allowed.
 fn place(angle: f64) -> Affine {
     let turn = DQuat::from_rotation_y(angle);
     Affine::new(DAffine3::from_rotation_translation(turn, turn * DVec3::new(3.0, 0.0, 0.0)))
@@ -35,7 +35,7 @@ pub(crate) fn main() {
     println!("instance {}, triangle {}, normal {}", hit.instance, hit.triangle, scene.normal(&hit));
     assert_eq!(hit.instance, 0);
 
-    // The wheel turns by one place: the last, which only some rays see, is ahead now.
+    // The wheel turns by one place. The last instance, which only some rays see, is now ahead.
     scene.update((0..12).map(|i| (i, place(f64::from(i + 1).to_radians() * 30.0))));
     assert_eq!(scene.closest_masked(&ray, GHOST).map(|hit| hit.instance), Some(11));
     assert_eq!(scene.closest_masked(&ray, SOLID), None);

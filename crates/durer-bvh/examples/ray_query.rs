@@ -1,9 +1,9 @@
-//! Rays at a mesh, alone and many at once: `cargo run --release --example ray_query`.
+//! Ray queries on a mesh, single and in batches: `cargo run --release --example ray_query`.
 
 use durer_bvh::math::{Ray, Vec3};
 use durer_bvh::{BuildError, BuildQuality, Facing, TriangleBvh};
 
-/// A sheet of hills over the square from -1 to 1, as a list of numbers and one of indices.
+/// Hills over the square from -1 to 1, as lists of coordinates and indices.
 fn hills(cells: u32) -> (Vec<f32>, Vec<u32>) {
     let (mut positions, mut indices) = (Vec::new(), Vec::new());
     for i in 0..=cells {
@@ -27,14 +27,14 @@ pub(crate) fn main() -> Result<(), BuildError> {
     let bvh = TriangleBvh::from_flat(&positions, &indices, BuildQuality::Best)?;
     println!("{} triangles in {} bytes", bvh.triangle_count(), bvh.memory_usage());
 
-    // One ray: where, on what, and how that lies.
+    // One ray: distance, point, and normal.
     let ray = Ray::new(Vec3::new(0.05, 0.03, 2.0), Vec3::NEG_Z);
     let hit = bvh.closest(&ray).expect("the sheet lies below");
     println!("t = {}, point {}, normal {}", hit.t, ray.at(hit.t), bvh.normal(&hit));
     assert!((ray.at(hit.t).z - 0.1).abs() < 1e-3);
 
-    // Rays in a row that go nearly the same way are faster as a batch. Rays may begin and end
-    // anywhere, and several batches may be asked at the same time on several threads.
+    // Consecutive rays with similar directions are faster as a batch. Rays may begin and end
+    // anywhere, and several threads may trace batches at the same time.
     let rays: Vec<Ray> = (0..64 * 64)
         .map(|i| {
             let [x, y] = [i % 64, i / 64].map(|k| (k as f32 + 0.5) / 32.0 - 1.0);
@@ -47,12 +47,12 @@ pub(crate) fn main() -> Result<(), BuildError> {
     println!("{} of {} rays hit, none farther than {deepest}", hits.iter().flatten().count(), rays.len());
     assert!(hits.iter().all(Option::is_some));
 
-    // Seen from below there are backs only.
+    // From below, only backs are visible.
     let up = Ray::new(Vec3::new(0.05, 0.03, -2.0), Vec3::Z);
     assert!(bvh.occluded(&up));
     assert!(!bvh.occluded_where(&up, |_, facing| facing == Facing::Front));
 
-    // What was built once is loaded in a fraction of the time.
+    // Loading a saved tree takes a fraction of the time of building it.
     let bytes = bvh.to_bytes();
     let loaded = TriangleBvh::from_bytes(&bytes).expect("these bytes were just made");
     assert_eq!(loaded.closest(&ray), Some(hit));

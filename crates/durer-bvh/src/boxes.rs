@@ -1,4 +1,4 @@
-//! A tree over boxes of things that only the caller knows.
+//! A tree over the boxes of primitives that only the caller knows.
 
 use super::build::{self, BuildSettings};
 use super::lanes::{Available, Kernel, Lanes};
@@ -8,33 +8,34 @@ use super::{TraversalCounter, TraversalStats};
 use crate::math::{Aabb, Ray};
 use std::ops::Range;
 
-/// A bounding volume hierarchy of eight-wide nodes over numbered things.
+/// A bounding volume hierarchy of eight-wide nodes over numbered primitives.
 #[derive(Clone, Debug)]
 pub struct Bvh {
     pub(super) nodes: Vec<WideNode>,
-    /// Numbers of the things, in the order of the leaves.
+    /// Numbers of the primitives, in the order of the leaves.
     order: Vec<u32>,
     bounds: Aabb,
     level: Available,
 }
 
 impl Bvh {
-    /// Builds over the boxes of things 0, 1, 2, ...; empty boxes are left out. Less than 2^28
-    /// things, in at most 2^26 nodes.
+    /// Builds a tree over the boxes of primitives 0, 1, 2, ...; empty boxes are left out. Takes
+    /// fewer than 2^28 primitives, in at most 2^26 nodes.
     ///
-    /// The result is a function of the boxes alone: the same for any number of threads.
+    /// The result depends on the boxes alone, not on the number of threads.
     pub fn build(boxes: &[Aabb]) -> Self {
         let tree = build::build(build::references(boxes), &BuildSettings::THINGS);
         Bvh { nodes: tree.nodes, order: tree.order, bounds: tree.bounds, level: Available::chosen() }
     }
 
-    /// Makes the tree fit the same things with boxes that have changed. Much faster than building;
-    /// but the more they change, the slower rays become. A box that is empty keeps its old place
-    /// if nothing else is in its leaf; things whose boxes were empty when it was built stay out.
+    /// Fits the tree to changed boxes of the same primitives. Refitting is much faster than
+    /// building, but the more the boxes change, the slower rays become. A box that has become empty
+    /// keeps its old bounds if its leaf holds nothing else. Primitives whose boxes were empty at
+    /// build time stay left out.
     ///
     /// # Panics
     ///
-    /// If a thing of the tree has no box here.
+    /// If `boxes` has no entry for a primitive of the tree.
     pub fn refit(&mut self, boxes: &[Aabb]) {
         node::refit(&mut self.nodes, |leaf| {
             let (first, count) = node::items(leaf);
@@ -44,38 +45,39 @@ impl Bvh {
         self.bounds = node::bounds(&self.nodes);
     }
 
-    /// The box around everything.
+    /// Bounding box of all primitives.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
-    /// Whether there is nothing in it.
+    /// Returns true if the tree has no primitives.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Numbers of the things in the order in which [`Bvh::traverse`] knows them.
+    /// Numbers of the primitives in leaf order. [`Bvh::traverse`] passes positions in this list.
     #[inline]
     pub fn primitive_indices(&self) -> &[u32] {
         &self.order
     }
 
-    /// Bytes in memory.
+    /// Size of the nodes and numbers in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.nodes) + size_of_val(&*self.order)
     }
 
-    /// As [`TriangleBvh::sah_cost`](super::TriangleBvh::sah_cost).
+    /// Expected cost of a ray; see [`TriangleBvh::sah_cost`](super::TriangleBvh::sah_cost).
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 
-    /// Offers every thing that the ray may meet before `t_max` to `test`, roughly from near to far.
+    /// Calls `test` for every primitive that the ray may hit before `t_max`, roughly from near to
+    /// far.
     ///
-    /// `test` gets the place of a thing in [`Bvh::primitive_indices`] and the present `t_max`, and
-    /// gives the new one: at most the old. Things whose boxes begin exactly at `t_max` are still
-    /// offered. Minus infinity ends the walk.
+    /// `test` takes the position of the primitive in [`Bvh::primitive_indices`] and the current
+    /// `t_max`, and returns the new `t_max`, which must not exceed the old one. Primitives whose
+    /// boxes begin exactly at `t_max` are still tested. Minus infinity ends the traversal.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -93,13 +95,13 @@ impl Bvh {
         }
     }
 
-    /// As [`Bvh::traverse`], leaf by leaf. Behind a pointer, so that it is compiled here, once, and
-    /// not for each caller.
+    /// Traverses leaf by leaf; see [`Bvh::traverse`]. `leaf` is a trait object, so that the
+    /// traversal is compiled once, here, and not for each caller.
     fn walk_leaves(&self, ray: &Ray, leaf: Leaf) {
         self.level.run(Walk { bvh: self, ray, things: Things { nodes: &self.nodes, counter: (), leaf } });
     }
 
-    /// As [`Bvh::walk_leaves`]; gives the number of nodes that were visited.
+    /// Traverses as [`Bvh::walk_leaves`] does and returns the number of visited nodes.
     fn walk_counting(&self, ray: &Ray, leaf: Leaf) -> u64 {
         let mut counts = TraversalStats::default();
         self.level.run(Walk { bvh: self, ray, things: Things { nodes: &self.nodes, counter: &mut counts, leaf } });
@@ -107,7 +109,8 @@ impl Bvh {
     }
 }
 
-/// Gets the places of a leaf's things and `t_max`; gives the new one.
+/// Leaf callback: takes the positions of the leaf's primitives and `t_max`, and returns the new
+/// `t_max`.
 type Leaf<'a> = &'a mut dyn FnMut(Range<usize>, f32) -> f32;
 
 struct Walk<'a, T> {
@@ -153,8 +156,9 @@ impl<T: TraversalCounter> Visitor for Things<'_, T> {
     fn fetch<L: Lanes>(&self, lanes: L, met: &NodeHits<L>, _: u32) {
         let mut rest = met.mask;
         while rest != 0 {
-            // For a leaf this is no address of a node: fetching there is of no use and does no harm.
-            // Where addresses have 32 bits the product may wrap around.
+            // For a leaf this is not the address of a node; the prefetch is then useless but
+            // harmless.
+            // On 32-bit targets the product may wrap around.
             let child = met.child(rest.trailing_zeros());
             rest &= rest - 1;
             let offset = ((child & !LEAF) as usize).wrapping_mul(node::UNIT);

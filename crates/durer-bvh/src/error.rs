@@ -1,48 +1,49 @@
-//! What can be wrong with what trees are made of.
+//! Errors of building and loading trees.
 
 use std::fmt;
 
-/// Why a tree cannot be built, or fitted to other vertices.
+/// Error of building a tree or refitting it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// A triangle names a vertex that is not there.
+    /// A triangle refers to a vertex that does not exist.
     MissingVertex {
         /// Number of the triangle.
         triangle: usize,
-        /// The vertex that it names.
+        /// Index of the missing vertex.
         index: u32,
-        /// How many vertices there are.
+        /// Number of vertices.
         vertices: usize,
     },
     /// There are 2^28 triangles or more.
     TooManyTriangles {
-        /// How many there are.
+        /// Number of triangles.
         triangles: usize,
     },
-    /// A flat list of coordinates or indices has a length that is no multiple of three.
+    /// The length of a flat list of coordinates or indices is not a multiple of three.
     NotInThrees {
         /// `positions` or `indices`.
         list: &'static str,
-        /// Its length.
+        /// Length of the list.
         len: usize,
     },
-    /// There are fewer than two lines either way, or not as many heights as crossings.
+    /// There are fewer than two lines in a direction, or the number of heights differs from the
+    /// number of crossings.
     NoGrid {
-        /// How many lines go along z.
+        /// Number of lines along z.
         columns: usize,
-        /// How many lines go along x.
+        /// Number of lines along x.
         rows: usize,
-        /// How many heights were given.
+        /// Number of heights.
         heights: usize,
     },
-    /// A grid of heights has numbers that are not finite.
+    /// A height grid contains a value that is not finite.
     NotFinite,
-    /// A tree is refitted to another number of triangles than it was built over.
+    /// A tree was refitted to a different number of triangles.
     OtherTriangles {
-        /// How many it was built over.
+        /// Number of triangles at build time.
         built: usize,
-        /// How many were given.
+        /// Number of triangles at refit.
         given: usize,
     },
 }
@@ -73,24 +74,24 @@ impl fmt::Display for BuildError {
 
 impl std::error::Error for BuildError {}
 
-/// Why bytes are no tree.
+/// Error of loading a saved tree.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum LoadError {
-    /// They do not begin as saved trees do.
+    /// The data does not begin with the header of a saved tree.
     NotATree,
-    /// They were saved in a format that this version does not read.
+    /// This version does not read the format of the data.
     Version(u32),
-    /// There are fewer or more of them than they say.
+    /// The length of the data differs from the length in the header.
     Length {
-        /// As many as there should be.
+        /// Expected length in bytes.
         expected: u64,
-        /// As many as there are.
+        /// Actual length in bytes.
         found: usize,
     },
-    /// Their checksum is wrong: they were damaged.
+    /// The checksum is wrong: the data is damaged.
     Damaged,
-    /// They are no tree that this crate has made; what is wrong.
+    /// The data is not a tree made by this crate; states the reason.
     Invalid(&'static str),
 }
 

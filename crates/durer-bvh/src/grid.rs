@@ -1,4 +1,5 @@
-//! A uniform grid: space cut into equal cells, each with a list of what overlaps it.
+//! A uniform grid: space divided into equal cells, each with a list of the primitives that overlap
+//! it.
 //!
 //! Source: Amanatides and Woo, *A Fast Voxel Traversal Algorithm for Ray Tracing*, Eurographics
 //! 1987.
@@ -7,48 +8,49 @@ use super::TraversalCounter;
 use super::traverse::is_sound;
 use crate::math::{Aabb, Ray, Vec3};
 
-/// Boxes count as this much larger, in cells, as what a ray's rounding may move it.
+/// Padding of boxes against the rounding of rays, in cells.
 const PAD: f32 = 1e-2;
 
-/// The same for pictures of the cells: only so much that what touches a cell is in it.
+/// Padding for pictures of the cells, in cells: just enough to include primitives that touch a
+/// cell.
 const PICTURE_PAD: f32 = 1e-3;
 
-/// A uniform grid over numbered things.
+/// A uniform grid over numbered primitives.
 #[derive(Clone, Debug)]
 pub struct Grid {
     bounds: Aabb,
     counts: [u32; 3],
-    /// What boxes were enlarged by, in cells.
+    /// Padding of boxes, in cells.
     pad: f32,
-    /// Where each cell's list starts in `items`, and one past the last.
+    /// Start of each cell's list in `items`, and the end of the last list.
     starts: Vec<u32>,
     items: Vec<u32>,
-    /// How many things there are.
+    /// Number of primitives.
     things: usize,
 }
 
 impl Grid {
-    /// At most this many cells.
+    /// Maximum number of cells.
     pub const MAX_CELLS: u64 = 1 << 26;
-    /// At most this many entries in all cells' lists.
+    /// Maximum number of entries in the lists of all cells.
     const MAX_ENTRIES: u64 = 1 << 28;
 
-    /// Numbers of cells that suit so many things in such a box: about two cells a thing, nearly
-    /// cubes.
+    /// Numbers of cells along x, y, and z that suit a box with `things` primitives: about two cells
+    /// per primitive, nearly cubic.
     pub fn suitable(bounds: Aabb, things: usize) -> [u32; 3] {
         let size = bounds.size();
         let longest = size.max_element().max(f32::MIN_POSITIVE);
-        // Flat boxes count as a little thick, so that the cells' number stays bounded.
+        // Flat boxes count as slightly thick, so that the number of cells stays bounded.
         let size = (size / longest).max(Vec3::splat(1e-3)).as_dvec3();
         let cells_per_length = libm::cbrt(2.0 * things.max(1) as f64 / size.element_product());
         (size * cells_per_length).to_array().map(|n| (n as u32).clamp(1, 256))
     }
 
-    /// Sorts the boxes of things 0, 1, 2, ... into the cells of a box. A thing is in a cell if
-    /// their boxes overlap, and `overlaps` says so of the thing and the (slightly enlarged) cell.
+    /// Sorts the boxes of primitives 0, 1, 2, ... into the cells of `bounds`. A primitive belongs
+    /// to a cell if its box overlaps the slightly enlarged cell and `overlaps` returns true for
+    /// both.
     ///
-    /// `None` if there are no cells, or more than [`Grid::MAX_CELLS`], or too many things in too
-    /// many of them.
+    /// Returns `None` for zero cells, more than [`Grid::MAX_CELLS`], or too many entries.
     pub fn build(
         bounds: Aabb,
         counts: [u32; 3],
@@ -58,8 +60,8 @@ impl Grid {
         Self::build_padded(bounds, counts, PAD, boxes, overlaps)
     }
 
-    /// The same cells for a picture of them, with things only where they are or touch: rays may
-    /// miss things in it.
+    /// Builds a grid of the same cells for a picture of them, with primitives only in the cells
+    /// that they touch. Rays may miss primitives in it.
     pub fn for_picture(&self, boxes: &[Aabb], overlaps: impl Fn(usize, Aabb) -> bool) -> Option<Self> {
         Self::build_padded(self.bounds, self.counts, PICTURE_PAD, boxes, overlaps)
     }
@@ -75,8 +77,7 @@ impl Grid {
         if cells == 0 || cells > Grid::MAX_CELLS {
             return None;
         }
-        // A flat box is thickened, so that every cell has a volume; and all are padded against
-        // rounding.
+        // Thicken a flat box, so that every cell has a volume, and pad all boxes against rounding.
         let pad = (1e-5 * bounds.size().max_element()).max(1e-5 * bounds.center().abs().max_element()).max(1e-30);
         let bounds = Aabb { min: bounds.min - pad, max: bounds.max + pad };
         let mut grid = Grid {
@@ -91,7 +92,7 @@ impl Grid {
         if entries > Grid::MAX_ENTRIES {
             return None;
         }
-        // First count what falls into each cell, then fill the lists.
+        // Count the entries of each cell, then fill the lists.
         for (i, b) in boxes.iter().enumerate() {
             grid.for_cells(b, |cell| overlaps(i, cell), |grid, cell| grid.starts[cell + 1] += 1);
         }
@@ -110,29 +111,29 @@ impl Grid {
         Some(grid)
     }
 
-    /// Size of a cell.
+    /// Edge lengths of a cell.
     pub fn cell_size(&self) -> Vec3 {
         self.bounds.size() / Vec3::from(self.counts.map(|n| n as f32))
     }
 
-    /// Numbers of cells along x, y, z.
+    /// Numbers of cells along x, y, and z.
     pub fn counts(&self) -> [u32; 3] {
         self.counts
     }
 
-    /// The box of a cell.
+    /// Bounding box of a cell.
     pub fn cell_bounds(&self, cell: [u32; 3]) -> Aabb {
         let min = self.bounds.min + self.cell_size() * Vec3::from(cell.map(|i| i as f32));
         Aabb { min, max: min + self.cell_size() }
     }
 
-    /// How many things overlap a cell.
+    /// Number of primitives that overlap a cell.
     pub fn occupancy(&self, cell: [u32; 3]) -> usize {
         let i = self.number(cell);
         (self.starts[i + 1] - self.starts[i]) as usize
     }
 
-    /// Bytes in memory.
+    /// Size of the lists in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.starts) + size_of_val(&*self.items)
     }
@@ -144,17 +145,17 @@ impl Grid {
 
     fn cell_of(&self, p: Vec3) -> [u32; 3] {
         let at = (p - self.bounds.min) / self.cell_size();
-        // The cast saturates below at 0.
+        // The cast saturates at 0.
         std::array::from_fn(|axis| (at[axis] as u32).min(self.counts[axis] - 1))
     }
 
-    /// The least and the greatest cell that a box overlaps.
+    /// Minimum and maximum cell that a box overlaps.
     fn range(&self, b: &Aabb) -> ([u32; 3], [u32; 3]) {
         let pad = self.pad * self.cell_size();
         (self.cell_of(b.min - pad), self.cell_of(b.max + pad))
     }
 
-    /// How many cells a box overlaps.
+    /// Number of cells that a box overlaps.
     fn cells_of(&self, b: &Aabb) -> u64 {
         let (low, high) = self.range(b);
         if b.is_empty() { 0 } else { (0..3).map(|axis| u64::from(high[axis] - low[axis] + 1)).product() }
@@ -179,8 +180,8 @@ impl Grid {
         }
     }
 
-    /// Offers the things of every cell that the ray crosses before `t_max` to `test`, cell by cell;
-    /// see [`super::Bvh::traverse`]. A thing in several cells is offered several times.
+    /// Calls `test` for the primitives of every cell that the ray crosses before `t_max`, cell by
+    /// cell; see [`super::Bvh::traverse`]. A primitive in several cells is tested several times.
     #[inline]
     pub fn traverse<T: TraversalCounter>(
         &self,
@@ -198,11 +199,12 @@ impl Grid {
         }
     }
 
-    /// Offers the things of cells; `false`, and none, where all things should be offered. Behind a
-    /// pointer, so that it is compiled here, once, and not for each caller.
+    /// Calls `offer` with the primitives of each cell on the ray. Returns false, without any call,
+    /// if all primitives should be tested instead. `offer` is a trait object, so that the traversal
+    /// is compiled once, here, and not for each caller.
     fn offer_cells(&self, ray: &Ray, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
-        // Where rounding moves rays by more than the padding of cells, as from far away,
-        // neighbouring cells are visited too.
+        // Far away, rounding moves rays by more than the padding of the cells: visit neighbouring
+        // cells too.
         let reach = [self.bounds.min, self.bounds.max].map(|c| (ray.origin - c).abs().max(c.abs()).max_element());
         let cut = |axis: &usize| self.counts[*axis] > 1;
         let finest = (0..3).filter(cut).map(|axis| self.cell_size()[axis]).fold(f32::INFINITY, f32::min);
@@ -217,8 +219,8 @@ impl Grid {
         true
     }
 
-    /// Offers the things of all cells that are at most so far from a ray, layer by layer across the
-    /// ray's main direction; `false`, and none, where that is more work than to offer all things.
+    /// Calls `offer` for all cells within distance `slip` of a ray, layer by layer across the ray's
+    /// main axis. Returns false, without any call, if testing all primitives is less work.
     fn walk_wide(&self, ray: &Ray, slip: f64, offer: &mut dyn FnMut(&[u32], f32) -> f32) -> bool {
         let (line, size, min) = (ray.line(), self.cell_size().as_dvec3(), self.bounds.min.as_dvec3());
         let main = line.dir.abs().max_position();
@@ -237,13 +239,13 @@ impl Grid {
             if near > end {
                 break;
             }
-            // The cells of this layer that the ray passes, none where it is outside of the grid.
+            // Cells of this layer that the ray passes; empty if the ray is outside the grid.
             let range = |axis: usize| {
                 let [p, q] = [near, far].map(|t| line.origin[axis] + t * line.dir[axis]);
                 let cell = |at: f64| (at - min[axis]) / size[axis];
                 let (low, high) = (cell(p.min(q) - slip), cell(p.max(q) + slip));
                 let count = f64::from(self.counts[axis]);
-                // An empty range where it ends before the grid or begins behind it.
+                // Empty if the interval ends before the grid or begins beyond it.
                 if near > far || !(high >= 0.0 && low < count) {
                     return 0..0;
                 }
@@ -262,8 +264,8 @@ impl Grid {
         true
     }
 
-    /// Visits the cells along a ray in order. `visit` gets a cell and the present `t_max`, and
-    /// gives the new one.
+    /// Visits the cells along a ray in order. `visit` takes a cell and the current `t_max`, and
+    /// returns the new `t_max`.
     pub fn walk_cells(&self, ray: &Ray, mut visit: impl FnMut(&Self, [u32; 3], f32) -> f32) {
         let Some((enter, leave)) = self.bounds.clip(ray.origin, ray.dir).filter(|_| is_sound(ray)) else { return };
         let (enter, leave) = (enter.max(ray.t_min), leave.min(ray.t_max));
@@ -272,8 +274,8 @@ impl Grid {
         }
         let mut cell = self.cell_of(ray.at(enter));
         let size = self.cell_size();
-        // For each axis: t of the next cell wall. Computed anew from the wall's number, so that
-        // errors do not add up.
+        // `t` of the next cell wall along each axis, always computed from the wall's number, so
+        // that errors do not accumulate.
         let wall_t = |cell: [u32; 3], axis: usize| {
             if ray.dir[axis] == 0.0 {
                 return f32::INFINITY;
@@ -294,8 +296,8 @@ impl Grid {
             } else {
                 2
             };
-            // What lies in the padding of a cell's wall is in both cells: a hit before the wall
-            // ends the walk.
+            // Primitives in the padding of a wall are in both cells, so a hit before the wall ends
+            // the walk.
             if next[axis] > t_max {
                 return;
             }

@@ -1,29 +1,29 @@
-//! Trees of triangles, placed in space as often as wanted.
+//! Instances of triangle trees.
 
 use super::{Bvh, Facing, TraversalCounter, TriangleBvh, TriangleHit};
 use crate::math::{Aabb, Affine, Ray, Ray64, Vec2, Vec3, triangle_normal};
 use std::sync::Arc;
 
-/// A tree of triangles, and where it is placed.
+/// A triangle tree placed in the scene.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Instance {
-    /// The triangles, in object space.
+    /// Triangles in object space.
     pub bvh: Arc<TriangleBvh>,
-    /// The map from object space to world space: any that can be inverted, with shear and
-    /// reflection too.
+    /// Map from object space to world space. Any invertible map is allowed, including shear and
+    /// reflection.
     pub to_world: Affine,
-    /// What it is, a bit for each kind: rays with a mask see instances that share a bit with it.
+    /// Bits that describe the instance: a masked ray sees instances that share a bit with its mask.
     pub mask: u32,
 }
 
 impl Instance {
-    /// An instance that rays of every mask see.
+    /// Creates an instance that rays of every mask see.
     pub fn new(bvh: Arc<TriangleBvh>, to_world: Affine) -> Self {
         Instance { bvh, to_world, mask: u32::MAX }
     }
 
-    /// The same with another mask.
+    /// Replaces the mask.
     pub fn with_mask(self, mask: u32) -> Self {
         Instance { mask, ..self }
     }
@@ -36,12 +36,12 @@ impl Instance {
     }
 }
 
-/// Where a ray meets an instance.
+/// Intersection of a ray with an instance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InstanceHit {
     /// Position along the ray, in units of the length of its direction.
     pub t: f32,
-    /// The second and third barycentric coordinate.
+    /// Second and third barycentric coordinates.
     pub uv: Vec2,
     /// Number of the instance.
     pub instance: u32,
@@ -54,18 +54,18 @@ impl InstanceHit {
         InstanceHit { t, uv, instance, triangle }
     }
 
-    /// Hits are in this order.
+    /// Sort key of hits.
     fn key(&self) -> (f32, u32, u32) {
         (self.t, self.instance, self.triangle)
     }
 }
 
-/// A tree over instances: each tree of triangles is in memory once, however often it is placed.
+/// A tree over instances. Each triangle tree is in memory once, however many instances share it.
 ///
-/// A ray, whose origin may be known in double precision ([`Ray64`]), is moved into the space of an
-/// instance in double precision, and rounded once; there it is traced as by [`TriangleBvh`], and so
-/// crosses exactly one of the triangles around an edge. Of hits at the same `t` the one of the
-/// least instance, and then of the least triangle, is the closest.
+/// A ray is transformed into the space of an instance in double precision and rounded once; its
+/// origin may be double precision ([`Ray64`]). There it is traced as by [`TriangleBvh`], so it
+/// crosses exactly one of the triangles around an edge. Of hits at the same `t`, the one with the
+/// least instance number, and then with the least triangle number, is the closest.
 ///
 /// ```
 /// use durer_bvh::glam::{DAffine3, DVec3};
@@ -94,7 +94,7 @@ pub struct InstanceBvh {
 }
 
 impl InstanceBvh {
-    /// Builds over instances 0, 1, 2, ...; less than 2^28.
+    /// Builds a tree over instances 0, 1, 2, ...; fewer than 2^28.
     pub fn new(instances: Vec<Instance>) -> Self {
         let bvh = Self::build(&instances);
         InstanceBvh { instances, bvh }
@@ -104,12 +104,13 @@ impl InstanceBvh {
         Bvh::build(&instances.iter().map(Instance::bounds).collect::<Vec<_>>())
     }
 
-    /// Moves some instances, given by number. The tree over instances is built anew, which takes
-    /// much less time than those of triangles, and is as good as if nothing had ever moved.
+    /// Moves some instances, given by number. Rebuilds the tree over instances, which takes much
+    /// less time than building the triangle trees. The result is the same as that of
+    /// [`InstanceBvh::new`].
     ///
     /// # Panics
     ///
-    /// If there is no instance of a number.
+    /// If a number is out of range.
     pub fn update(&mut self, moved: impl IntoIterator<Item = (u32, Affine)>) {
         for (number, to_world) in moved {
             self.instances[number as usize].to_world = to_world;
@@ -117,34 +118,34 @@ impl InstanceBvh {
         self.bvh = Self::build(&self.instances);
     }
 
-    /// The instances, by number.
+    /// Instances, by number.
     pub fn instances(&self) -> &[Instance] {
         &self.instances
     }
 
-    /// The box around everything.
+    /// Bounding box of all instances.
     pub fn bounds(&self) -> Aabb {
         self.bvh.bounds()
     }
 
-    /// The first hit in the ray's open interval (`t_min`, `t_max`).
+    /// Closest hit in the ray's open interval (`t_min`, `t_max`).
     pub fn closest(&self, ray: impl Into<Ray64>) -> Option<InstanceHit> {
         self.closest_counting(ray, &mut ())
     }
 
-    /// As [`InstanceBvh::closest`], counting nodes and tests in both levels.
+    /// Finds the [closest](InstanceBvh::closest) hit and counts nodes and tests in both levels.
     pub fn closest_counting<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> Option<InstanceHit> {
         self.nearest(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.closest_counting(ray, counter))
     }
 
-    /// As [`InstanceBvh::closest`], of the instances that share a bit with `mask`.
+    /// Finds the [closest](InstanceBvh::closest) hit on instances that share a bit with `mask`.
     pub fn closest_masked(&self, ray: impl Into<Ray64>, mask: u32) -> Option<InstanceHit> {
         self.nearest(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.closest(ray))
     }
 
-    /// As [`InstanceBvh::closest_masked`], of the hits that a filter lets pass: see
-    /// [`TriangleBvh::closest_where`]. Which side of a triangle is its front is decided in world
-    /// space, where a reflection has turned it.
+    /// Finds the closest hit that passes `filter`, on instances that share a bit with `mask`; see
+    /// [`TriangleBvh::closest_where`]. The front of a triangle is determined in world space, after
+    /// any reflection.
     pub fn closest_where(
         &self,
         ray: impl Into<Ray64>,
@@ -159,7 +160,7 @@ impl InstanceBvh {
         })
     }
 
-    /// The first hit of those that are found in each instance.
+    /// Closest of the hits that `closest` finds in each instance.
     #[inline]
     fn nearest<T: TraversalCounter>(
         &self,
@@ -174,7 +175,7 @@ impl InstanceBvh {
                 let hit = InstanceHit::new(number, hit);
                 if best.is_none_or(|best| hit.key() < best.key()) {
                     best = Some(hit);
-                    // One of a lesser number may still be met at the same place.
+                    // An instance with a lesser number may have a hit at the same `t`.
                     t_max = hit.t.next_up();
                 }
             }
@@ -183,22 +184,22 @@ impl InstanceBvh {
         best
     }
 
-    /// Whether anything is hit in the ray's open interval.
+    /// Returns true if the ray hits anything in its open interval.
     pub fn occluded(&self, ray: impl Into<Ray64>) -> bool {
         self.occluded_counting(ray, &mut ())
     }
 
-    /// As [`InstanceBvh::occluded`], counting nodes and tests in both levels.
+    /// Tests [occlusion](InstanceBvh::occluded) and counts nodes and tests in both levels.
     pub fn occluded_counting<T: TraversalCounter>(&self, ray: impl Into<Ray64>, counter: &mut T) -> bool {
         self.any(&ray.into(), u32::MAX, counter, |bvh, ray, _, counter| bvh.occluded_counting(ray, counter))
     }
 
-    /// As [`InstanceBvh::occluded`], by the instances that share a bit with `mask`.
+    /// Tests [occlusion](InstanceBvh::occluded) by instances that share a bit with `mask`.
     pub fn occluded_masked(&self, ray: impl Into<Ray64>, mask: u32) -> bool {
         self.any(&ray.into(), mask, &mut (), |bvh, ray, _, _| bvh.occluded(ray))
     }
 
-    /// As [`InstanceBvh::occluded_masked`], by the hits that a filter lets pass: see
+    /// Returns true if any hit passes `filter`, on instances that share a bit with `mask`; see
     /// [`InstanceBvh::closest_where`].
     pub fn occluded_where(
         &self,
@@ -230,8 +231,8 @@ impl InstanceBvh {
         found
     }
 
-    /// All hits in the ray's open interval, by `t`, then by number of the instance, then of the
-    /// triangle.
+    /// Hits in the ray's open interval, sorted by `t`, then by instance number, then by triangle
+    /// number.
     pub fn all_hits(&self, ray: impl Into<Ray64>) -> Vec<InstanceHit> {
         let (mut all, ray) = (Vec::new(), ray.into());
         self.traverse(&ray, u32::MAX, &mut (), |number, bvh, local, _| {
@@ -242,61 +243,61 @@ impl InstanceBvh {
         all
     }
 
-    /// How many triangles the ray crosses in its open interval.
+    /// Number of triangles that the ray crosses in its open interval.
     pub fn hit_count(&self, ray: impl Into<Ray64>) -> usize {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order, as [`InstanceBvh::closest`] gives it.
+    /// Finds the closest hit of each ray, in order; see [`InstanceBvh::closest`].
     ///
     /// # Panics
     ///
-    /// If there are not as many places for hits as rays.
+    /// If `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<InstanceHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
         rays.iter().zip(hits).for_each(|(ray, hit)| *hit = self.closest(ray));
     }
 
-    /// For each ray, in order, whether anything is hit.
+    /// Tests occlusion of each ray, in order; see [`InstanceBvh::occluded`].
     ///
     /// # Panics
     ///
-    /// If there are not as many places for answers as rays.
+    /// If `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
         rays.iter().zip(answers).for_each(|(ray, answer)| *answer = self.occluded(ray));
     }
 
-    /// How many triangles each ray crosses, in order.
+    /// Counts the triangles that each ray crosses, in order.
     ///
     /// # Panics
     ///
-    /// If there are not as many places for counts as rays.
+    /// If `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
         assert_eq!(rays.len(), counts.len(), "a place for each count");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 
-    /// All hits of each ray, in order: `take` gets the ray's place in the batch, and its hits as
-    /// [`InstanceBvh::all_hits`] gives them.
+    /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
+    /// hits, sorted as by [`InstanceBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[InstanceHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
 
-    /// The corners in world space of a triangle that was hit; `None` if there is no such one.
+    /// Corners of the hit triangle in world space; `None` if it does not exist.
     pub fn corners(&self, hit: &InstanceHit) -> Option<[Vec3; 3]> {
         let Instance { bvh, to_world, .. } = self.instances.get(hit.instance as usize)?;
         Some(bvh.corners(hit.triangle)?.map(|corner| to_world.point(corner)))
     }
 
-    /// The unit normal in world space of a triangle that was hit: (b - a) x (c - a) of its
-    /// corners there. Zero if it has no area.
+    /// Unit normal of the hit triangle in world space: (b - a) x (c - a) of its corners in world
+    /// space. Zero if the triangle has no area.
     pub fn normal(&self, hit: &InstanceHit) -> Vec3 {
         self.corners(hit).map_or(Vec3::ZERO, triangle_normal)
     }
 
-    /// Offers instances with the ray in their space, roughly from near to far; `ask` gives the new
-    /// `t_max`.
+    /// Calls `ask` for instances with the ray in object space, roughly from near to far. `ask`
+    /// returns the new `t_max`.
     #[inline]
     fn traverse<T: TraversalCounter>(
         &self,
@@ -315,7 +316,7 @@ impl InstanceBvh {
         });
     }
 
-    /// Bytes in memory; trees that are placed several times count once.
+    /// Size in bytes; trees that several instances share count once.
     pub fn memory_usage(&self) -> usize {
         let mut trees: Vec<&Arc<TriangleBvh>> = self.instances.iter().map(|instance| &instance.bvh).collect();
         trees.sort_by_key(|tree| Arc::as_ptr(tree));
@@ -334,13 +335,13 @@ mod tests {
     use crate::triangles::tests::{bits, brute_force, ray, soup, torus};
     use glam::{DAffine3, DMat3, DVec3};
 
-    /// A map that turns, shears, stretches and mirrors.
+    /// A map that rotates, shears, stretches, and mirrors.
     fn map(random: &mut Random) -> Affine {
         loop {
             let mut axis = || random.point().as_dvec3();
             let matrix = DMat3::from_cols(axis(), axis(), axis());
             let forward = DAffine3 { matrix3: matrix, translation: 2.0 * axis() };
-            // Nearly flat ones lose digits.
+            // Nearly flat maps lose digits.
             if let Some(map) = Affine::new(forward).filter(|_| matrix.determinant().abs() > 0.05) {
                 return map;
             }
@@ -354,7 +355,7 @@ mod tests {
         let trees = meshes.clone().map(|(v, t)| Arc::new(TriangleBvh::build(&v, &t, BuildQuality::Balanced)));
         let mut placed: Vec<Instance> =
             (0..30).map(|i| Instance::new(trees[i % 2].clone(), map(&mut random))).collect();
-        // The same thing at the same place: the first is the closest.
+        // Duplicates at the same place: the first is the closest.
         placed.extend_from_within(..4);
         let scene = InstanceBvh::new(placed);
         let mut met = 0;
@@ -389,7 +390,7 @@ mod tests {
         let mut random = Random(10);
         let mesh = torus(16, 8);
         let bvh = Arc::new(TriangleBvh::build(&mesh.0, &mesh.1, BuildQuality::Balanced));
-        // Numbers that are sums of a few powers of two: what is moved there and back is the same.
+        // Sums of a few powers of two: translating there and back restores them exactly.
         let far = DVec3::new(4_194_304.25, -262_144.5, 2_097_152.0);
         let to_world = Affine::new(DAffine3::from_translation(far)).unwrap();
         let scene = InstanceBvh::new(vec![Instance::new(bvh.clone(), to_world)]);
@@ -425,7 +426,7 @@ mod tests {
         }
     }
 
-    /// The scene as one mesh, and the numbers of instance and triangle of each of its triangles.
+    /// The scene as one mesh: instance number, triangle number, and corners of each triangle.
     fn flattened(scene: &InstanceBvh, meshes: &[crate::triangles::tests::Mesh]) -> Vec<(u32, u32, [Vec3; 3])> {
         let corners = |(i, instance): (usize, &Instance)| {
             let (vertices, triangles) = meshes[i % meshes.len()].clone();

@@ -1,8 +1,9 @@
 //! Ray queries on triangles and boxes: bounding volume hierarchies, and a uniform grid.
 //!
-//! [`Bvh`] and [`Grid`] know boxes and numbers of things only; what a thing is, the caller's
-//! closure knows. A structure may offer a thing that the ray misses, never withhold one that it
-//! meets; so all of them find the same hit. [`TriangleBvh`] has the triangles too.
+//! [`Bvh`] and [`Grid`] store only the bounding boxes and numbers of primitives; the caller's
+//! closure intersects the primitives. A structure may offer a primitive that the ray misses, but
+//! never skips one that the ray hits, so all of them find the same hit. [`TriangleBvh`] stores the
+//! triangles too.
 #![doc = include_str!("../README.md")]
 
 mod boxes;
@@ -29,15 +30,15 @@ pub use lanes::{SimdLevel, UnknownSimdLevel};
 pub use packs::{PackHit, PrimitivePacks};
 pub use triangles::{Facing, HeightGrid, NearestPoint, TriangleBvh, TriangleHit};
 
-/// Counts the work of rays. `()` counts nothing, at no cost.
+/// Counter of the work of rays. `()` counts nothing, at no cost.
 pub trait TraversalCounter {
-    /// Whether nodes and tests are counted. Where not, the trees take the way that counts nothing.
+    /// True if nodes and tests are counted. If false, the trees use a code path without counters.
     const COUNTS_WORK: bool;
 
-    /// A ray was traced.
+    /// Counts one ray.
     fn ray(&mut self) {}
 
-    /// So many nodes or cells were visited, and so many things tested against the ray.
+    /// Counts visited nodes or cells, and primitives tested against the ray.
     fn work(&mut self, _nodes: u64, _tests: u64) {}
 }
 
@@ -56,7 +57,7 @@ impl<T: TraversalCounter> TraversalCounter for &mut T {
     }
 }
 
-/// Counts rays alone.
+/// Counter of rays only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCount(pub u64);
 
@@ -68,14 +69,14 @@ impl TraversalCounter for RayCount {
     }
 }
 
-/// Numbers of rays traced, nodes visited and things tested.
+/// Numbers of rays traced, nodes visited, and primitives tested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TraversalStats {
     /// Rays traced.
     pub rays: u64,
-    /// Nodes or cells looked into.
+    /// Nodes or cells visited.
     pub nodes: u64,
-    /// Things tested against the ray.
+    /// Primitives tested against a ray.
     pub tests: u64,
 }
 
@@ -91,8 +92,7 @@ impl TraversalCounter for TraversalStats {
     }
 }
 
-/// What the other crates of the workspace need beside the public items; it may change with any
-/// version.
+/// Items for the other crates of the workspace. Any version may change them.
 #[doc(hidden)]
 pub mod internal {
     pub use crate::lanes::{PlainKernel, bring_near, room, run_plain};

@@ -1,58 +1,56 @@
-//! The eight-wide node.
+//! Nodes with eight children.
 
 use crate::math::Aabb;
 
-/// So many children has a node, and so many lanes a vector.
+/// Number of children of a node, and of lanes of a vector.
 pub const WIDTH: usize = 8;
 
-/// No leaf of a tree lies deeper than this: it bounds the stack of a walk.
+/// Maximum depth of a leaf; bounds the stack of a traversal.
 pub(super) const MAX_DEPTH: usize = 160;
 
-/// Boxes of up to eight children, side by side. Those that are not there have empty boxes, which no
-/// ray meets.
+/// Boxes of up to eight children, side by side. Unused slots have empty boxes, which no ray hits.
 ///
-/// Children lie in order along one axis, so that for a ray they are roughly from near to far, or
-/// from far to near.
+/// Children are sorted along one axis, so that a ray sees them roughly from near to far, or from
+/// far to near.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct WideNode {
-    /// By axis: lower sides, upper sides.
+    /// Lower and upper planes of the boxes, by axis.
     pub planes: [[[f32; WIDTH]; 2]; 3],
-    /// An inner child's [`node_offset`]; or [`LEAF`], the count less one shifted by
-    /// [`COUNT_SHIFT`], and the first item.
+    /// [`node_offset`] of an inner child; or, for a leaf, [`LEAF`], the item count minus one
+    /// shifted by [`COUNT_SHIFT`], and the first item.
     pub children: [u32; WIDTH],
-    /// For each octant of directions, numbered by
-    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative), a bit: whether rays
-    /// take the children from the last to the first. First for those that want the nearest, then
-    /// for those to which any hit will do.
+    /// One bit for each octant of directions, numbered by
+    /// [`TraversalRay::negative`](super::traverse::TraversalRay::negative): set if rays take the
+    /// children from last to first. The first entry is for closest-hit rays, the second for any-hit
+    /// rays.
     pub from_last: [u32; 2],
-    /// The address of the first inner child, if there is one; the others lie behind it, in any
-    /// order.
+    /// Offset of the first inner child, if any. The other inner children follow it in any order.
     pub first: u32,
-    /// What a ray must know of the child that is next: its place in the bits of [`PLACE`], and
-    /// [`IS_LEAF`] or, in the bits of [`BEHIND`], how far behind the first inner child it begins.
-    /// So few bits that they take the place of the last ones of a distance.
+    /// Tag of each child: its slot in the bits of [`PLACE`], and [`IS_LEAF`] or, in the bits of
+    /// [`BEHIND`], its distance from the first inner child. Eight bits are few enough to replace
+    /// the last bits of an entry distance.
     pub child_tags: [u8; WIDTH],
 }
 
-/// As many bytes as lie between the orders in the walk's table, in which they are then found
-/// without arithmetic.
+/// Bytes between the two orders in the traversal's lookup table, so that a lookup needs no
+/// arithmetic.
 pub(super) const FROM_LAST: u32 = size_of::<[[u8; WIDTH]; 1 << WIDTH]>() as u32;
 
-/// Of a [tag](WideNode::child_tags) the child's place.
+/// Bits of a [tag](WideNode::child_tags) that hold the child's slot.
 pub(super) const PLACE: u32 = WIDTH as u32 - 1;
-/// Of a code whether the child is a leaf.
+/// Bit of a tag that marks a leaf.
 pub(super) const IS_LEAF: u32 = 8;
-/// Of a code how far behind the first inner child another one's address is.
+/// Bits of a tag that hold the child's distance from the first inner child.
 pub(super) const BEHIND: u32 = PLACE * UNITS as u32;
 const _: () = assert!(BEHIND & (PLACE | IS_LEAF) == 0 && BEHIND < 256);
 
 pub(super) const LEAF: u32 = 1 << 31;
 const COUNT_SHIFT: u32 = 28;
 const FIRST_MASK: u32 = (1 << COUNT_SHIFT) - 1;
-/// A tree holds at most so many items: so many are counted in the bits of a first one.
+/// Maximum number of items in a tree, limited by the bits for the first item of a leaf.
 pub(super) const MAX_ITEMS: usize = FIRST_MASK as usize;
-/// A leaf holds at most so many.
+/// Maximum number of items in a leaf.
 pub(super) const LEAF_SIZE: usize = 8;
 
 impl WideNode {
@@ -64,7 +62,7 @@ impl WideNode {
         child_tags: [0; WIDTH],
     };
 
-    /// Sets a child; where it is an inner one, the [`first`](WideNode::first) must be known.
+    /// Sets a child. For an inner child, [`first`](WideNode::first) must be set already.
     pub fn set(&mut self, place: usize, bounds: Aabb, child: u32) {
         for axis in 0..3 {
             self.planes[axis][0][place] = bounds.min[axis];
@@ -76,43 +74,42 @@ impl WideNode {
         self.child_tags[place] = (place as u32 | rest) as u8;
     }
 
-    /// The box of a child; empty where there is none.
+    /// Bounding box of a child; empty for an unused slot.
     pub fn bounds(&self, place: usize) -> Aabb {
         let side = |side: usize| std::array::from_fn::<f32, 3, _>(|axis| self.planes[axis][side][place]).into();
         Aabb { min: side(0), max: side(1) }
     }
 
-    /// [`FROM_LAST`] if rays of an octant take the children from the last to the first, else 0:
-    /// those to which `any` hit will do, or the others.
+    /// [`FROM_LAST`] if rays of an octant take the children from last to first, else 0. `any`
+    /// selects the order for any-hit rays.
     #[inline(always)]
     pub fn order(&self, any: bool, octant: u32) -> u32 {
         self.from_last[usize::from(any)] << (FROM_LAST.trailing_zeros() - (octant & 7)) & FROM_LAST
     }
 
-    /// The children that are there: place, box, and child.
+    /// Slot, box, and code of each child in use.
     pub fn children(&self) -> impl Iterator<Item = (usize, Aabb, u32)> {
         let all = (0..WIDTH).map(|place| (place, self.bounds(place), self.children[place]));
         all.filter(|(_, bounds, _)| bounds.min.x <= bounds.max.x)
     }
 }
 
-/// Addresses of nodes are in units of so many bytes: the most that the processor multiplies an
-/// index by.
+/// Unit of node offsets in bytes: the largest factor by which the processor scales an index.
 pub(super) const UNIT: usize = 8;
-/// So many units are a node.
+/// Number of units in a node.
 pub(super) const UNITS: usize = size_of::<WideNode>() / UNIT;
-/// A tree has at most so many nodes.
+/// Maximum number of nodes in a tree.
 pub(super) const MAX_NODES: usize = LEAF as usize / UNITS;
 const _: () = assert!(UNITS.is_power_of_two() && MAX_NODES <= 1 << (32 - UNITS.trailing_zeros()));
 
-/// How far behind the first a node begins, in units of [`UNIT`] bytes. Memory is then found without
-/// arithmetic, for which every ray would wait at every node.
+/// Offset of a node from the first, in units of [`UNIT`] bytes. Addresses then need no arithmetic,
+/// for which every ray would wait at every node.
 pub(super) fn node_offset(number: usize) -> u32 {
     assert!(number < MAX_NODES, "a tree has at most 2^26 nodes");
     (number * UNITS) as u32
 }
 
-/// The number of the node at an address.
+/// Number of the node at an offset.
 #[inline(always)]
 pub(super) fn number(address: u32) -> usize {
     address as usize / UNITS
@@ -123,15 +120,16 @@ pub(super) fn leaf(first: usize, count: usize) -> u32 {
     LEAF | ((count - 1) as u32) << COUNT_SHIFT | first as u32
 }
 
-/// First item and count of a leaf.
+/// First item and item count of a leaf.
 #[inline(always)]
 pub(super) fn items(leaf: u32) -> (usize, usize) {
     ((leaf & FIRST_MASK) as usize, ((leaf & !LEAF) >> COUNT_SHIFT) as usize + 1)
 }
 
-/// Makes boxes fit things that have moved, by the box around the things of a leaf.
+/// Refits boxes to primitives that have moved; `leaf_bounds` returns the box of a leaf's
+/// primitives.
 pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
-    // Children come after their parents, so boxes are right from the end.
+    // Children come after their parents, so the boxes below a node are final when it is reached.
     for parent in (0..nodes.len()).rev() {
         let children: Vec<(usize, Aabb, u32)> = nodes[parent].children().collect();
         for (place, _, child) in children {
@@ -139,7 +137,7 @@ pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
                 0 => nodes[number(child)].children().fold(Aabb::EMPTY, |b, (_, c, _)| b.union(c)),
                 _ => leaf_bounds(child),
             };
-            // Where nothing can be hit for now, the old box keeps the place.
+            // A child with an empty box keeps its old bounds.
             if !bounds.is_empty() {
                 nodes[parent].set(place, bounds, child);
             }
@@ -147,13 +145,13 @@ pub(super) fn refit(nodes: &mut [WideNode], leaf_bounds: impl Fn(u32) -> Aabb) {
     }
 }
 
-/// The box around everything.
+/// Bounding box of the tree.
 pub(super) fn bounds(nodes: &[WideNode]) -> Aabb {
     nodes.first().map_or(Aabb::EMPTY, |root| root.children().fold(Aabb::EMPTY, |b, c| b.union(c.1)))
 }
 
-/// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node, where
-/// a leaf costs as much.
+/// Expected cost of a random ray through the bounds by the surface area heuristic, in node tests; a
+/// leaf costs as much as a node.
 pub(super) fn cost(nodes: &[WideNode], bounds: Aabb) -> f64 {
     let root = f64::from(bounds.half_area());
     let children = nodes.iter().flat_map(|node| node.children());

@@ -1,15 +1,15 @@
-//! Simple shapes, of which eight are tested at once.
+//! Simple shapes, tested eight at a time.
 //!
-//! For scenes of a few things, where a tree would cost more than it saves, and for planes, which
-//! have no box. What is computed is what a test of one thing alone computes, in double precision
-//! and in the same order, so hits have the same bits.
+//! For scenes with only a few primitives, where a tree would cost more than it saves, and for
+//! planes, which have no bounding box. Each primitive is computed as in a test of it alone, in
+//! double precision and in the same order, so hits have the same bits.
 
 use super::TraversalCounter;
 use super::lanes::{Available, Kernel, Lanes, WIDTH, numbers_of};
 use crate::math::{Doubles, Ray, Triple, Vec3};
 use glam::DVec3;
 
-/// Planes, spheres, discs, rectangles and boxes under the caller's numbers.
+/// Planes, spheres, discs, rectangles, and boxes, numbered by the caller.
 #[derive(Clone, Debug)]
 pub struct PrimitivePacks {
     planes: Vec<Pack<PLANE>>,
@@ -17,22 +17,22 @@ pub struct PrimitivePacks {
     discs: Vec<Pack<DISC>>,
     rectangles: Vec<Pack<RECTANGLE>>,
     boxes: Vec<Pack<BOX>>,
-    /// How many there are of all.
+    /// Number of primitives of all kinds.
     count: usize,
     level: Available,
 }
 
-/// Where a ray meets one of them.
+/// Intersection of a ray with a primitive.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PackHit {
     /// Position along the ray.
     pub t: f32,
-    /// Its number.
+    /// Number of the primitive.
     pub number: u32,
 }
 
-/// Eight things of a kind, each of which is given by so many numbers. Those of a lane without a
-/// thing are no numbers, so that nothing is met there.
+/// Eight primitives of a kind, each described by `N` numbers. The numbers of unused lanes are NaN,
+/// so that nothing is hit there.
 #[derive(Clone, Copy, Debug)]
 struct Pack<const N: usize> {
     of: [[f64; WIDTH]; N],
@@ -40,7 +40,7 @@ struct Pack<const N: usize> {
 }
 
 impl<const N: usize> Pack<N> {
-    /// The lanes that have a thing.
+    /// Lanes in use.
     #[inline(always)]
     fn things(&self) -> std::ops::Range<usize> {
         let mut end = WIDTH;
@@ -50,7 +50,7 @@ impl<const N: usize> Pack<N> {
         0..end
     }
 
-    /// A thing in each lane.
+    /// Loads a different primitive into each lane.
     #[inline(always)]
     fn eight<L: Lanes>(&self, lanes: L) -> [L::Doubles; N] {
         let mut of = [lanes.splat_double(0.0); N];
@@ -60,7 +60,7 @@ impl<const N: usize> Pack<N> {
         of
     }
 
-    /// One thing in all lanes.
+    /// Loads one primitive into all lanes.
     #[inline(always)]
     fn one<L: Lanes>(&self, lanes: L, thing: usize) -> [L::Doubles; N] {
         let mut of = [lanes.splat_double(0.0); N];
@@ -100,14 +100,15 @@ impl PrimitivePacks {
         self.count += 1;
     }
 
-    /// Adds the disc around a centre, across a unit normal, from an inner radius to an outer one.
+    /// Adds the disc around a centre, perpendicular to a unit normal, from an inner radius to an
+    /// outer radius.
     pub fn push_disc(&mut self, number: u32, center: Vec3, normal: DVec3, [inner, outer]: [f32; 2]) {
         let (c, n) = (center.as_dvec3(), normal);
         push(&mut self.discs, number, [n.x, n.y, n.z, c.x, c.y, c.z, f64::from(inner), f64::from(outer)]);
         self.count += 1;
     }
 
-    /// Adds the parallelogram of a corner and two edges.
+    /// Adds the parallelogram spanned by two edges at a corner.
     pub fn push_rectangle(&mut self, number: u32, corner: Vec3, edges: [Vec3; 2]) {
         let (c, [e, f]) = (corner.as_dvec3(), edges.map(|edge| edge.as_dvec3()));
         let n = e.cross(f);
@@ -123,18 +124,18 @@ impl PrimitivePacks {
         self.count += 1;
     }
 
-    /// How many things there are.
+    /// Number of primitives.
     pub fn len(&self) -> usize {
         self.count
     }
 
-    /// Whether there are none.
+    /// Returns true if there are zero primitives.
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
-    /// The first hit in the ray's interval; of several at the same `t` that of the least number.
-    /// The ray must be finite, and have a direction.
+    /// Closest hit in the ray's interval; of several at the same `t`, the one with the least
+    /// number. The ray must be finite and have a direction.
     #[inline]
     pub fn closest<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<PackHit> {
         if self.is_empty() {
@@ -145,15 +146,16 @@ impl PrimitivePacks {
         (found.number != u32::MAX).then_some(found)
     }
 
-    /// The first hits of eight rays, as [`PrimitivePacks::closest`] has them one by one: the rays
-    /// are side by side, and things are tested one after the other. So it pays where there are few.
-    /// Rays that are not finite, or have no direction, meet nothing.
+    /// Closest hits of eight rays, equal to those of [`PrimitivePacks::closest`]. The rays are
+    /// tested side by side, one primitive after the other, which is faster if there are few
+    /// primitives. Rays that are not finite or have no direction hit nothing.
     pub fn closest_of_eight(&self, rays: [&Ray; WIDTH]) -> [Option<PackHit>; WIDTH] {
         let found = self.level.run(Together { packs: self, rays });
         found.map(|hit| (hit.number != u32::MAX).then_some(hit))
     }
 
-    /// Whether there is a hit in the ray's interval. The ray must be finite, and have a direction.
+    /// Returns true if the ray hits anything in its interval. The ray must be finite and have a
+    /// direction.
     #[inline]
     pub fn occluded<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
         if self.is_empty() {
@@ -164,7 +166,7 @@ impl PrimitivePacks {
     }
 }
 
-/// Adds a thing in the first lane that is free.
+/// Adds a primitive in the first free lane.
 fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
     let nothing = Pack { of: [[f64::NAN; WIDTH]; N], numbers: [u32::MAX; WIDTH] };
     let mut pack = packs.pop_if(|pack| pack.things().end < WIDTH).unwrap_or(nothing);
@@ -174,7 +176,7 @@ fn push<const N: usize>(packs: &mut Vec<Pack<N>>, number: u32, of: [f64; N]) {
     packs.push(pack);
 }
 
-/// Rays side by side.
+/// Eight rays side by side.
 struct Rays<L: Lanes> {
     origin: [L::Doubles; 3],
     dir: [L::Doubles; 3],
@@ -183,7 +185,7 @@ struct Rays<L: Lanes> {
 }
 
 impl<L: Lanes> Rays<L> {
-    /// The lanes in which a place lies in the interval.
+    /// Mask of the lanes in which `t` lies in the interval.
     #[inline(always)]
     fn contain(&self, lanes: L, t: L::Floats) -> u32 {
         lanes.lt(self.t_min, t) & lanes.lt(t, self.t_max)
@@ -195,13 +197,13 @@ impl<L: Lanes> Rays<L> {
     }
 }
 
-/// Things of a kind that are given by `N` numbers.
+/// Primitives of a kind, each described by `N` numbers.
 trait Form<const N: usize> {
-    /// Where rays first meet things in their interval: a bit for each lane, and the place.
+    /// First hits in the rays' intervals: a mask of lanes, and `t`.
     fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, of: &[L::Doubles; N]) -> (u32, L::Floats);
 }
 
-/// normal · p = offset.
+/// Planes normal · p = offset.
 struct Planes;
 const PLANE: usize = 4;
 
@@ -209,28 +211,28 @@ impl Form<PLANE> for Planes {
     #[inline(always)]
     fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, offset]: &[L::Doubles; PLANE]) -> (u32, L::Floats) {
         let normal = [x, y, z];
-        // A parallel ray divides by zero, and hits nothing.
+        // A parallel ray divides by zero and hits nothing.
         let t = lanes.singles(offset.sub(normal.dot(rays.origin)).div(normal.dot(rays.dir)));
         (rays.contain(lanes, t), t)
     }
 }
 
-/// |p - center|^2 = square.
+/// Spheres |p - center|^2 = square.
 struct Spheres;
 const SPHERE: usize = 4;
 
 impl Form<SPHERE> for Spheres {
     #[inline(always)]
     fn meet<L: Lanes>(lanes: L, rays: &Rays<L>, &[x, y, z, square]: &[L::Doubles; SPHERE]) -> (u32, L::Floats) {
-        // The discriminant is taken from the point of the ray nearest to the centre, which keeps
-        // small, far spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
+        // The discriminant is computed at the point of the ray nearest to the centre, which keeps
+        // small, distant spheres exact. Source: Haines, Günther, Akenine-Möller, *Ray Tracing Gems*
         // (2019), chapter 7.
         let o = rays.origin.sub([x, y, z]);
         let (dd, b) = (rays.dir.dot(rays.dir), o.dot(rays.dir).mul(lanes.splat_double(-1.0)));
         let along = b.div(dd);
         let near = o.add([along; 3].mul(rays.dir));
         let discriminant = square.sub(near.dot(near));
-        // Where a sphere is missed, it is negative or no number, and so are the roots.
+        // If the ray misses a sphere, the discriminant is negative or NaN, and the roots are NaN.
         if lanes.le(lanes.splat(0.0), lanes.singles(discriminant)) == 0 {
             return (0, lanes.splat(0.0));
         }
@@ -242,7 +244,7 @@ impl Form<SPHERE> for Spheres {
     }
 }
 
-/// normal · (p - center) = 0, as far from the centre as the radii say.
+/// Discs normal · (p - center) = 0, with a distance from the centre between the radii.
 struct Discs;
 const DISC: usize = 8;
 
@@ -259,7 +261,7 @@ impl Form<DISC> for Discs {
     }
 }
 
-/// corner + u e + v f, u and v from 0 to 1.
+/// Parallelograms corner + u e + v f, with u and v in [0, 1].
 struct Rectangles;
 const RECTANGLE: usize = 13;
 
@@ -271,7 +273,7 @@ impl Form<RECTANGLE> for Rectangles {
         let t = n.dot(corner.sub(rays.origin)).div(n.dot(rays.dir));
         let found = lanes.singles(t);
         let met = rays.contain(lanes, found);
-        // Most rays do not meet the plane in their interval.
+        // Most rays do not hit the plane in their interval.
         if met == 0 {
             return (0, found);
         }
@@ -284,8 +286,8 @@ impl Form<RECTANGLE> for Rectangles {
     }
 }
 
-/// What lies between two corners: three slabs cut the ray. Source: Kay and Kajiya, *Ray Tracing
-/// Complex Scenes*, SIGGRAPH 1986.
+/// Boxes between two corners, as the intersection of three slabs. Source: Kay and Kajiya, *Ray
+/// Tracing Complex Scenes*, SIGGRAPH 1986.
 struct Boxes;
 const BOX: usize = 6;
 
@@ -295,11 +297,12 @@ impl Form<BOX> for Boxes {
         let infinity = lanes.splat_double(f64::INFINITY);
         let (mut enter, mut leave) = (lanes.splat_double(f64::NEG_INFINITY), infinity);
         for axis in 0..3 {
-            // Of a ray along the slab both ends are infinite: on different sides inside, on the
-            // same outside, and none on a face, for no zero here is negative.
+            // If the ray is parallel to the slab, both ends are infinite: with different signs
+            // inside and with equal signs outside. On a face, one is NaN. Adding 0 avoids a zero
+            // with a negative sign.
             let (o, d) = (rays.origin[axis], rays.dir[axis].add(lanes.splat_double(0.0)));
             let (a, b) = (of[axis].sub(o).div(d), of[axis + 3].sub(o).div(d));
-            // Of what is no number the other end is left, or none.
+            // min and max drop a NaN operand, so only the other plane bounds the interval.
             enter = b.min(a).max(enter);
             leave = a.max(b).min(leave);
         }
@@ -309,7 +312,7 @@ impl Form<BOX> for Boxes {
     }
 }
 
-/// The first of two places that lies in the interval.
+/// First of two values of `t` that lies in the interval.
 #[inline(always)]
 fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u32, L::Floats) {
     let (near, far) = (lanes.singles(near), lanes.singles(far));
@@ -317,14 +320,14 @@ fn first<L: Lanes>(lanes: L, rays: &Rays<L>, [near, far]: [L::Doubles; 2]) -> (u
     (in_near | rays.contain(lanes, far), lanes.select(in_near, near, far))
 }
 
-/// One ray's way through all packs; `ANY`: the first thing found will do.
+/// A query of one ray. `ANY`: any hit suffices.
 struct Query<'a, const ANY: bool> {
     packs: &'a PrimitivePacks,
     ray: &'a Ray,
 }
 
 impl<const ANY: bool> Query<'_, ANY> {
-    /// Its way through packs of one kind; whether something was found that will do.
+    /// Tests packs of one kind. Returns true if the query is finished.
     #[inline(always)]
     fn among<L: Lanes, F: Form<N>, const N: usize>(
         lanes: L,
@@ -366,14 +369,14 @@ impl<const ANY: bool> Kernel for Query<'_, ANY> {
     }
 }
 
-/// Eight rays' ways through all packs.
+/// A query of eight rays side by side.
 struct Together<'a> {
     packs: &'a PrimitivePacks,
     rays: [&'a Ray; WIDTH],
 }
 
 impl Together<'_> {
-    /// Their ways through packs of one kind.
+    /// Tests packs of one kind.
     #[inline(always)]
     fn among<L: Lanes, F: Form<N>, const N: usize>(
         (lanes, rays, sound): (L, &Rays<L>, u32),
@@ -415,11 +418,11 @@ impl Kernel for Together<'_> {
     }
 }
 
-/// The rays, by origin and direction, that are finite and have a direction.
+/// Mask of the rays that are finite and have a direction, from origins and directions.
 #[inline(always)]
 fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     let (zero, infinity) = (lanes.splat(0.0), lanes.splat(f32::INFINITY));
-    // No closures, which would be called like any function.
+    // Closures would not be inlined here.
     let [x, y, z, dx, dy, dz] = numbers;
     let (dx, dy, dz) = (lanes.abs(dx), lanes.abs(dy), lanes.abs(dz));
     let finite = [lanes.abs(x), lanes.abs(y), lanes.abs(z), dx, dy, dz];
@@ -430,7 +433,7 @@ fn sound<L: Lanes>(lanes: L, numbers: [L::Floats; 6]) -> u32 {
     all
 }
 
-/// Takes one thing for the hit of the rays that meet it and nothing better yet.
+/// Updates the best hits of the rays in mask `met` with a hit of primitive `number`.
 #[inline(always)]
 fn nearer(t: [f32; WIDTH], mut met: u32, number: u32, best: &mut [PackHit; WIDTH]) {
     while met != 0 {
@@ -442,7 +445,7 @@ fn nearer(t: [f32; WIDTH], mut met: u32, number: u32, best: &mut [PackHit; WIDTH
     }
 }
 
-/// The better of a hit and those of the lanes that are met.
+/// Best of a hit and the hits of the lanes in mask `met`.
 #[inline(always)]
 fn nearest(t: [f32; WIDTH], mut met: u32, numbers: &[u32; WIDTH], mut best: PackHit) -> PackHit {
     while met != 0 {

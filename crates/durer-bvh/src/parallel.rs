@@ -1,10 +1,9 @@
-//! Work on several threads, with the feature `rayon`; without it the same work on one. Results do
-//! not depend on which.
+//! Parallel work with the feature `rayon`, sequential work without it. Results are the same.
 
 #[cfg(feature = "rayon")]
 use rayon::prelude::*;
 
-/// Does both, perhaps at the same time.
+/// Runs both closures, in parallel if possible.
 pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> B + Send) -> (A, B) {
     #[cfg(feature = "rayon")]
     return rayon::join(a, b);
@@ -12,7 +11,7 @@ pub fn join<A: Send, B: Send>(a: impl FnOnce() -> A + Send, b: impl FnOnce() -> 
     (a(), b())
 }
 
-/// Does all of it on a thread of the pool: from outside, each step that is shared would be handed
+/// Runs `work` on a thread of the pool. From outside the pool, each parallel step would be handed
 /// over and waited for.
 pub fn on_pool<A: Send>(work: impl FnOnce() -> A + Send) -> A {
     #[cfg(feature = "rayon")]
@@ -21,7 +20,7 @@ pub fn on_pool<A: Send>(work: impl FnOnce() -> A + Send) -> A {
     work()
 }
 
-/// Appends what belongs to 0, 1, 2, ..., at least `together` of them on a thread.
+/// Appends `of(0)`, `of(1)`, `of(2)`, ..., at least `together` items per task.
 pub fn extend<T: Send>(to: &mut Vec<T>, count: usize, together: usize, of: impl Fn(usize) -> T + Sync + Send) {
     #[cfg(feature = "rayon")]
     to.par_extend((0..count).into_par_iter().with_min_len(together).map(of));
@@ -32,7 +31,7 @@ pub fn extend<T: Send>(to: &mut Vec<T>, count: usize, together: usize, of: impl 
     }
 }
 
-/// What becomes of each, in order.
+/// Parallel `map` in order.
 pub fn map<T: Sync, R: Send>(all: &[T], of: impl Fn(&T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     return all.par_iter().map(of).collect();
@@ -40,7 +39,7 @@ pub fn map<T: Sync, R: Send>(all: &[T], of: impl Fn(&T) -> R + Sync + Send) -> V
     all.iter().map(of).collect()
 }
 
-/// What becomes of those of which anything does, in order; at least `together` on a thread.
+/// Parallel `filter_map` in order; at least `together` items per task.
 pub fn filter_map<T: Sync, R: Send>(all: &[T], together: usize, of: impl Fn(&T) -> Option<R> + Sync + Send) -> Vec<R> {
     #[cfg(feature = "rayon")]
     return all.par_iter().with_min_len(together).filter_map(of).collect();
@@ -51,7 +50,7 @@ pub fn filter_map<T: Sync, R: Send>(all: &[T], together: usize, of: impl Fn(&T) 
     }
 }
 
-/// Whether any is so; at least `together` on a thread.
+/// Returns true if `is_so` holds for any item; at least `together` items per task.
 pub fn any<T: Sync>(all: &[T], together: usize, is_so: impl Fn(&T) -> bool + Sync + Send) -> bool {
     #[cfg(feature = "rayon")]
     return all.par_iter().with_min_len(together).any(is_so);
@@ -62,7 +61,7 @@ pub fn any<T: Sync>(all: &[T], together: usize, is_so: impl Fn(&T) -> bool + Syn
     }
 }
 
-/// Does something with each.
+/// Calls `work` for each item.
 pub fn for_each<T: Send>(all: Vec<T>, work: impl Fn(T) + Sync + Send) {
     #[cfg(feature = "rayon")]
     all.into_par_iter().for_each(work);

@@ -1,4 +1,4 @@
-//! Trees and grids over boxes that are hard on them.
+//! Tests of trees and grids with difficult boxes.
 
 use super::traverse::{TraversalRay, is_sound};
 use super::*;
@@ -42,13 +42,13 @@ fn collections() -> Vec<(&'static str, Vec<Aabb>)> {
     ]
 }
 
-/// The longest way from the root to a leaf, in nodes.
+/// Depth of a subtree in nodes.
 fn depth(nodes: &[node::WideNode], number: usize) -> usize {
     let inner = nodes[number].children().filter(|(_, _, child)| child & node::LEAF == 0);
     1 + inner.map(|(_, _, child)| depth(nodes, node::number(child))).max().unwrap_or(0)
 }
 
-/// The tags of a node's children say where they are, as its addresses do.
+/// Returns true if the tags of a node's children agree with their codes.
 pub fn codes_are_right(node: &node::WideNode) -> bool {
     node.children().all(|(place, _, child)| {
         let code = u32::from(node.child_tags[place]);
@@ -78,15 +78,15 @@ fn every_thing_is_offered_to_a_ray_through_its_box_whatever_the_boxes() {
         for round in 0..200 {
             let i = full[random.below(full.len())];
             let b = boxes[i as usize];
-            // A point of the box, on its border in two of three rounds; a ray there from somewhere
-            // near or far.
+            // A point of the box, on its boundary in two of three rounds, and a ray to it from near
+            // or far.
             let mix = |random: &mut Random| [random.unit(), 0.0, 1.0][random.below(3)];
             let w = Vec3::new(mix(&mut random), mix(&mut random), mix(&mut random));
             let target = b.min * (Vec3::ONE - w) + b.max * w;
             let reach = (0.5 * b.size()).max_element().max(1e-37);
             let axis = Vec3::AXES[random.below(3)];
             let step = if round % 2 == 0 { reach * random.point() } else { reach * axis };
-            // It is there at 1.
+            // The ray reaches the point at t = 1.
             let (t_min, t_max) = [
                 (f32::NEG_INFINITY, f32::INFINITY),
                 (0.0, f32::INFINITY),
@@ -146,7 +146,7 @@ fn a_slab_is_clipped_by_the_sign_of_the_direction() {
     let b = cube(Vec3::ZERO, 1.0);
     assert_eq!(b.clip(Vec3::new(-3.0, 0.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(3.0, 0.0, 0.0), Vec3::X * -2.0), Some((1.0, 2.0)));
-    // In a face, in an edge; beside them.
+    // In a face, in an edge, and beside them.
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, 0.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0, -1.0), Vec3::X), Some((2.0, 4.0)));
     assert_eq!(b.clip(Vec3::new(-3.0, 1.0f32.next_up(), 0.0), Vec3::X), None);
@@ -159,7 +159,7 @@ fn grids_hold_everything_or_are_refused() {
     for counts in [[0, 1, 1], [1, 0, 5], [u32::MAX, u32::MAX, u32::MAX], [1 << 13, 1 << 13, 2]] {
         assert!(Grid::build(unit, counts, &[unit], |_, _| true).is_none(), "{counts:?}");
     }
-    // Large things in many cells: refused before memory is taken.
+    // Large primitives in many cells: refused before memory is allocated.
     assert!(Grid::build(unit, [256, 256, 256], &vec![unit; 1000], |_, _| true).is_none());
     let one = Grid::build(unit, [1, 1, 1], &[unit], |_, _| true).unwrap();
     assert_eq!(one.occupancy([0, 0, 0]), 1);
@@ -211,7 +211,7 @@ fn grid_cells_are_visited_in_order_and_only_up_to_the_hit() {
     assert_eq!(visited(Ray::new(Vec3::splat(3.0), Vec3::X), f32::INFINITY), [[0; 3]; 0]);
 }
 
-/// They are many: those of orthographic cameras, of voxels, towards a sun overhead.
+/// Such rays are frequent: orthographic cameras, voxels, a sun overhead.
 #[test]
 fn rays_with_zero_components_are_tame() {
     let is_fast = |origin, dir| TraversalRay::new(&Ray::new(origin, dir), 3.0).is_some();
@@ -254,7 +254,7 @@ fn a_far_ray_is_offered_little_and_all_that_it_may_touch() {
                 found[item] = true;
                 t_max
             });
-            // What the line meets, or misses by no more than rounding moves it.
+            // Boxes that the line hits, or misses by no more than rounding.
             let slip = 2.0 * f32::EPSILON * distance;
             for (i, b) in boxes.iter().enumerate() {
                 let near = Aabb { min: b.min - slip, max: b.max + slip };
@@ -268,7 +268,7 @@ fn a_far_ray_is_offered_little_and_all_that_it_may_touch() {
                 assert!(found[i] || enter > leave, "{distance}: {i} is missed");
             }
         }
-        // Each thing once at the most, where the ray may be anywhere.
+        // Even if rounding may move the ray anywhere, each primitive is offered at most once.
         assert!(offered <= 100 * boxes.len(), "{distance}: {offered}");
         assert!(distance > 3e3 || offered < 100 * 400, "{distance}: {offered}");
     }

@@ -1,11 +1,10 @@
-//! Walking a ray through the tree, nearest boxes first, or, where any hit will do, in the order
-//! that is likely to find one soon.
+//! Traversal of the tree by a ray: nearest boxes first or, for any-hit rays, in the order that is
+//! likely to find a hit soon.
 //!
-//! Of the children that the ray meets the one that is entered first is next, or, where any hit will
-//! do, the first in the order of the node; the others are pushed in the order of the node, by one
-//! store whatever their number, so that no branch depends on how many children are met. What lies
-//! beyond a hit is dropped when it is popped: that is guessed rightly more often than not, and the
-//! walk goes on before it is known where the hit is.
+//! The next child is the one that the ray enters first, or, for any-hit rays, the first in the
+//! order of the node. The others are pushed in the order of the node with a single store, so that
+//! no branch depends on their number. A child beyond the nearest hit is dropped when it is popped:
+//! that branch is mostly predicted, so the traversal continues before the hit distance is known.
 //!
 //! Source: Fuetterer, Lojewski, Pfreundt, Ebert, *Efficient Ray Tracing Kernels for Modern CPU
 //! Architectures*, JCGT 4(4), 2015.
@@ -17,25 +16,25 @@ use crate::math::{Ray, Vec3};
 use glam::{Vec3A, Vec3Swizzles, Vec4};
 use std::ops::Range;
 
-/// A ray prepared for boxes: conservative, so that rounding never loses a box that the exact ray
-/// meets.
+/// A ray prepared for box tests. The tests are conservative: rounding never loses a box that the
+/// exact ray hits.
 ///
-/// The near and far side of each slab are chosen by the sign of the direction. Each side is moved
+/// The sign of the direction selects the near and far plane of each slab. Each plane is moved
 /// outwards by several roundings of the largest distance that occurs, which also covers the
 /// rounding of the triangle test.
 #[derive(Clone, Copy)]
 pub(super) struct TraversalRay {
     planes: Planes,
-    /// A bit for each axis along which the direction is negative.
+    /// One bit for each axis along which the direction is negative.
     pub negative: u32,
     t_min: f32,
-    /// Distances of boxes are in these units; 1 where the ray is fast.
+    /// Unit of box distances along the ray; 1 if the ray is fast.
     scale: f32,
-    /// Whether coordinates are so small that no test of a triangle overflows.
+    /// True if coordinates are so small that no triangle test overflows.
     pub moderate: bool,
 }
 
-/// By axis, what distances of planes are computed from.
+/// Coefficients of the distances to planes, by axis.
 #[derive(Clone, Copy)]
 struct Planes {
     inverse: [f32; 3],
@@ -43,32 +42,34 @@ struct Planes {
     far_origin: [f32; 3],
 }
 
-/// How far the sides of boxes are moved outwards, where numbers are no greater than 1.
+/// Distance by which box planes are moved outwards, relative to the largest coordinate.
 ///
-/// Of that, rounding takes less than 2.5 epsilon on either side: half of one each for the padded
-/// origin, the inverse, their product, and the distance, and less for what follows from these. So
-/// computed distances of a box that a ray meets lie before and behind the true ones by more than 5:
-/// a box begins before it ends, though it is flat, and before anything in it.
+/// Rounding takes less than 2.5 epsilon of it on either side: half an epsilon each for the padded
+/// origin, the inverse, their product, and the distance, and less for what follows. So the computed
+/// interval of a box that the ray hits extends beyond the true one by more than 5 epsilon on either
+/// side: it begins before it ends, even if the box is flat, and before anything in the box.
 pub(super) const PADDING: f32 = 8.0 * f32::EPSILON;
 
-/// In this range squares neither overflow nor vanish.
+/// Range in which squares neither overflow nor vanish.
 pub(super) const FAST_RANGE: Range<f32> = 1e-15..1e15;
 
-/// If a component of a direction is at least so long, others may be as small as they like: boxes
-/// see none that is less than what is [`FAST_RANGE`], so products of inverses and coordinates do
-/// not overflow. Within a tree that moves a ray by at most 10^-9 of its reach, a thousandth of the
-/// padding.
+/// Least length of the longest component of a fast ray's direction. The other components may then
+/// be arbitrarily small: box tests clamp them to the start of [`FAST_RANGE`], so products of
+/// inverses and coordinates do not overflow. Within a tree, clamping moves a ray by at most 10^-9
+/// of the reach, a thousandth of the padding.
 pub(super) const MIN_MAIN_COMPONENT: f32 = 1e-6;
 
 impl TraversalRay {
-    /// Prepares a fast ray for a tree with no coordinates greater than `most`: one for which
-    /// nothing leaves the range of `f32` (zeros beside a [`MIN_MAIN_COMPONENT`] component do not),
-    /// and that begins no earlier than at its origin. So tests of boxes may be in a short form.
+    /// Prepares a fast ray for a tree whose coordinates are at most `most`; `None` if the ray is
+    /// not fast. The values of a fast ray stay in the range of `f32` (zeros beside a
+    /// [`MIN_MAIN_COMPONENT`] component are allowed), and its interval begins at its origin or
+    /// later, so box tests can use a short form.
     #[inline(always)]
     pub fn new(ray: &Ray, most: f32) -> Option<Self> {
         let (origin, dir) = (Vec3A::from(ray.origin), Vec3A::from(ray.dir));
-        // Coordinates themselves count too: a ray that was moved into object space is off by their
-        // rounding. As a sum, in each lane, it is also no number where any of them is none.
+        // Coordinates count too: a ray that was transformed into object space is off by their
+        // rounding.
+        // Each lane holds the sum of all, so that a NaN anywhere reaches every lane.
         let from = origin.abs();
         let reach = (from + from.yzx()) + (from.zxy() + most);
         let size = dir.abs();
@@ -85,12 +86,12 @@ impl TraversalRay {
             near_origin: ((origin + outward) * -inverse).to_array(),
             far_origin: ((origin - outward) * -inverse).to_array(),
         };
-        // Not the zero with a sign, for ends of intervals are compared as integers.
+        // Turns -0 into 0, since ends of intervals are compared as integers.
         let t_min = ray.t_min + 0.0;
         Some(TraversalRay { planes, negative: dir.is_negative_bitmask(), t_min, scale: 1.0, moderate: true })
     }
 
-    /// Prepares any ray; `None` where it cannot hit anything.
+    /// Prepares any ray; `None` if it cannot hit anything.
     #[cold]
     pub fn robust(ray: &Ray, most: f32) -> Option<Self> {
         if !is_sound(ray) {
@@ -98,13 +99,14 @@ impl TraversalRay {
         }
         let reach = (ray.origin.abs().max_element() + most).min(f32::MAX);
         let length = ray.dir.abs();
-        // A direction with a power of two taken out, so that distances within the bounds are no
-        // extreme numbers.
+        // Divide the direction by a power of two, so that distances within the bounds are not
+        // extreme.
         let scale = f32::from_bits(length.max_element().to_bits() & 0x7f80_0000).max(f32::MIN_POSITIVE);
         let dir = ray.dir / scale;
-        // What moves the ray by much less than the padding counts as zero, and what has no inverse.
+        // Treat a component as zero if it has no inverse or moves the ray by much less than the
+        // padding.
         let still = dir.abs().cmplt(Vec3::splat(1e-30));
-        // The reach may be so small that its share vanishes.
+        // The reach may be so small that the padding vanishes.
         let outward = Vec3::splat(PADDING * reach + f32::MIN_POSITIVE).copysign(dir);
         let planes = Planes {
             inverse: Vec3::select(still, Vec3::INFINITY.copysign(dir), 1.0 / dir).to_array(),
@@ -116,35 +118,35 @@ impl TraversalRay {
         Some(TraversalRay { planes, negative, t_min, scale, moderate: reach < FAST_RANGE.end })
     }
 
-    /// A distance along the ray, not too small, as boxes have it.
+    /// Converts a distance along the ray to the unit of box distances, rounded up.
     #[inline(always)]
     fn limit<const FAST: bool>(&self, t: f32) -> f32 {
         if FAST { t } else { (t * self.scale).next_up() }
     }
 }
 
-/// What is done with the items of a tree.
+/// Callbacks of a traversal for the items of a tree.
 pub(super) trait Visitor {
     type TraversalCounter: TraversalCounter;
 
-    /// Whether any hit will do, so that children come in the order that is for that.
+    /// True if any hit suffices; selects the child order for any-hit rays.
     const ANY: bool;
 
     fn counter(&mut self) -> &mut Self::TraversalCounter;
 
-    /// Has children that are met brought near, of which one is likely to be next.
+    /// Prefetches hit children, of which the given one is likely to be next.
     fn fetch<L: Lanes>(&self, _: L, _: &NodeHits<L>, _: u32) {}
 
-    /// Looks into a leaf, with a ray that is `FAST` or not; gives the new `t_max`, at most the old.
-    /// Minus infinity ends the walk.
+    /// Tests the items of a leaf. `FAST` says if the ray is fast. Returns the new `t_max`, which
+    /// must not exceed the old one; minus infinity ends the traversal.
     fn leaf<L: Lanes, const FAST: bool>(&mut self, lanes: L, leaf: u32, t_max: f32) -> f32;
 }
 
-/// Shows every leaf that the ray may meet before `t_max` to the visitor, roughly from near to far
-/// if not [`ANY`](Visitor::ANY) hit will do.
+/// Passes every leaf that the ray may hit before `t_max` to the visitor, roughly from near to far
+/// unless [`ANY`](Visitor::ANY) hit suffices.
 ///
-/// Gives `t_max` as it is in the end. Leaves whose boxes begin exactly at `t_max` are still shown.
-/// `FAST` says whether `boxes` are of [`TraversalRay::new`].
+/// Returns the final `t_max`. Leaves whose boxes begin exactly at `t_max` are still visited. `FAST`
+/// requires that `boxes` comes from [`TraversalRay::new`].
 #[inline(always)]
 pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     lanes: L,
@@ -169,7 +171,7 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
                     if met.mask == 0 {
                         break 'visit;
                     }
-                    // One child is next without a way through the stack.
+                    // The next child skips the stack.
                     let order = met.node.order(V::ANY, boxes.negative);
                     let likely = end_of(met.mask, order != 0);
                     let next = met.next::<FAST>(lanes, V::ANY, likely);
@@ -207,38 +209,39 @@ pub(super) fn traverse<L: Lanes, V: Visitor, const FAST: bool>(
     }
 }
 
-/// The children of a node that a ray meets.
+/// Children of a node that a ray hits.
 pub(super) struct NodeHits<'a, L: Lanes> {
     pub node: &'a WideNode,
     child_tags: &'a [u8; WIDTH],
-    /// A bit for each.
+    /// One bit for each hit child.
     pub mask: u32,
-    /// All bits in the lane of each, if the ray is fast; of no meaning if it is not.
+    /// Lane mask with all bits set for hit children, if the ray is fast; otherwise meaningless.
     which: L::Floats,
-    /// Where the ray enters them.
+    /// Entry distances of the children.
     enter: L::Floats,
 }
 
-/// Where a child is.
+/// Location of a child.
 enum Target {
-    /// At an address.
+    /// Offset of a node.
     Node(usize),
     Leaf(u32),
 }
 
 impl<L: Lanes> NodeHits<'_, L> {
-    /// The [place](PLACE) of the child that is next, with more of its [tag](WideNode::child_tags)
-    /// if it was found by that.
+    /// Slot of the next child in the bits of [`PLACE`]. If it was found by its
+    /// [tag](WideNode::child_tags), the result contains the whole tag.
     ///
-    /// It is the one that is entered first; but the `likely` one if `any` hit will do, which is
-    /// known sooner, and of rays that are not fast, whose distances cannot be compared as integers.
+    /// The next child is the one that the ray enters first. Any-hit rays take the `likely` one,
+    /// which is known sooner, and so do rays that are not fast, whose distances cannot be compared
+    /// as integers.
     #[inline(always)]
     pub fn next<const FAST: bool>(&self, lanes: L, any: bool, likely: u32) -> u32 {
         if FAST && !any { lanes.nearest(self.enter, self.which, self.child_tags) } else { likely }
     }
 
-    /// Where that child is. A node next to be visited is found by its code, for which a ray waits
-    /// at every node; leaves, that are as often guessed as waited for, by their places.
+    /// Location of the next child. A node is located by its tag, since the ray waits for its
+    /// address. A leaf, whose address is predicted as often as waited for, is located by its slot.
     #[inline(always)]
     fn target<const FAST: bool>(&self, any: bool, next: u32) -> Target {
         if FAST && !any {
@@ -253,32 +256,32 @@ impl<L: Lanes> NodeHits<'_, L> {
         }
     }
 
-    /// The child in a place, as [`WideNode::children`] have it.
+    /// Code of the child in a slot; see [`WideNode::children`].
     #[inline(always)]
     pub fn child(&self, place: u32) -> u32 {
         self.node.children[place as usize]
     }
 
-    /// Pushes the others in the [order](WideNode::order) of the node, the first last.
+    /// Pushes the other children in the [order](WideNode::order) of the node, so that the first is
+    /// popped first.
     #[inline(always)]
     pub fn push(&self, lanes: L, stack: &mut Stack, next: u32, order: u32) {
         let orders = &PUSHED[(order / FROM_LAST) as usize];
-        // Of those that are met, so that the stack does not wait for the nearest.
+        // Computed from the hit mask, so that the stack does not wait for the nearest child.
         let count = self.mask.count_ones() - u32::from(self.mask != 0);
         let others = self.mask & !(1 << (next & PLACE));
         lanes.push(stack, &self.node.children, self.enter, &orders[others as usize & 255], count);
     }
 }
 
-/// The first of some lanes, a bit for each, or the `last`; if there are none something beyond all
-/// lanes.
+/// First (or `last`) set bit of a lane mask; a value beyond all lanes if the mask is 0.
 #[inline(always)]
 pub(super) fn end_of(lanes: u32, last: bool) -> u32 {
     if last { lanes.leading_zeros() ^ 31 } else { lanes.trailing_zeros() }
 }
 
-/// For each set of lanes the lanes in the order in which they are pushed, where the first are
-/// visited first and where the last are.
+/// Lanes of each mask in push order: for visits from first to last, and for visits from last to
+/// first.
 static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
     let mut table = [[[0; WIDTH]; 256]; 2];
     let mut set = 0;
@@ -299,7 +302,7 @@ static PUSHED: [[[u8; WIDTH]; 256]; 2] = {
 };
 const _: () = assert!(size_of_val(&PUSHED[0]) == FROM_LAST as usize);
 
-/// A ray's numbers for boxes, in all lanes.
+/// Box test coefficients of a ray, in all lanes.
 pub(super) struct Slabs<'a, L: Lanes> {
     inverse: [L::Floats; 3],
     near_origin: [L::Floats; 3],
@@ -321,7 +324,7 @@ impl<'a, L: Lanes> Slabs<'a, L> {
     }
 }
 
-/// The node at an address, and those of its children that a ray meets before `limit`.
+/// Tests the children of the node at an offset against a ray that ends at `limit`.
 #[inline(always)]
 pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
     lanes: L,
@@ -348,21 +351,22 @@ pub(super) fn intersect_node<'a, L: Lanes, const FAST: bool>(
     let (x, y, z) = (ends!(0), ends!(1), ends!(2));
     let (node, child_tags) = (at.node, at.child_tags());
     if FAST {
-        // Nothing is NaN, and no start is negative, so of ends as integers the right one is found,
-        // or one that is negative where nothing is met. Boxes that are met end after they begin,
-        // for they are padded.
+        // Nothing is NaN, and no start is negative, so comparing the ends as integers finds the
+        // right end, or a negative one if the box is missed. Padding ensures that hit boxes end
+        // after they begin.
         let [enter, leave] = lanes.interval([x, y, z], [*t_min, limit]);
         let which = lanes.before(enter, leave);
         return NodeHits { node, child_tags, mask: lanes.signs(which), which, enter };
     }
-    // Zero times infinity is NaN, where a ray runs in a side of a box: such a side is left out,
-    // being the first argument.
+    // If the ray lies in a plane of a box, zero times infinity is NaN. As the first argument, NaN
+    // is ignored.
     let enter = lanes.max(z[0], lanes.max(y[0], lanes.max(x[0], *t_min)));
     let leave = lanes.min(z[1], lanes.min(y[1], lanes.min(x[1], limit)));
     NodeHits { node, child_tags, mask: lanes.le(enter, leave), which: enter, enter }
 }
 
-/// Whether a ray can hit anything: NaN and infinite ones, and those without direction, cannot.
+/// Returns true if the ray can hit anything: rays with NaN or infinity, without a direction, or
+/// with an empty interval cannot.
 #[inline]
 pub fn is_sound(ray: &Ray) -> bool {
     ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO && ray.t_min < ray.t_max

@@ -1,4 +1,4 @@
-//! The examples do what they say: each asserts it.
+//! Runs the examples, each of which asserts its result.
 
 macro_rules! examples {
     ($($name:ident: $file:literal)*) => {$(
@@ -13,7 +13,7 @@ macro_rules! examples {
     )*};
 }
 
-/// What a `main` may give.
+/// Return type of an example's `main`.
 trait Ended {
     fn ended(self);
 }

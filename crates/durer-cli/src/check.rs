@@ -22,7 +22,6 @@ pub use after::{after_course, after_render, looks};
 pub use args::CheckArgs;
 use change::Change;
 use checked::{Checked, look};
-pub use json::finding;
 
 pub fn run(args: &CheckArgs) -> Result<(), Failure> {
     if args.codes {

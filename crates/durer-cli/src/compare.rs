@@ -19,18 +19,13 @@ pub use args::CompareArgs;
 use compared::{Compared, Outcome, name};
 use durer::diag::{at_least, at_most};
 use durer::format::folder::FolderSource;
-use durer::image::compare::{Comparison, Options, Picture, Verdict, compare, memory_needed};
+use durer::image::compare::{Options, Picture, Verdict, compare, memory_needed};
 use durer::image::{Destination, Encoded, Transfer};
 use page::heat;
 use pairs::Pair;
 use stage::{Stage, stage};
 use std::path::{Path, PathBuf};
 use there::there;
-
-/// What was measured of a pair, as JSON.
-pub fn numbers(found: &Comparison) -> serde_json::Value {
-    text::numbers(found, &[])
-}
 
 /// Compares, prints, writes; all failures are those of the input's exit code, for 1 says that
 /// pictures differ.

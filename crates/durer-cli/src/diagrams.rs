@@ -1,9 +1,8 @@
 //! Pictures that show not the scene but how it is sampled.
 
+use durer::film::course::{CourseFilter, diagram};
 use durer::image::{Image, Layer};
 use durer::math::Vec2;
-use durer::render::course::CourseFilter;
-use durer::render::course::diagram;
 use durer::render::{Control, Job, RenderError, Rendered, Sampling};
 use durer::world::World;
 

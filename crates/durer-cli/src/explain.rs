@@ -1,13 +1,12 @@
 //! `durer explain`.
 
-mod outlines;
 mod page;
 
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::job::{accel, aspect, job};
+use crate::job::job;
 use crate::open::{Opened, load_options, open};
-use crate::options::RenderArgs;
+use crate::options::{RenderArgs, accel, aspect};
 use crate::terminal::say;
 use crate::values::{percent, pixel};
 use crate::{output, progress};
@@ -15,17 +14,15 @@ use clap::Args;
 use durer::film::aov::Aov;
 use durer::film::luminance_of;
 use durer::image::{Image, Transfer};
-use durer::integrator::trace::TermKind;
-use durer::integrator::{TraceNode, Tree};
 use durer::math::{Color, Ray, Vec3};
 use durer::render::explain::{Explanation, Names, Telling, TextLine, explain_of, explain_ray, number, ray_text};
 use durer::render::{Control, Job};
+use durer::report::{self, Subject};
 use durer::sampler::SampleId;
-use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// Say why a pixel has its colour: the tree of terms that sums to it
 #[derive(Args)]
@@ -69,15 +66,6 @@ pub struct ExplainArgs {
     /// As a page with the picture, the tree and the rays in space
     #[arg(long, value_name = "FILE")]
     pub html: Option<PathBuf>,
-}
-
-/// The version of the JSON.
-const VERSION: u32 = 2;
-
-/// What is explained.
-pub enum Subject {
-    Pixel(Explanation),
-    Ray(Box<Tree>),
 }
 
 /// The same words, with the numbers of a quoted ray apart: clap takes `-1 0 0` for an option.
@@ -124,12 +112,12 @@ pub fn run(args: &ExplainArgs) -> Result<(), Failure> {
     };
     let transfer = args.render.display.transfer();
     if let (Some(place), Some(picture)) = (&page_file, &picture) {
-        let page = page::page(json(&subject, &names), sample, &opened.world, picture, transfer)?;
+        let page = page::page(report::explanation(&subject, &names), sample, &opened.world, picture, transfer)?;
         output::save(&[(place, page.into_bytes())], args.render.quiet)?;
         return Ok(());
     }
     if args.json {
-        say(&serde_json::to_string_pretty(&json(&subject, &names))?);
+        say(&serde_json::to_string_pretty(&report::explanation(&subject, &names))?);
         return Ok(());
     }
     let deepest = args.depth.map_or(usize::MAX, |depth| depth as usize);
@@ -174,7 +162,7 @@ fn subject(
                 return Err(bad("--ray needs finite numbers, and a direction that is not 0 0 0"));
             }
             let world = &opened.world;
-            let light = deep(|| explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0)))?;
+            let light = explain_ray(world, job, &ray, SampleId::new(job.seed, (0, 0), 0));
             return light.map(|light| Subject::Ray(light.into())).ok_or_else(|| bad("nothing is known of this ray"));
         }
         (None, Some(pixel), _) => pixel,
@@ -192,7 +180,7 @@ fn subject(
     let world = &opened.world;
     // A part of a picture divides its samples otherwise than the whole.
     let samples = counted(counts.filter(|_| job.crop.is_none()), pixel);
-    let explanation = deep(|| explain_of(world, job, pixel, samples))?.map_err(failed)?;
+    let explanation = explain_of(world, job, pixel, samples).map_err(failed)?;
     if let Some(sample) = args.sample.filter(|&sample| sample as usize >= explanation.samples.len()) {
         let last = explanation.samples.len() - 1;
         return Err(bad(format!("there is no sample {sample}: the pixel's are numbered from 0 to {last}")));
@@ -216,7 +204,7 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
     let mut best: Option<(f64, Explanation)> = None;
     for (_, (x, y)) in odd {
         let samples = counted(counts, (x, y));
-        let explanation = deep(|| explain_of(&opened.world, job, (x, y), samples))?.map_err(failed)?;
+        let explanation = explain_of(&opened.world, job, (x, y), samples).map_err(failed)?;
         // A lamp's own border is bright, and no firefly.
         let standing_out = if explanation.outlier().is_some() { 1.0 } else { 1e-6 };
         let adds = explanation.brightest().map_or(0.0, |(_, adds)| standing_out * adds);
@@ -225,20 +213,6 @@ fn worst(opened: &Opened, job: &Job, picture: &Image, counts: Option<&Image>) ->
         }
     }
     best.map(|(_, explanation)| explanation).ok_or_else(|| bad("the picture has no pixel"))
-}
-
-/// Runs work whose recursion is as deep as the bounces.
-pub fn deep<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, Failure> {
-    let work = Mutex::new(Some(work));
-    let take = || work.lock().unwrap_or_else(PoisonError::into_inner).take().map(|work| work());
-    let done = std::thread::scope(|scope| {
-        match std::thread::Builder::new().stack_size(64 << 20).spawn_scoped(scope, take) {
-            Ok(thread) => thread.join().ok().flatten(),
-            // Where no thread can be had, this one has to be deep enough.
-            Err(_) => take(),
-        }
-    });
-    done.ok_or_else(|| Failure::Other(anyhow::anyhow!("the explanation failed; this is an error in durer")))
 }
 
 fn at(picture: &Image, x: u32, y: u32) -> Color {
@@ -299,46 +273,4 @@ pub fn shown(line: &TextLine, colored: bool, transfer: Transfer) -> String {
         }
         (true, _) => format!("{indent}\x1b[1m{text}\x1b[0m"),
     }
-}
-
-/// The explanation for programs, with what its numbers of things stand for.
-pub fn json(subject: &Subject, names: &Names) -> serde_json::Value {
-    let (mut objects, mut lights, mut materials) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-    let mut note = |node: &TraceNode| match &node.what {
-        TermKind::Ray { hit: Some(hit), .. } => {
-            objects.insert(hit.object);
-            materials.insert(hit.material);
-        }
-        TermKind::Light { light, shadow, .. } => {
-            lights.insert(*light);
-            objects.extend(shadow.as_ref().and_then(|shadow| shadow.blocker).map(|blocker| blocker.0));
-        }
-        _ => {}
-    };
-    match subject {
-        Subject::Ray(light) => visit(&light.root, &mut note),
-        Subject::Pixel(pixel) => {
-            pixel.samples.iter().filter_map(|s| s.light.as_ref()).for_each(|light| visit(&light.root, &mut note));
-        }
-    }
-    let objects: serde_json::Map<_, _> = objects.into_iter().map(|i| (i.to_string(), names.object(i).into())).collect();
-    let materials: serde_json::Map<_, _> =
-        materials.into_iter().map(|i| (i.to_string(), names.material(i).into())).collect();
-    let lights: serde_json::Map<_, _> = lights.into_iter().map(|i| (i.to_string(), names.light(i).into())).collect();
-    let mut json = serde_json::json!({
-        "version": VERSION,
-        "objects": objects,
-        "materials": materials,
-        "lights": lights,
-    });
-    match subject {
-        Subject::Ray(light) => json["ray"] = serde_json::json!(light),
-        Subject::Pixel(pixel) => json["pixel"] = serde_json::json!(pixel),
-    }
-    json
-}
-
-fn visit(node: &TraceNode, note: &mut impl FnMut(&TraceNode)) {
-    note(node);
-    node.terms.iter().for_each(|term| visit(term, note));
 }

@@ -1,10 +1,10 @@
 //! `durer farm`: a job for an engine that is there already, over `--shard` and `durer merge`.
 
-use crate::embed::Asked;
 use crate::failure::{Failure, bad};
 use crate::frames::{self, Frames, FramesArgs, Moves};
+use crate::render::RenderCommand;
 use crate::terminal::say;
-use clap::Args;
+use clap::{Args, FromArgMatches};
 use std::path::PathBuf;
 
 const SLURM: &str = include_str!("farm/slurm.sh");
@@ -44,7 +44,7 @@ pub struct FarmArgs {
 
 /// Prints the template with all that is known filled in.
 pub fn run(args: &FarmArgs) -> Result<(), Failure> {
-    Asked::new(&args.options).map_err(bad)?;
+    check_options(&args.options)?;
     let text =
         |path: &std::path::Path| path.to_str().map(String::from).ok_or_else(|| bad(format!("{path:?} is not UTF-8")));
     let scene = text(&args.scene)?;
@@ -95,6 +95,24 @@ pub fn run(args: &FarmArgs) -> Result<(), Failure> {
         .replace("@WORDS_JSON@", &serde_json::json!(args.options).to_string());
     say(filled.trim_end());
     Ok(())
+}
+
+/// Checks the options of the render, as they follow `durer render SCENE`.
+fn check_options(options: &[String]) -> Result<(), Failure> {
+    // A shard needs an output, which the template names.
+    let words = ["render", "scene", "--output", "picture.png"].into_iter().chain(options.iter().map(String::as_str));
+    let matches = RenderCommand::augment_args(clap::Command::new("render")).try_get_matches_from(words);
+    match matches.and_then(|matches| RenderCommand::from_arg_matches(&matches)) {
+        Ok(command) if command.frames.is_asked() => {
+            Err(bad("--frames and --turntable are options of the farm: they stand before those of the render"))
+        }
+        Ok(_) => Ok(()),
+        Err(error) => {
+            let text = error.render().to_string();
+            let text = text.trim().trim_start_matches("error: ");
+            Err(bad(text.split("\n\nUsage:").next().unwrap_or(text).trim_end()))
+        }
+    }
 }
 
 /// A template without the lines that belong to the other kind of job: those that begin with

@@ -7,9 +7,9 @@ mod written;
 
 use crate::failure::{Failure, bad, failed};
 use crate::guard::Guard;
-use crate::job::{JobArgs, accel, aspect, job, warn};
+use crate::job::{job, warn};
 use crate::open::{load_options, open};
-use crate::options::SceneArgs;
+use crate::options::{JobArgs, SceneArgs, accel, aspect};
 use crate::output::lengthened;
 use crate::progress;
 use crate::terminal::say;

@@ -1,5 +1,4 @@
-//! The `durer` command: a thin shell over the library; and, for other programs, its options
-//! ([`embed`]).
+//! The `durer` command: a thin shell over the library.
 
 mod args;
 mod check;
@@ -9,7 +8,6 @@ mod course;
 mod denoise;
 mod diagrams;
 mod display;
-pub mod embed;
 mod explain;
 mod failure;
 mod farm;
@@ -23,9 +21,7 @@ mod lesson;
 mod live;
 mod manual;
 mod measure;
-mod memory;
 mod merge;
-mod method;
 mod open;
 mod options;
 mod output;

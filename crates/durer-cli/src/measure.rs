@@ -2,9 +2,8 @@
 
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
-use crate::method::MethodArgs;
 use crate::open::{load_options, open};
-use crate::options::SceneArgs;
+use crate::options::{MethodArgs, SceneArgs};
 use crate::report;
 use crate::terminal::say;
 use clap::Args;

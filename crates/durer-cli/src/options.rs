@@ -1,40 +1,38 @@
 //! Options that several commands have.
 
+mod job;
+mod method;
+
 use crate::denoise::Denoiser;
 use crate::display::DisplayArgs;
-use crate::job::JobArgs;
-use crate::memory::Memory;
 use crate::staging::StagingArgs;
-use crate::values::{compat, crop};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use durer::dialect::{Compat, Dialect};
 use durer::film::aov::AOVS;
+use durer::options::memory::Memory;
+use durer::options::{compat, crop, doc};
 use durer::render::Shard;
 use std::path::PathBuf;
 use std::time::Duration;
 
+pub use job::{JobArgs, accel, aspect};
+pub use method::MethodArgs;
+
 /// How a scene is read
 #[derive(Args)]
 pub struct SceneArgs {
-    /// The scene's dialect, with all quirks of that year's program; guessed where not given
-    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(Dialect::ALL.map(Dialect::name)), help = doc("dialect"))]
     pub dialect: Option<String>,
-    /// Turn an old program's quirk on, or off with `no-` before it (see `durer dialects`)
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat)]
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = compat, help = doc("compat"))]
     pub compat: Vec<(Compat, bool)>,
-    /// Allow only the words of the dialect: no comments, nothing of our own
-    #[arg(long)]
+    #[arg(long, help = doc("strict"))]
     pub strict: bool,
-    /// Let the scene name files outside its own folder
-    #[arg(long)]
+    #[arg(long, help = doc("allow-outside"))]
     pub allow_outside: bool,
-    /// Look for missing meshes and pictures in this folder too
-    #[arg(long, value_name = "FOLDER")]
+    #[arg(long, value_name = "FOLDER", help = doc("assets"))]
     pub assets: Vec<PathBuf>,
-    /// Refuse what needs more memory: bytes as in 512M or 8G, or a share of the machine's or
-    /// control group's
-    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse)]
+    #[arg(long, default_value = "80%", value_name = "SIZE", value_parser = Memory::parse, help = doc("memory"))]
     pub memory: Memory,
     #[command(flatten)]
     pub staging: StagingArgs,
@@ -83,8 +81,7 @@ pub struct RenderArgs {
 /// Which pictures are made
 #[derive(Args)]
 pub struct ViewArgs {
-    /// Make only a part of the picture
-    #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop)]
+    #[arg(long, value_name = "LEFT,TOP,WIDTHxHEIGHT", value_parser = crop, help = doc("crop"))]
     pub crop: Option<(u32, u32, u32, u32)>,
     /// What to show; several are joined by commas. With paths and photons, `error` is how far the
     /// luminance may be from the truth, noise and the bias of photons together, with 90 %
@@ -99,14 +96,11 @@ pub struct ViewArgs {
 /// When and with how much it is made
 #[derive(Args)]
 pub struct WorkArgs {
-    /// Threads that build and render [default: as many as the machine has]
-    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_parser = clap::value_parser!(u16).range(1..=1024), help = doc("threads"))]
     pub threads: Option<u16>,
-    /// Pixels across and down the tiles that threads take, in steps of 8 [default: suitable ones]
-    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096))]
+    #[arg(long, value_name = "PIXELS", value_parser = clap::value_parser!(u32).range(8..=4096), help = doc("tile"))]
     pub tile: Option<u32>,
-    /// Stop after this time, as in 30s, 10m, 1h30m, once every pixel has a sample
-    #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration)]
+    #[arg(long = "time-limit", alias = "time", value_name = "TIME", value_parser = humantime::parse_duration, help = doc("time-limit"))]
     pub time: Option<Duration>,
     /// Go on with the work that was saved; from the start where none was
     #[arg(long)]
@@ -126,11 +120,9 @@ pub struct WorkArgs {
     /// Write what is there into this picture too, after each pass over all pixels
     #[arg(long, value_name = "PICTURE", conflicts_with = "shard")]
     pub preview: Option<PathBuf>,
-    /// Make only one of several parts, for `durer merge`
-    #[arg(long, value_name = "INDEX/COUNT", requires = "output")]
+    #[arg(long, value_name = "INDEX/COUNT", requires = "output", help = doc("shard"))]
     pub shard: Option<Shard>,
-    /// Whether parts have different pixels or different samples
-    #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard")]
+    #[arg(long, value_name = "WHAT", default_value = "tiles", value_parser = ["tiles", "samples"], requires = "shard", help = doc("shard-by"))]
     pub shard_by: String,
 }
 

@@ -1,6 +1,7 @@
 //! Options about models: files that hold things and no whole scene.
 
 use clap::{Args, ValueEnum};
+use durer::options::doc;
 use durer::scene::{Axis, Staging, Studio, View};
 use std::path::PathBuf;
 
@@ -9,37 +10,25 @@ use std::path::PathBuf;
 #[derive(Args)]
 #[command(next_help_heading = "Models")]
 pub struct StagingArgs {
-    /// What is up in a model [default: y; z for Radiance and STL]
-    #[arg(long, value_name = "AXIS", value_enum)]
+    #[arg(long, value_name = "AXIS", value_enum, help = doc("up"))]
     pub up: Option<Up>,
-    /// Whence a model is seen that has no camera, or instead of by its own [default: three-quarter]
-    #[arg(long, value_name = "FROM", value_enum)]
+    #[arg(long, value_name = "FROM", value_enum, help = doc("view"))]
     pub view: Option<From>,
-    /// Light for a model that has none, or instead of its own [default: soft]
-    #[arg(long, value_name = "LIGHT", value_enum)]
+    #[arg(long, value_name = "LIGHT", value_enum, help = doc("studio"))]
     pub studio: Option<Light>,
-    /// A picture of all directions (.hdr, .exr) that lights the model, instead of its own sky or of
-    /// a studio
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help = doc("environment"))]
     pub environment: Option<PathBuf>,
-    /// A file of Radiance's views (.vf), whose last is the camera
-    #[arg(long, value_name = "FILE", conflicts_with = "view")]
+    #[arg(long, value_name = "FILE", conflicts_with = "view", help = doc("view-file"))]
     pub view_file: Option<PathBuf>,
-    /// Name or number of the model's camera that is wanted [default: the first]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = doc("camera"))]
     pub camera: Option<String>,
-    /// Name or number of the look that is wanted of a glTF file with several [default: its own
-    /// materials]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", help = doc("variant"))]
     pub variant: Option<String>,
-    /// Move the model's own camera to where it sees all of it, in the direction in which it looks
-    #[arg(long, conflicts_with = "view")]
+    #[arg(long, conflicts_with = "view", help = doc("fit"))]
     pub fit: bool,
-    /// Degrees by which whence the model is seen lies further around it
-    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true)]
+    #[arg(long, value_name = "DEGREES", value_parser = degrees, allow_negative_numbers = true, help = doc("turned"))]
     pub turned: Option<f32>,
-    /// Moment of the model's animation, in seconds [default: as it stands without]
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, help = doc("at"))]
     pub at: Option<f32>,
 }
 

@@ -2,9 +2,8 @@
 
 use crate::failure::Failure;
 use crate::guard::Guard;
-use crate::job::JobArgs;
 use crate::open::{load_options, open};
-use crate::options::{SceneArgs, ViewArgs};
+use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::terminal::say;
 use crate::{job, progress};
 use anyhow::Context;

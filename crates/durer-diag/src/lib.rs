@@ -1,17 +1,17 @@
-//! Diagnostics: what is wrong with an input, and where.
+//! Diagnostics: problems of an input, and their positions.
 //!
-//! The library makes them, the shells print them.
+//! The library creates them; the command line and Python print them.
 
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-/// At most this many errors of one input are collected.
+/// Maximum number of errors that are collected for one input.
 pub const ERROR_LIMIT: usize = 20;
 
 /// A range of bytes in a file.
 ///
-/// Spans compare equal to each other: where a thing was written is not part of what it is.
+/// All spans compare equal, so that the position of an item in a file does not affect its equality.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Span {
     /// Number of the file in its [`Files`].
@@ -29,13 +29,13 @@ impl PartialEq for Span {
 }
 
 impl Span {
-    /// Whether it is a place in a file: what options say, and what is not written, has none.
+    /// Returns true if the span lies in a file. Items from options, and defaults, have no position.
     pub fn is_place(self) -> bool {
         self.end > 0
     }
 
-    /// From the start of this span to the end of another in the same file; this span, if that is in
-    /// another.
+    /// Joins this span with a later one: from the start of this span to the end of `end`. Returns
+    /// this span if `end` is in another file.
     pub fn to(self, end: Span) -> Span {
         if end.file != self.file {
             return self;
@@ -44,47 +44,46 @@ impl Span {
     }
 }
 
-/// How bad a finding is.
+/// Severity of a diagnostic.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// Worth knowing.
     Note,
-    /// The picture may not be what was meant.
+    /// The picture may differ from what was meant.
     Warning,
-    /// No picture can be made.
+    /// No picture can be rendered.
     Error,
 }
 
-/// A change of a file's text: what stands at a place is replaced.
+/// A replacement in a file's text.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Edit {
-    /// What is replaced; of no length where something is put in.
+    /// Range to replace; empty for an insertion.
     pub span: Span,
-    /// By what.
+    /// Replacement text.
     pub text: String,
 }
 
-/// One finding about an input.
+/// A diagnostic about an input.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnostic {
-    /// How bad it is.
+    /// Severity.
     pub severity: Severity,
-    /// The kind of finding, in a word that does not change from version to version; empty where it
-    /// has none.
+    /// Identifier of the kind of problem, stable across versions; empty if it has none.
     pub code: &'static str,
-    /// What is wrong, in one sentence without a full stop.
+    /// Description of the problem, in one sentence without a full stop.
     pub message: String,
-    /// Where; `None` where it concerns no place in a file.
+    /// Position; `None` if the problem has no position in a file.
     pub span: Option<Span>,
-    /// Said at the underlined place.
+    /// Text at the underlined position.
     pub label: String,
-    /// What may have been meant, or what to do.
+    /// Suggestion: the likely meaning, or a remedy.
     pub help: Option<String>,
-    /// Another place that has to do with it, with what it is.
+    /// Second position that is related, with a description.
     pub related: Option<(Span, String)>,
-    /// What comes of it in the picture.
+    /// Effect on the picture.
     pub effect: Option<String>,
-    /// The change that mends it, where that is mechanical.
+    /// Edits that fix the problem, if that is mechanical.
     pub fix: Vec<Edit>,
 }
 
@@ -103,38 +102,38 @@ impl Diagnostic {
         }
     }
 
-    /// A finding because of which no picture can be made.
+    /// Creates an error: no picture can be rendered.
     pub fn error(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Error, message)
     }
 
-    /// A finding because of which the picture may not be what was meant.
+    /// Creates a warning: the picture may differ from what was meant.
     pub fn warning(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Warning, message)
     }
 
-    /// Something worth knowing.
+    /// Creates a note: worth knowing.
     pub fn note(message: impl Into<String>) -> Self {
         Diagnostic::new(Severity::Note, message)
     }
 
-    /// Sets the kind.
+    /// Sets the kind of problem.
     pub fn code(self, code: &'static str) -> Self {
         Diagnostic { code, ..self }
     }
 
-    /// Sets what comes of it in the picture.
+    /// Sets the effect on the picture.
     pub fn effect(self, effect: impl Into<String>) -> Self {
         Diagnostic { effect: Some(effect.into()), ..self }
     }
 
-    /// Adds a change that is a part of what mends it.
+    /// Adds an edit to the fix.
     pub fn fix(mut self, span: Span, text: impl Into<String>) -> Self {
         self.fix.push(Edit { span, text: text.into() });
         self
     }
 
-    /// The same, where the place is known.
+    /// Adds an edit to the fix if its position is known.
     pub fn fix_at(self, place: Option<Span>, text: impl Into<String>) -> Self {
         match place {
             Some(span) => self.fix(span, text),
@@ -142,32 +141,32 @@ impl Diagnostic {
         }
     }
 
-    /// Sets the place.
+    /// Sets the position.
     pub fn at(mut self, span: Span) -> Self {
         self.span = Some(span);
         self
     }
 
-    /// Sets what is said at the underlined place.
+    /// Sets the text at the underlined position.
     pub fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
-    /// Sets the advice.
+    /// Sets the suggestion.
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Names a second place.
+    /// Sets the related position.
     pub fn related(mut self, span: Span, what: impl Into<String>) -> Self {
         self.related = Some((span, what.into()));
         self
     }
 }
 
-/// Collects diagnostics, up to [`ERROR_LIMIT`] errors and as many warnings.
+/// A collection of diagnostics, of up to [`ERROR_LIMIT`] errors and as many warnings.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
@@ -176,7 +175,7 @@ pub struct Diagnostics {
 }
 
 impl Diagnostics {
-    /// Adds a finding. Beyond the limit of its severity it is counted only.
+    /// Adds a diagnostic. Beyond the limit of its severity, it is only counted.
     pub fn push(&mut self, diagnostic: Diagnostic) {
         let count = match diagnostic.severity {
             Severity::Error => &mut self.errors,
@@ -188,8 +187,9 @@ impl Diagnostics {
         }
     }
 
-    /// Adds a finding once for all places: where it is there in the same words, that one is said to
-    /// be so again, and takes the edits. Tells whether it was new.
+    /// Adds a diagnostic unless one with the same code and message exists. In that case, notes in
+    /// the existing one that the problem occurs again, and adds the edits to it. Returns true if
+    /// the diagnostic is new.
     pub fn push_once(&mut self, diagnostic: Diagnostic) -> bool {
         let is_same = |known: &&mut Diagnostic| known.code == diagnostic.code && known.message == diagnostic.message;
         let Some(known) = self.list.iter_mut().find(is_same) else {
@@ -201,10 +201,10 @@ impl Diagnostics {
         false
     }
 
-    /// Adds all findings of another collection.
+    /// Adds the diagnostics of another collection.
     pub fn extend(&mut self, other: Diagnostics) {
         let errors = other.list.iter().filter(|d| d.severity == Severity::Error).count();
-        // Those that the other counted without keeping them count here too.
+        // Diagnostics that the other collection only counted are counted here, too.
         let uncollected = (other.errors - errors, other.warnings - (other.list.len() - errors));
         for diagnostic in other.list {
             self.push(diagnostic);
@@ -213,22 +213,22 @@ impl Diagnostics {
         self.warnings += uncollected.1;
     }
 
-    /// Whether there is an error.
+    /// Returns true if there is an error.
     pub fn has_errors(&self) -> bool {
         self.errors > 0
     }
 
-    /// Whether as many errors were found as are collected.
+    /// Returns true if the number of errors has reached the limit.
     pub fn is_full(&self) -> bool {
         self.errors >= ERROR_LIMIT
     }
 
-    /// The findings, in the order in which they were found.
+    /// Diagnostics in the order in which they were added.
     pub fn iter(&self) -> impl Iterator<Item = &Diagnostic> {
         self.list.iter()
     }
 
-    /// Where the last of what is said of a file ends in it.
+    /// End of the last position in a file to which a diagnostic refers, in bytes.
     fn end_in(&self, file: u32) -> usize {
         let places = |d: &Diagnostic| {
             let others = d.related.iter().map(|other| other.0).chain(d.fix.iter().map(|edit| edit.span));
@@ -237,22 +237,22 @@ impl Diagnostics {
         self.list.iter().filter_map(places).max().unwrap_or(0) as usize
     }
 
-    /// How many errors were found, collected or not.
+    /// Number of errors, including those beyond the limit.
     pub fn error_count(&self) -> usize {
         self.errors
     }
 }
 
-/// The files that were read, by number, for turning spans into lines and columns.
+/// The files that were read, by number. Converts spans to lines and columns.
 #[derive(Clone, Debug, Default)]
 pub struct Files {
     files: Vec<(String, Arc<[u8]>)>,
-    /// Those of which only the beginning is known.
+    /// Numbers of the files of which only the beginning is kept.
     cut: BTreeSet<u32>,
 }
 
 impl Files {
-    /// Files up to this size are kept as they are, for who looks at them again.
+    /// Size in bytes up to which files are kept whole, for later use.
     const SMALL: usize = 64 << 20;
 
     /// Adds a file and returns its number.
@@ -261,22 +261,22 @@ impl Files {
         (self.files.len() - 1) as u32
     }
 
-    /// Lets go of a large file that was read: of what lies behind a place up to which spans may
-    /// yet be of it, and behind all of which something is said.
+    /// Drops the end of a large file that was read, to save memory. Keeps the first `end` bytes, to
+    /// which later spans may refer, and everything to which diagnostics in `said` refer.
     pub fn cut(&mut self, file: u32, end: usize, said: &Diagnostics) {
         let Some((_, bytes)) = self.files.get_mut(file as usize).filter(|(_, bytes)| bytes.len() > Self::SMALL) else {
             return;
         };
         let end = end.max(said.end_in(file));
         if end < bytes.len() {
-            // The line in which that ends is shown with it, but there may be none in what is no
-            // text.
+            // Keep the rest of the last line, which is printed with a diagnostic. Binary files may
+            // have no lines.
             *bytes = bytes[..bytes.len().min(end + 256)].into();
             self.cut.insert(file);
         }
     }
 
-    /// The number of a file of this name and these bytes, which is added if it is not there.
+    /// Returns the number of the file with this name and content. Adds the file if it is new.
     pub fn add_once(&mut self, name: &str, bytes: &Arc<[u8]>) -> u32 {
         match self.files.iter().position(|(known, content)| known == name && content == bytes) {
             Some(number) => number as u32,
@@ -284,39 +284,39 @@ impl Files {
         }
     }
 
-    /// The name under which a file was read.
+    /// Name under which a file was read.
     pub fn name(&self, file: u32) -> Option<&str> {
         self.files.get(file as usize).map(|(name, _)| name.as_str())
     }
 
-    /// The bytes of a file, unless only its beginning is known.
+    /// Content of a file, unless only its beginning is kept.
     pub fn whole(&self, file: u32) -> Option<&[u8]> {
         self.bytes(file).filter(|_| !self.cut.contains(&file))
     }
 
-    /// The bytes of a file, or of its beginning.
+    /// Content of a file, or of its beginning.
     pub fn bytes(&self, file: u32) -> Option<&[u8]> {
         self.files.get(file as usize).map(|(_, bytes)| &**bytes)
     }
 
-    /// Line and column of the start of a span, both counted from 1; the column in characters, as
-    /// editors count.
+    /// Line and column of the start of a span, both counted from 1. Columns count characters, as
+    /// editors do.
     pub fn position(&self, span: Span) -> Option<(usize, usize)> {
         let before = self.bytes(span.file)?.get(..span.start as usize)?;
         let line = before.iter().filter(|&&b| b == b'\n').count() + 1;
-        // A byte order mark is no column of the first line.
+        // A byte order mark does not take a column.
         let shown = if line == 1 { before.strip_prefix(b"\xef\xbb\xbf").unwrap_or(before) } else { before };
-        // Bytes that only go on with a character of UTF-8 begin none.
+        // Continuation bytes of UTF-8 do not begin a character.
         let begins = |b: &&u8| **b & 0xc0 != 0x80;
         let column = shown.iter().rev().take_while(|&&b| b != b'\n').filter(begins).count() + 1;
         Some((line, column))
     }
 }
 
-/// The candidate most like `word`, if one is near enough to be meant.
+/// Finds the candidate most similar to `word`, if one is similar enough.
 pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    // The distance takes time and memory in proportion to the word's length: nobody means a word by
-    // a file's contents.
+    // The distance takes time and memory in proportion to the length of the word, which may be the
+    // contents of a file.
     if word.len() > 64 {
         return None;
     }
@@ -326,7 +326,7 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         letters.sort_unstable();
         letters
     };
-    // A word of the same letters is nearest: `RotateY` means `YRotate`.
+    // A candidate with the same letters is nearest: `RotateY` suggests `YRotate`.
     let distance = |candidate: &str| match letters(candidate) == letters(&lower) {
         true => 0,
         false => strsim::damerau_levenshtein(&lower, candidate),
@@ -339,12 +339,13 @@ pub fn did_you_mean<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str
         .map(|(_, candidate)| candidate)
 }
 
-/// So many bytes for people, rounded up.
+/// Formats a number of bytes for humans, rounded up.
 pub fn at_least(bytes: u64) -> String {
     rounded(bytes, u64::div_ceil)
 }
 
-/// So many bytes for people, rounded down: less than what is told by [`at_least`] of more.
+/// Formats a number of bytes for humans, rounded down. The result is never more than [`at_least`]
+/// of a larger number.
 pub fn at_most(bytes: u64) -> String {
     rounded(bytes, |bytes, unit| bytes / unit)
 }

@@ -1,9 +1,13 @@
 //! What tests of readers share: texts to scenes, and what is told of them.
 
+use crate::folder::FolderSource;
+use crate::scene::{Input, find_scene_format, read_model};
 use durer::{LoadOptions, load_text};
-use durer_diag::{Diagnostics, Files, Severity};
-use durer_scene::scene::Scene;
+use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
+use durer_scene::scene::{Scene, Staging};
+use std::cell::RefCell;
 use std::path::Path;
+use std::sync::Arc;
 use tempfile::TempDir;
 
 /// Reads a file as if it were in a folder; findings as `file:line:column severity message`, in their order.
@@ -13,7 +17,25 @@ pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Opt
     let options = LoadOptions::default();
     let loaded = load_text(&path, text.as_ref().into(), &options, &mut files, &mut diagnostics);
     assert_eq!(loaded.is_none(), diagnostics.has_errors(), "{diagnostics:?}");
-    let told = diagnostics.iter().map(|found| {
+    (loaded.map(|loaded| loaded.scene), lines(&diagnostics, &files))
+}
+
+/// Reads a model by this crate's own build for tests, whose limits of size are lower than those of the
+/// build that [`read_in`] reaches through the face.
+pub(super) fn read_with_low_limits(name: &str, text: &str) -> (Option<Scene>, Vec<String>) {
+    let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
+    let bytes: Arc<[u8]> = text.as_bytes().into();
+    let file = files.add(name, bytes.clone());
+    let (files, source, staging) = (RefCell::new(files), FolderSource::new("."), Staging::default());
+    let memory = u64::MAX;
+    let input = Input { bytes: &bytes, file, files: &files, name, source: &source, staging: &staging, memory };
+    let scene = read_model(find_scene_format(&bytes, name).unwrap(), &input, &mut diagnostics);
+    (scene, lines(&diagnostics, &files.borrow()))
+}
+
+/// Findings as `file:line:column severity message (help)`.
+fn lines(diagnostics: &Diagnostics, files: &Files) -> Vec<String> {
+    let line = |found: &Diagnostic| {
         let severity = match found.severity {
             Severity::Error => "error",
             Severity::Warning => "warning",
@@ -26,9 +48,8 @@ pub(super) fn read_in(folder: &Path, name: &str, text: impl AsRef<[u8]>) -> (Opt
         });
         let help = found.help.as_ref().map_or(String::new(), |help| format!(" ({help})"));
         format!("{}{severity} {}{help}", place.unwrap_or_default(), found.message)
-    });
-    let told = told.collect();
-    (loaded.map(|loaded| loaded.scene), told)
+    };
+    diagnostics.iter().map(line).collect()
 }
 
 /// A folder with some files.

@@ -2,10 +2,10 @@
 
 use durer_bvh::math::Vec3;
 
-/// Linear Rec.709 red, green and blue. Unbounded above.
+/// A linear Rec. 709 colour: red, green, and blue. Unbounded above.
 pub type Color = Vec3;
 
-/// Weights of red, green and blue in the luminance of a [`Color`] (Rec.709).
+/// Weights of red, green, and blue in the luminance of a [`Color`] (Rec. 709).
 pub const LUMINANCE: Vec3 = Vec3::new(LUMINANCE_F64[0] as f32, LUMINANCE_F64[1] as f32, LUMINANCE_F64[2] as f32);
 
 /// [`LUMINANCE`] in double precision. Source: ITU-R BT.709.

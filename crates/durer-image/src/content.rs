@@ -1,13 +1,13 @@
-//! What is written to files and streams.
+//! Content to write to files and streams.
 
 use std::io::{self, Write};
 
 /// Content of a file: bytes, or a value that is serialised while it is written.
 pub trait Content {
-    /// Writes all of it to `out`.
+    /// Writes the whole content to `out`.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     fn write_to(&self, out: &mut dyn Write) -> io::Result<()>;
 }
 

@@ -1,38 +1,38 @@
-//! Noise taken out of a picture, by what is known of each pixel's surface.
+//! A denoiser that is guided by the surface at each pixel.
 //!
-//! Light over the surface's own colour is smooth where the surface is one: it is averaged over
-//! pixels of like normals, places and colours, the more the less sure its own value is. Pictures so
-//! made are guesses, and no measurements.
+//! Irradiance, the light divided by the albedo, is smooth on a smooth surface. The filter averages
+//! it over pixels with similar normals, positions, and albedos, more strongly where the variance of
+//! a pixel is higher. Denoised pictures are estimates, not measurements.
 //!
 //! Source: Dammertz and others, *Edge-Avoiding À-Trous Wavelet Transform for fast Global
-//! Illumination Filtering*, HPG 2010; weights by variance: Schied and others, *Spatiotemporal
-//! Variance-Guided Filtering*, HPG 2017, of which this is the spatial half.
+//! Illumination Filtering*, HPG 2010. The weights by variance are the spatial half of Schied and
+//! others, *Spatiotemporal Variance-Guided Filtering*, HPG 2017.
 
 use super::Image;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use rayon::prelude::*;
 
-/// What is known of the surface at each pixel, row by row.
+/// Properties of the surface at each pixel, row by row.
 #[derive(Clone, Copy, Debug)]
 pub struct Guides<'a> {
-    /// Its colour.
+    /// Albedo.
     pub albedo: &'a [Color],
-    /// Its unit normal; zero where nothing is.
+    /// Unit normal; zero where the ray hit nothing.
     pub normal: &'a [Vec3],
-    /// Its place.
+    /// Position.
     pub position: &'a [Vec3],
-    /// The estimated variance of the pixel's luminance.
+    /// Estimated variance of the pixel's luminance.
     pub variance: &'a [f32],
 }
 
-/// Rounds of averaging; each looks twice as far as the one before.
+/// Number of filter passes. The step width doubles in each.
 const ROUNDS: u32 = 5;
 
 /// One row of the kernel: a cubic B-spline.
 const KERNEL: [f32; 5] = [1.0 / 16.0, 0.25, 0.375, 0.25, 1.0 / 16.0];
 
-/// A pixel on the way: light over albedo, and the variance of its luminance.
+/// Intermediate pixel: light divided by albedo, and the variance of its luminance.
 #[derive(Clone, Copy)]
 struct Pixel {
     light: Color,
@@ -43,9 +43,9 @@ fn luminance(color: Color) -> f32 {
     color.dot(LUMINANCE)
 }
 
-/// The picture without noise. It has the same bits on any number of threads.
+/// Denoises a picture. The result is the same, bit for bit, for any number of threads.
 ///
-/// `None` unless there is as much of each guide as there are pixels.
+/// Returns `None` if the size of a guide differs from that of the picture.
 pub fn denoise(picture: &Image, guides: &Guides) -> Option<Image> {
     let count = picture.pixels.len();
     let fits = |length: usize| length == count;
@@ -56,7 +56,7 @@ pub fn denoise(picture: &Image, guides: &Guides) -> Option<Image> {
     {
         return None;
     }
-    // What has no colour of its own, as mirrors and lamps, is taken as it is.
+    // Surfaces without albedo, such as mirrors and lights, are filtered without division.
     let albedo: Vec<Color> =
         guides.albedo.iter().map(|&a| if a.min_element() > 0.01 { a } else { Color::ONE }).collect();
     let mut pixels: Vec<Pixel> = (0..count)
@@ -77,7 +77,7 @@ fn averaged(pixels: &[Pixel], guides: &Guides, width: u32, i: usize, step: i64) 
     let (width, height) = (i64::from(width), pixels.len() as i64 / i64::from(width));
     let (x, y) = (i as i64 % width, i as i64 / width);
     let at = |x: i64, y: i64| ((0..width).contains(&x) && (0..height).contains(&y)).then_some((y * width + x) as usize);
-    // Variances are noisy themselves: a mean over neighbours decides.
+    // Variances are noisy too, so average them over the neighbours.
     let near = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
     let (sum, weights) = near
         .filter_map(|(dx, dy)| {
@@ -97,7 +97,7 @@ fn averaged(pixels: &[Pixel], guides: &Guides, width: u32, i: usize, step: i64) 
             let mut weight = row * column;
             if hit {
                 weight *= fp::pow(normal.dot(guides.normal[j]).max(0.0), 64.0);
-                // How far beside the own plane, for how far away it is.
+                // Distance from the tangent plane, relative to the distance of the points.
                 let way = guides.position[j] - position;
                 let beside = way.dot(normal).abs() / way.length().max(1e-20);
                 weight *= fp::exp(-8.0 * beside * beside);
@@ -111,7 +111,7 @@ fn averaged(pixels: &[Pixel], guides: &Guides, width: u32, i: usize, step: i64) 
             all += weight;
         }
     }
-    // The pixel itself always counts.
+    // The pixel itself always has a positive weight.
     Pixel { light: light / all, variance: variance / (all * all) }
 }
 
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use durer_bvh::internal::random::Random;
 
-    /// Two walls that meet in the middle, one of them checkered, with light that grows to the
+    /// Two walls that meet in the middle, one of them checkered, with light that increases to the
     /// right, and noise of a known variance.
     fn noisy(deviation: f32) -> (Image, Image, [Vec<Vec3>; 3], Vec<f32>) {
         let (width, height) = (48_u32, 32_u32);
@@ -159,7 +159,7 @@ mod tests {
             error(&clean, &truth),
             error(&noisy, &truth)
         );
-        // Without noise hardly anything changes.
+        // Without noise, hardly anything changes.
         let none = vec![0.0; variance.len()];
         let same = denoise(&truth, &Guides { variance: &none, ..guides }).unwrap();
         assert!(error(&same, &truth) < 1e-3, "{}", error(&same, &truth));

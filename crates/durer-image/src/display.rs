@@ -1,18 +1,18 @@
-//! How light becomes what eight bits can hold: exposure, and a curve for what is too bright.
+//! Conversion of light to 8-bit values: exposure and tone mapping.
 
 use super::Transfer;
 use crate::{Color, LUMINANCE};
 use durer_bvh::math::{Vec3, fp};
 use glam::Mat3;
 
-/// What makes eight bits of a colour. Formats of floating point have no use for it.
+/// Conversion of colours to 8-bit values. Floating-point formats ignore it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Display {
-    /// What multiplies colours first.
+    /// Factor on colours, applied first.
     pub exposure: f32,
-    /// What becomes of colours that are too bright.
+    /// Tone mapping operator.
     pub tone: Tone,
-    /// What makes eight bits of the rest.
+    /// Transfer function, applied last.
     pub transfer: Transfer,
 }
 
@@ -29,33 +29,33 @@ impl From<Transfer> for Display {
 }
 
 impl Display {
-    /// Eight bits for each channel.
+    /// Converts a colour to 8-bit values.
     pub fn encode_pixel(&self, color: Color) -> [u8; 3] {
         self.transfer.encode_pixel(self.tone.apply(self.exposure * color))
     }
 }
 
-/// A curve for colours.
+/// A tone mapping operator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Tone {
-    /// What is more than 1 is cut off.
+    /// No tone mapping: values above 1 are clipped.
     #[default]
     None,
-    /// By brightness: L / (1 + L). Source: Reinhard and others, *Photographic Tone Reproduction for
+    /// By luminance: L / (1 + L). Source: Reinhard and others, *Photographic Tone Reproduction for
     /// Digital Images*, 2002.
     Reinhard,
-    /// A fit of ACES' curve, for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping Curve*,
-    /// 2016.
+    /// A fit of the ACES curve for each channel. Source: Narkowicz, *ACES Filmic Tone Mapping
+    /// Curve*, 2016.
     Aces,
-    /// AgX as in Blender. Source: Sobotka; its polynomial is Wrensch's, *Minimal AgX
-    /// Implementation*, 2023.
+    /// AgX as in Blender. Source: Sobotka; polynomial by Wrensch, *Minimal AgX Implementation*,
+    /// 2023.
     Agx,
-    /// Colours up to 0.8 as they are. Source: Khronos, *PBR Neutral Tone Mapper*, 2024.
+    /// Preserves colours up to 0.8. Source: Khronos, *PBR Neutral Tone Mapper*, 2024.
     KhronosNeutral,
 }
 
 impl Tone {
-    /// All of them, with their names.
+    /// Operators with their names.
     pub const ALL: [(&'static str, Tone); 5] = [
         ("none", Tone::None),
         ("reinhard", Tone::Reinhard),
@@ -64,12 +64,12 @@ impl Tone {
         ("khronos-neutral", Tone::KhronosNeutral),
     ];
 
-    /// The one of a name.
+    /// Finds an operator by name.
     pub fn from_name(name: &str) -> Option<Tone> {
         Tone::ALL.iter().find(|row| row.0 == name).map(|row| row.1)
     }
 
-    /// The colour that is shown for a linear colour, linear too.
+    /// Maps a linear colour to a linear display colour.
     pub fn apply(self, color: Color) -> Color {
         match self {
             Tone::None => color,
@@ -144,7 +144,7 @@ mod tests {
             assert!(before > 0.9, "{name}: {before}");
             assert_eq!(Tone::from_name(name), Some(tone));
         }
-        // Khronos' promise: a base colour of up to 0.8 is shown as it is, less the 0.04 that every
+        // Khronos guarantees that base colours up to 0.8 are preserved, minus the 0.04 that every
         // dielectric reflects.
         assert!((Tone::KhronosNeutral.apply(Vec3::splat(0.5)) - 0.46).length() < 1e-6);
         assert_eq!(Tone::None.apply(Vec3::splat(7.0)), Vec3::splat(7.0));

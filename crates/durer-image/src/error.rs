@@ -1,96 +1,96 @@
-//! What can be wrong with a picture.
+//! Errors of reading and writing pictures.
 
 use durer_diag::{at_least, at_most};
 
-/// Why a picture cannot be read or written.
+/// Error of reading or writing a picture.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
-    /// No format has this file name's extension.
+    /// The extension of a file name is unknown.
     #[error("`{path}` does not end like a picture file; known are {known}{}", suggestion(.meant))]
     UnknownExtension {
         /// The file name.
         path: String,
-        /// The extension that may have been meant, without its dot.
+        /// Suggested extension, without the dot.
         meant: Option<&'static str>,
-        /// The usual extension of each format.
+        /// List of the usual extensions of all formats.
         known: String,
     },
-    /// Neither the content nor the name tells the format.
+    /// Neither the content nor the name determines the format.
     #[error("`{name}` is not a picture of a known format")]
     Unrecognised {
-        /// The name it was read under.
+        /// Name under which the picture was read.
         name: String,
     },
-    /// The bytes break the format's rules, or end too early.
+    /// The content violates the rules of the format, or ends too early.
     #[error("not a valid {format} picture: {reason}")]
     Malformed {
         /// Name of the format.
         format: &'static str,
-        /// What is wrong.
+        /// Description of the problem.
         reason: String,
     },
-    /// The format is right, but this kind of it cannot be read or written.
+    /// The format is known, but this variant of it cannot be read or written.
     #[error("{format}: {reason}")]
     Unsupported {
         /// Name of the format.
         format: &'static str,
-        /// What is not supported.
+        /// Description of the unsupported feature.
         reason: String,
     },
-    /// The declared size is beyond what is read for a file of that many bytes.
+    /// The declared size exceeds the limit for a file of this length.
     #[error("a picture of {width} x {height} pixels is too large for a file of {bytes} bytes")]
     TooLarge {
-        /// Declared pixels in a row.
+        /// Declared width in pixels.
         width: u64,
-        /// Declared rows.
+        /// Declared height in pixels.
         height: u64,
-        /// Length of the file.
+        /// Length of the file in bytes.
         bytes: usize,
     },
-    /// It would take more memory than is allowed.
+    /// Decoding would take more memory than allowed.
     #[error(
         "its {width} x {height} pixels need about {} of memory, and what is left for it is {}",
         at_least(*.needed), at_most(*.allowed)
     )]
     Memory {
-        /// Pixels in a row.
+        /// Width in pixels.
         width: u64,
-        /// Rows.
+        /// Height in pixels.
         height: u64,
-        /// Bytes that reading it takes.
+        /// Memory that decoding takes, in bytes.
         needed: u64,
-        /// Bytes that are allowed.
+        /// Memory that is allowed, in bytes.
         allowed: u64,
     },
-    /// The system has not so much memory.
+    /// The system cannot provide this much memory, in bytes.
     #[error("it needs {} of memory at once, which cannot be had", at_least(*.0))]
     NoRoom(u64),
-    /// Eight-bit values were asked for, and the picture has others.
+    /// 8-bit values were requested, but the picture has a different depth.
     #[error("the picture has not eight bits a channel")]
     NotEightBit,
-    /// A side is 0, there are too many pixels, or their number does not fit the sides.
+    /// A side is 0, there are too many pixels, or their number does not match the sides.
     #[error("{width} x {height} pixels are no possible picture: it has from 1 to {} of them", super::MAX_PIXELS)]
     Size {
-        /// Pixels in a row.
+        /// Width in pixels.
         width: u32,
-        /// Rows.
+        /// Height in pixels.
         height: u32,
     },
-    /// There is nothing to write.
+    /// The list of layers is empty.
     #[error("there is no layer to write")]
     NoLayer,
-    /// Several layers for a format that holds one: they need a file each.
+    /// Several layers were passed to a format that holds one; write each to its own file.
     #[error("{format} holds one layer, not {count}")]
     SeveralLayers {
         /// Name of the format.
         format: &'static str,
-        /// How many were given.
+        /// Number of layers.
         count: usize,
     },
-    /// Layers of one file must have one size.
+    /// The layers of a file have different sizes.
     #[error("the layer `{name}` has another size than the first")]
     LayerSizes {
-        /// The first layer that differs.
+        /// Name of the first layer that differs.
         name: String,
     },
 }
@@ -100,17 +100,17 @@ fn suggestion(meant: &Option<&'static str>) -> String {
 }
 
 impl ImageError {
-    /// The bytes break the format's rules.
+    /// Creates an error for content that violates the rules of the format.
     pub(super) fn malformed(format: &'static str, reason: impl ToString) -> ImageError {
         ImageError::Malformed { format, reason: reason.to_string() }
     }
 
-    /// There is no memory for so many things of a size.
+    /// Creates an error for a failed allocation of `count` items of `size` bytes.
     pub(super) fn no_room(count: usize, size: usize) -> ImageError {
         ImageError::NoRoom(count as u64 * size as u64)
     }
 
-    /// This kind of the format cannot be read or written.
+    /// Creates an error for an unsupported variant of the format.
     pub(super) fn unsupported(format: &'static str, reason: impl ToString) -> ImageError {
         ImageError::Unsupported { format, reason: reason.to_string() }
     }

@@ -1,6 +1,6 @@
-//! The file formats of pictures, as one table.
+//! Table of picture file formats.
 //!
-//! To add a format: one file beside the others and one row in [`FORMATS`].
+//! To add a format, add a file to this folder and a row to [`FORMATS`].
 
 #[cfg(feature = "codecs")]
 mod bmp;
@@ -35,7 +35,7 @@ use durer_diag as diag;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Every format that is known, in the order in which content is tried.
+/// Formats that can be written, in the order in which content is matched.
 pub static FORMATS: &[Format] = &[
     #[cfg(feature = "codecs")]
     png::FORMAT,
@@ -52,7 +52,7 @@ pub static FORMATS: &[Format] = &[
     hdr::FORMAT,
 ];
 
-/// Formats that are read and not written.
+/// Formats that can be read, but not written.
 static READ_ONLY: &[Format] = &[
     #[cfg(feature = "jpeg")]
     jpeg::FORMAT,
@@ -62,76 +62,76 @@ static READ_ONLY: &[Format] = &[
     ktx2::FORMAT,
 ];
 
-/// What a file holds for each channel of a pixel.
+/// Depth of a channel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Depth {
-    /// 0 to 255, after the [`Transfer`].
+    /// Values from 0 to 255, after the [`Transfer`] function.
     EightBit,
-    /// Floating point: light beyond white is kept.
+    /// Floating point: keeps light beyond white.
     Float,
 }
 
-/// How pictures are written.
+/// Options for writing pictures.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct WriteOptions<'a> {
-    /// What makes eight bits of a colour. Formats of floating point have no use for it.
+    /// Conversion of colours to 8-bit values. Floating-point formats ignore it.
     pub display: Display,
-    /// Names and texts to be told beside the pictures, in formats that have a place for them.
+    /// Names and texts to store as metadata, in formats that support them.
     pub attributes: &'a [(&'static str, String)],
 }
 
-/// What a file's head tells of its picture.
+/// Header of a file.
 pub(super) struct Head {
-    /// Pixels in a row, and rows: as declared, whether possible or not.
+    /// Width and height as declared, possibly invalid.
     pub width: u64,
     pub height: u64,
-    /// Whether a channel has eight bits.
+    /// True if a channel has eight bits.
     pub eight: bool,
-    /// Memory that decoding takes, the decoded picture with it: for each pixel, and beside that.
+    /// Memory that decoding takes, including the decoded picture: bytes per pixel, and a constant.
     pub bytes_per_pixel: u64,
     pub spare: u64,
 }
 
-/// What a file holds.
+/// Decoded content of a file.
 pub enum Raster {
-    /// Eight bits a channel.
+    /// 8 bits per channel.
     Eight(Image8),
-    /// Sixteen bits a channel, from 0 to 1: a curve says what they mean. The opacity of each pixel,
-    /// if the file has it.
+    /// 16 bits per channel, scaled to the range from 0 to 1, before a transfer function is applied.
+    /// Opacity of each pixel, if the file contains it.
     Sixteen(Image, Vec<f32>),
-    /// Numbers as they are, with opacity.
+    /// Floating-point values as stored, with opacity.
     Float(Image, Vec<f32>),
 }
 
 /// Appends layers that were checked to fit the format.
 type Encode = fn(&[Layer], &WriteOptions, &mut Vec<u8>) -> Result<(), ImageError>;
 
-/// One format.
+/// A picture file format.
 #[derive(Debug)]
 pub struct Format {
-    /// Its name for people.
+    /// Display name.
     pub name: &'static str,
     /// Extensions of its files, lower case, without the dot; the usual one first.
     pub extensions: &'static [&'static str],
-    /// What a channel is.
+    /// Depth of a channel.
     pub depth: Depth,
-    /// Whether several layers fit into one file.
+    /// True if a file may contain several layers.
     pub layers: bool,
-    /// The greatest width or height that it can hold.
+    /// Maximum width or height.
     pub most_side: u32,
-    /// Whether bytes begin as files of this format do.
+    /// Returns true if the bytes begin with the signature of the format.
     begins: fn(&[u8]) -> bool,
-    /// Reads the head alone.
+    /// Reads the header only.
     head: fn(&[u8]) -> Result<Head, ImageError>,
-    /// Reads a picture whose size was found possible.
+    /// Decodes a picture whose size was checked.
     decode: fn(&[u8]) -> Result<Raster, ImageError>,
     encode: Encode,
-    /// How it is written row by row, if it can be.
+    /// Row-by-row writer, if supported.
     pub rows: Option<&'static RowFormat>,
 }
 
 impl Format {
-    /// Whether a picture of this size fits, which is better known before it is made.
+    /// Checks that a picture of this size fits the format. Useful before a long render.
     ///
     /// # Errors
     /// [`ImageError::Size`] and [`ImageError::Unsupported`].
@@ -140,7 +140,7 @@ impl Format {
         self.check_sides(width, height)
     }
 
-    /// The same for a picture that is written row by row, and so may be larger than any in memory.
+    /// Checks the size of a picture that is written row by row, and so may be too large for memory.
     ///
     /// # Errors
     /// [`ImageError::Unsupported`].
@@ -154,9 +154,9 @@ impl Format {
     /// Appends a file with these layers to `out`.
     ///
     /// # Errors
-    /// [`ImageError::NoLayer`], [`ImageError::SeveralLayers`] where only one fits,
-    /// [`ImageError::LayerSizes`], [`ImageError::Size`], and [`ImageError::Unsupported`] for a
-    /// size or name that the format cannot hold.
+    /// [`ImageError::NoLayer`]; [`ImageError::SeveralLayers`] if the format holds only one;
+    /// [`ImageError::LayerSizes`]; [`ImageError::Size`]; and [`ImageError::Unsupported`] for a size
+    /// or name that the format cannot hold.
     pub fn write(&self, layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result<(), ImageError> {
         let first = layers.first().ok_or(ImageError::NoLayer)?;
         if layers.len() > 1 && !self.layers {
@@ -182,8 +182,7 @@ impl Format {
         self.caught(|| (self.decode)(bytes))
     }
 
-    /// Most decoders are other people's code. Should one of them panic, this is one more malformed
-    /// file.
+    /// Most decoders are third-party code. A panic in one counts as a malformed file.
     fn caught<T>(&self, work: impl FnOnce() -> Result<T, ImageError>) -> Result<T, ImageError> {
         caught(work).unwrap_or_else(|| Err(ImageError::malformed(self.name, "its decoder failed")))
     }
@@ -193,7 +192,7 @@ impl Format {
     }
 }
 
-/// The format that a file name's extension tells.
+/// Finds the format by a file name's extension.
 ///
 /// # Errors
 /// [`ImageError::UnknownExtension`].
@@ -206,7 +205,7 @@ pub fn format_for(path: impl AsRef<Path>) -> Result<&'static Format, ImageError>
     })
 }
 
-/// The format of a file's content, or failing that, of its name.
+/// Finds the format by content or, failing that, by name.
 pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, ImageError> {
     let all = || FORMATS.iter().chain(READ_ONLY);
     let by_content = all().find(|format| (format.begins)(bytes));
@@ -214,13 +213,13 @@ pub(super) fn recognise(bytes: &[u8], name: &str) -> Result<&'static Format, Ima
     by_content.or_else(by_name).ok_or_else(|| ImageError::Unrecognised { name: name.into() })
 }
 
-/// The usual extension of files of the format that bytes are in, if one is recognised; `name` tells
-/// where bytes do not.
+/// Usual extension of the format of a picture, found by content or, failing that, by name; `None`
+/// if the format is unknown.
 pub fn extension_of(bytes: &[u8], name: &str) -> Option<&'static str> {
     recognise(bytes, name).ok().map(|format| format.extensions[0])
 }
 
-/// The usual extension of each format, for a message.
+/// Usual extensions of all formats, for a message.
 fn known_extensions() -> String {
     let endings: Vec<String> = FORMATS.iter().map(|format| format!(".{}", format.extensions[0])).collect();
     endings.join(", ")
@@ -230,19 +229,18 @@ fn extension(path: &str) -> Option<String> {
     Some(Path::new(path).extension()?.to_str()?.to_lowercase())
 }
 
-/// What makes eight bits of a layer's numbers.
+/// Conversion of a layer to 8-bit values.
 fn display(layer: &Layer, options: &WriteOptions) -> Display {
     match (layer.kind, options.display.transfer) {
-        // A curve would falsify data; cutting off instead of rounding is what the course did to
-        // everything.
+        // A transfer function would falsify data. The `Course` transfer, which truncates, was
+        // applied to all pictures in the course.
         (LayerKind::Data, Transfer::Srgb) => Transfer::Linear.into(),
         (LayerKind::Data, transfer) => transfer.into(),
         _ => options.display,
     }
 }
 
-/// The bytes of an eight-bit picture: red, green and blue, the top row first. They are made by all
-/// threads.
+/// 8-bit values of a picture: red, green, and blue, top row first. Computed in parallel.
 #[cfg(feature = "codecs")]
 fn eight_bit(layer: &Layer, options: &WriteOptions) -> Vec<u8> {
     const STEP: usize = 1 << 14;

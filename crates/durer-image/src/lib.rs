@@ -1,8 +1,8 @@
-//! Pictures: reading, writing, and saving them without harm to what was there.
+//! Reading, writing, and safe saving of pictures.
 //!
-//! Everything in memory is linear floating point; what becomes of it in eight bits says
-//! [`Transfer`]. The table [`FORMATS`] knows the file formats, [`read()`] reads them from memory,
-//! [`save()`] puts bytes into a file.
+//! Pictures in memory are linear floating point; [`Transfer`] converts them to 8-bit values. The
+//! table [`FORMATS`] lists the file formats, [`read()`] decodes pictures in memory, and [`save()`]
+//! writes bytes to a file.
 
 mod color;
 pub mod compare;
@@ -39,59 +39,58 @@ pub use transfer::{Transfer, decode_linear, decode_srgb, linear_from_srgb};
 use durer_bvh::math::Vec3;
 use std::sync::Arc;
 
-/// The most pixels that a picture may have: 2^28, a square of 16384.
+/// Maximum number of pixels of a picture: 2^28, a square of 16384.
 pub const MAX_PIXELS: u64 = 1 << 28;
 
 /// A picture of linear floating-point pixels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Row by row from the top, each from left to right: `width * height` of them.
+    /// Pixels row by row from the top, each row from left to right: `width * height` of them.
     pub pixels: Vec<Vec3>,
 }
 
-/// A picture of eight bits a channel, as it stands in a file.
+/// A picture with 8 bits per channel, as stored in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Image8 {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Red, green and blue, row by row from the top, each from left to right.
+    /// Red, green, and blue, row by row from the top, each row from left to right.
     pub pixels: Vec<[u8; 3]>,
-    /// Opacity of each, in 255ths; empty where the file has none.
+    /// Opacity of each pixel, from 0 to 255; empty if the file has none.
     pub alpha: Vec<u8>,
 }
 
-/// What the numbers of a layer mean, and so whether a transfer curve may touch them.
+/// Meaning of a layer's values, which determines if a transfer function applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LayerKind {
-    /// Light: the transfer curve applies in eight-bit formats.
+    /// Light: the transfer function applies in 8-bit formats.
     Color,
-    /// Normals, depths, masks: written as they are.
+    /// Data such as normals, depths, and masks: written unchanged.
     Data,
 }
 
-/// A picture with a name, one of those that a render makes.
+/// A named picture, one of the outputs of a render.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layer {
     /// Name, used for the channels of formats that hold several layers.
     pub name: String,
-    /// The pixels, which several layers may share.
+    /// Pixels, which several layers may share.
     pub image: Arc<Image>,
-    /// What they mean.
+    /// Meaning of the values.
     pub kind: LayerKind,
-    /// The share of each pixel, from 0 to 1, that the camera sees at all; `None`: all of each.
-    /// Colours are those over black: a pixel that is half covered has half the light
-    /// (associated alpha).
+    /// Coverage of each pixel, from 0 to 1; `None` if all pixels are fully covered. Colours are
+    /// premultiplied (associated alpha): a half-covered pixel has half the light.
     pub coverage: Option<Vec<f32>>,
 }
 
 impl Image {
-    /// A picture of one colour.
+    /// Creates a picture of a single colour.
     ///
     /// # Errors
     /// [`ImageError::Size`] if a side is 0 or there are more than [`MAX_PIXELS`].
@@ -100,18 +99,18 @@ impl Image {
         Ok(Image { width, height, pixels: vec![color; count] })
     }
 
-    /// A picture of given pixels, the top row first.
+    /// Creates a picture from pixels, top row first.
     ///
     /// # Errors
-    /// [`ImageError::Size`] if a side is 0, there are too many pixels, or not `width * height` of
-    /// them.
+    /// [`ImageError::Size`] if a side is 0, there are too many pixels, or their number is not
+    /// `width * height`.
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<Vec3>) -> Result<Image, ImageError> {
         let image = Image { width, height, pixels };
         image.check()?;
         Ok(image)
     }
 
-    /// Whether the number of pixels fits the sides.
+    /// Checks that the number of pixels matches the sides.
     ///
     /// # Errors
     /// [`ImageError::Size`] if it does not.
@@ -122,13 +121,13 @@ impl Image {
         }
     }
 
-    /// The pixel in column `x` and row `y`, counted from the top left; `None` outside the picture.
+    /// Pixel in column `x` and row `y`, counted from the top left; `None` outside the picture.
     pub fn get(&self, x: u32, y: u32) -> Option<Vec3> {
         let index = y as usize * self.width as usize + x as usize;
         if x < self.width && y < self.height { self.pixels.get(index).copied() } else { None }
     }
 
-    /// Column and row of the first pixel with a number that is not finite.
+    /// Column and row of the first pixel with a value that is not finite.
     pub fn first_non_finite(&self) -> Option<(u32, u32)> {
         let index = self.pixels.iter().position(|pixel| !pixel.is_finite())?;
         let width = (self.width as usize).max(1);
@@ -137,17 +136,17 @@ impl Image {
 }
 
 impl Layer {
-    /// A layer of light.
+    /// Creates a layer of light.
     pub fn color(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Color, coverage: None }
     }
 
-    /// A layer of other numbers.
+    /// Creates a layer of data.
     pub fn data(name: impl Into<String>, image: Image) -> Layer {
         Layer { name: name.into(), image: Arc::new(image), kind: LayerKind::Data, coverage: None }
     }
 
-    /// The same layer with the share of each pixel that is seen; none where all is.
+    /// Sets the coverage of each pixel; drops it if all pixels are fully covered.
     pub fn with_coverage(self, coverage: Vec<f32>) -> Layer {
         // Opaque pictures are written without alpha.
         let opaque = coverage.iter().all(|&share| share == 1.0);

@@ -1,23 +1,24 @@
-//! How much memory a picture may take.
+//! Memory limits.
 //!
-//! A declared size is never trusted: it is read from the file's head, and compared with the file's
-//! length and with the memory that the caller allows, before anything is decoded.
+//! A declared size is not trusted: before decoding, the size in the header is compared with the
+//! length of the file and with the memory that the caller allows.
 
 use super::{ImageError, MAX_PIXELS};
 
-/// Pixels allowed whatever the length of the file: a square of 2048.
+/// Pixels allowed for any length of the file: a square of 2048.
 const FREE_PIXELS: u64 = 1 << 22;
 
-/// Pixels allowed for each byte of a file. Deflate packs at most 1032 bytes into one, so a picture
-/// of eight bits a channel has at most 1032 / 3 of them; twice that for one grey channel.
+/// Pixels allowed for each byte of a file. Deflate compresses by a factor of at most 1032, so a
+/// byte holds at most 1032 / 3 pixels of three 8-bit channels, or 1032 of one grey channel. The
+/// limit is about twice that.
 const PIXELS_PER_BYTE: u64 = 2048;
 
-/// The most pixels that are read from a file of so many bytes.
+/// Maximum number of pixels that are read from a file of `bytes` bytes.
 pub fn pixel_limit(bytes: usize) -> u64 {
     (bytes as u64).saturating_mul(PIXELS_PER_BYTE).saturating_add(FREE_PIXELS).min(MAX_PIXELS)
 }
 
-/// Number of pixels of a declared size, if a file of so many bytes may have it.
+/// Number of pixels of a declared size, if a file of `bytes` bytes may have it.
 pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<usize, ImageError> {
     match width.checked_mul(height) {
         Some(count) if count <= pixel_limit(bytes) && count > 0 => Ok(count as usize),
@@ -26,8 +27,7 @@ pub(super) fn declared_count(width: u64, height: u64, bytes: usize) -> Result<us
     }
 }
 
-/// So many equal things. Where the system has no memory for them, that is an error and not the end
-/// of the program.
+/// Allocates `count` copies of a value. Lack of memory is an error and does not end the program.
 pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, ImageError> {
     let mut all = Vec::new();
     all.try_reserve_exact(count).map_err(|_| ImageError::no_room(count, size_of::<T>()))?;
@@ -35,7 +35,7 @@ pub(super) fn room_for<T: Clone>(count: usize, thing: T) -> Result<Vec<T>, Image
     Ok(all)
 }
 
-/// Number of pixels of a picture, if it is a possible one.
+/// Number of pixels of a picture, if its size is valid.
 ///
 /// # Errors
 /// [`ImageError::Size`].

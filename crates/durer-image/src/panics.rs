@@ -1,16 +1,17 @@
-//! Panics of other people's decoders: caught here, where an error is returned instead.
+//! Conversion of panics in third-party decoders to errors.
 //!
-//! No panic hook is set: a program whose hook prints panics asks [`are_expected`] first.
+//! This crate sets no panic hook. A program whose hook prints panics should call [`are_expected`]
+//! first.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 thread_local! {
-    /// Whether this thread does work whose panics are caught.
+    /// True while this thread does work whose panics are caught.
     static EXPECTED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// The result of some work; `None` if it panicked.
+/// Runs `work` and returns its result; `None` if it panicked.
 pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
     let before = EXPECTED.replace(true);
     let result = catch_unwind(AssertUnwindSafe(work));
@@ -18,8 +19,8 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Option<T> {
     result.ok()
 }
 
-/// Whether a panic of this thread would be caught by [`caught`], so that a panic hook need not print
-/// it. False in a thread that is ending.
+/// Returns true if [`caught`] would catch a panic of this thread, so that a panic hook need not
+/// print it. False in a thread that is ending.
 pub fn are_expected() -> bool {
     EXPECTED.try_with(Cell::get).unwrap_or(false)
 }

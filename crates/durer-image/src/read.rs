@@ -1,12 +1,12 @@
-//! Pictures from memory.
+//! Decoding of pictures in memory.
 
 use super::formats::{Format, Head, Raster, recognise};
 use super::limits::declared_count;
 use super::{Depth, Image, Image8, ImageError, decode_linear, decode_srgb};
 use durer_bvh::math::Vec3;
 
-/// A picture in a file of which nothing was read but the head: what is too large is refused before
-/// it takes memory.
+/// A picture in a file of which only the header was read, so that too large pictures are rejected
+/// before they take memory.
 pub struct Encoded<'a> {
     format: &'static Format,
     bytes: &'a [u8],
@@ -15,8 +15,8 @@ pub struct Encoded<'a> {
 }
 
 impl<'a> Encoded<'a> {
-    /// Finds out the format by the content, or failing that by the extension of `name_hint`, and
-    /// reads the head.
+    /// Reads the header. The content determines the format or, failing that, the extension of
+    /// `name_hint`.
     ///
     /// # Errors
     /// [`ImageError::Unrecognised`], [`ImageError::Malformed`], [`ImageError::Unsupported`],
@@ -29,39 +29,39 @@ impl<'a> Encoded<'a> {
         Ok(Encoded { format, bytes, head, count })
     }
 
-    /// Pixels in a row, and rows.
+    /// Width and height in pixels.
     pub fn size(&self) -> (usize, usize) {
         (self.head.width as usize, self.head.height as usize)
     }
 
-    /// What a channel of its format is.
+    /// Depth of a channel in the format.
     pub fn depth(&self) -> Depth {
         self.format.depth
     }
 
-    /// Bytes of memory that reading it as it is takes; those of its file are not among them.
+    /// Memory in bytes that [`Encoded::read8`] takes, without the bytes of the file.
     pub fn needed8(&self) -> u64 {
         (self.count as u64).saturating_mul(self.head.bytes_per_pixel).saturating_add(self.head.spare)
     }
 
-    /// Bytes of memory that reading it as floating-point numbers takes.
+    /// Memory in bytes that [`Encoded::read`] takes.
     pub fn needed(&self) -> u64 {
         let floats = if self.head.eight { self.count * size_of::<Vec3>() } else { 0 };
         self.needed8().saturating_add(floats as u64)
     }
 
-    /// Bytes of memory that it takes from its file to where its values stay: they are copied there
-    /// once.
+    /// Memory in bytes that [`Encoded::read_raster`] takes, including one copy of the values to
+    /// their final place.
     pub fn needed_raster(&self) -> u64 {
         let texel = if self.head.eight { size_of::<[u8; 4]>() } else { size_of::<[f32; 4]>() };
         self.needed8().max((2 * self.count * texel) as u64)
     }
 
-    /// Its values as they stand in an eight-bit file.
+    /// Decodes the values of an 8-bit file.
     ///
     /// # Errors
-    /// [`ImageError::NotEightBit`], [`ImageError::Memory`] where it needs more bytes than allowed,
-    /// and those of [`Encoded::open`].
+    /// [`ImageError::NotEightBit`], [`ImageError::Memory`] if decoding needs more than `memory`
+    /// bytes, and errors of [`Encoded::open`].
     pub fn read8(&self, memory: u64) -> Result<Image8, ImageError> {
         if !self.head.eight {
             return Err(ImageError::NotEightBit);
@@ -72,28 +72,29 @@ impl<'a> Encoded<'a> {
         }
     }
 
-    /// Its values as they stand in the file.
+    /// Decodes the values as they are stored in the file.
     ///
     /// # Errors
-    /// [`ImageError::Memory`] where it needs more bytes than allowed, and those of
+    /// [`ImageError::Memory`] if decoding needs more than `memory` bytes, and errors of
     /// [`Encoded::open`].
     pub fn read_raster(&self, memory: u64) -> Result<Raster, ImageError> {
         self.decode(self.needed_raster(), memory)
     }
 
-    /// Its pixels, with a meaning for each of the values of eight bits. Numbers of floating-point
-    /// formats come as they are.
+    /// Decodes the pixels. `decode` converts 8-bit values; the values of floating-point formats are
+    /// unchanged.
     ///
     /// # Errors
-    /// Those of [`Encoded::read8`].
+    /// Errors of [`Encoded::read8`].
     pub fn read(&self, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         self.read_for(0, memory, decode)
     }
 
-    /// The same where what is made of the pixels takes so many bytes more for each of them.
+    /// Decodes the pixels as [`Encoded::read`] does, and reserves `more` further bytes per pixel in
+    /// the memory limit for later processing.
     ///
     /// # Errors
-    /// Those of [`Encoded::read`].
+    /// Errors of [`Encoded::read`].
     pub fn read_for(&self, more: usize, memory: u64, decode: fn(u8) -> f32) -> Result<Image, ImageError> {
         let later = (self.count as u64).saturating_mul((size_of::<Vec3>() + more) as u64);
         Ok(match self.decode(self.needed().max(later), memory)? {
@@ -117,31 +118,32 @@ impl<'a> Encoded<'a> {
     }
 }
 
-/// Reads a picture: by its content, or failing that by the extension of `name_hint`.
+/// Decodes a picture. The content determines the format or, failing that, the extension of
+/// `name_hint`.
 ///
-/// Eight-bit values become 255ths without a curve, as the course takes its textures; see
-/// [`read_srgb`]. Numbers of floating-point formats come as they are, NaN and infinities too. Alpha
-/// is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read; [`Encoded`] sets other
-/// limits.
+/// 8-bit values are divided by 255, without a transfer function, as the course uses its textures;
+/// see [`read_srgb`]. The values of floating-point formats are unchanged, including NaN and
+/// infinities. Alpha is dropped. At most [`pixel_limit`](super::pixel_limit) pixels are read;
+/// [`Encoded`] allows other limits.
 ///
 /// # Errors
-/// Those of [`Encoded::open`].
+/// Errors of [`Encoded::open`].
 pub fn read(bytes: &[u8], name_hint: &str) -> Result<Image, ImageError> {
     Encoded::open(bytes, name_hint)?.read(u64::MAX, decode_linear)
 }
 
-/// As [`read`], but eight-bit values are taken for sRGB and made linear.
+/// Decodes a picture as [`read`] does, but converts 8-bit values from sRGB to linear.
 ///
 /// # Errors
-/// Those of [`read`].
+/// Errors of [`read`].
 pub fn read_srgb(bytes: &[u8], name_hint: &str) -> Result<Image, ImageError> {
     Encoded::open(bytes, name_hint)?.read(u64::MAX, decode_srgb)
 }
 
-/// Reads the values of an eight-bit picture, for exact comparison.
+/// Decodes the values of an 8-bit picture, for exact comparisons.
 ///
 /// # Errors
-/// Those of [`read`], and [`ImageError::NotEightBit`].
+/// Errors of [`read`], and [`ImageError::NotEightBit`].
 pub fn read8(bytes: &[u8], name_hint: &str) -> Result<Image8, ImageError> {
     Encoded::open(bytes, name_hint)?.read8(u64::MAX)
 }

@@ -1,9 +1,9 @@
-//! Files that are whole or not there.
+//! Atomic file writes.
 //!
-//! Bytes go into a temporary file beside the target, are synced, and the file takes the target's
-//! name. Whatever fails, the old file is intact and nothing is left lying about. The new file has
-//! the old one's permissions, or those of an ordinary new file; links to it (hard ones) are not
-//! followed, symbolic ones are.
+//! Bytes go into a temporary file beside the target and are synced; then the file is renamed to the
+//! target. If anything fails, the old file is intact and no temporary file remains. The new file
+//! has the permissions of the old one, or those of an ordinary new file. Symbolic links are
+//! followed; hard links are not.
 
 use super::content::Content;
 use super::temporary::{Temporary, remove_stale};
@@ -11,68 +11,67 @@ use std::fs::{self, File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a file could not be saved. The old file, if there is one, is as it was.
+/// Error of saving a file. The old file, if any, is unchanged.
 #[derive(Debug, thiserror::Error)]
 pub enum SaveError {
     /// A folder has this name.
     #[error("cannot write `{}`: it is a folder", path.display())]
     IsFolder {
-        /// Where the file should go.
+        /// Target path.
         path: PathBuf,
     },
     /// A disk or a socket has this name.
     #[error("cannot write `{}`: it is neither a file nor a pipe", path.display())]
     NotAFile {
-        /// Where the file should go.
+        /// Target path.
         path: PathBuf,
     },
-    /// It is a symbolic link that leads nowhere: what it names is missing, or is itself.
+    /// The path is a dangling symbolic link: its target is missing, or is the link itself.
     #[error("cannot write `{}`: it is a symbolic link that leads nowhere", path.display())]
     LostLink {
-        /// Where the file should go.
+        /// Target path.
         path: PathBuf,
     },
-    /// It is a pipe without a reader, for whom the system would wait.
+    /// The path is a pipe without a reader, for which the system would wait.
     #[error("cannot write `{}`: it is a pipe that nobody reads; start the reader first", path.display())]
     NobodyReads {
-        /// Where the bytes should go.
+        /// Target path.
         path: PathBuf,
     },
-    /// The folder for the file is not there, or is a file itself.
+    /// The folder of the file does not exist, or is a file.
     #[error("cannot write `{}`: there is no folder `{}`", path.display(), folder.display())]
     NoFolder {
-        /// Where the file should go.
+        /// Target path.
         path: PathBuf,
-        /// The folder that is missing.
+        /// The missing folder.
         folder: PathBuf,
     },
-    /// The system's reason: no permission, no space left, a closed pipe.
+    /// The system reported an error: no permission, no space left, or a closed pipe.
     #[error("cannot write `{}`: {error}", path.display())]
     Io {
-        /// Where the file should go.
+        /// Target path.
         path: PathBuf,
-        /// The system's reason.
+        /// Error of the system.
         #[source]
         error: io::Error,
     },
 }
 
-/// A place for a file that was found to be one that may be written, which is better known before a
-/// long work than after it.
+/// A target path that was checked to be writable. Useful before a long render.
 #[derive(Debug)]
 pub struct Destination {
     path: PathBuf,
-    /// The open device or pipe, which is written to as it is: no one can take its reader away
-    /// meanwhile.
+    /// The open device or pipe, which is written directly. Kept open, so that its reader is not
+    /// lost in the meantime.
     stream: Option<File>,
 }
 
 impl Destination {
-    /// Says what is known to prevent saving. Removes what killed programs left in the folder. A
-    /// pipe is opened.
+    /// Checks the path for known obstacles to saving, and removes temporary files that killed
+    /// programs left in its folder. Opens a pipe.
     ///
     /// # Errors
-    /// [`SaveError`]. Without one, saving may still fail.
+    /// [`SaveError`]. Saving may still fail later.
     pub fn new(path: impl Into<PathBuf>) -> Result<Self, SaveError> {
         let path = path.into();
         let stream = match resolve(&path)? {
@@ -85,37 +84,36 @@ impl Destination {
         Ok(Destination { path, stream })
     }
 
-    /// Its name.
+    /// Path of the target.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether it is a device or a pipe, in which nothing can be replaced.
+    /// Returns true if the target is a device or a pipe, in which bytes cannot be replaced.
     pub fn is_stream(&self) -> bool {
         self.stream.is_some()
     }
 }
 
-/// Puts bytes into a file, wholly or not at all. Devices and pipes are written to directly.
+/// Saves bytes to a file atomically. Devices and pipes are written directly.
 ///
 /// # Errors
-/// [`SaveError`]; the old file is intact then, and no other is left.
+/// [`SaveError`]. The old file is then intact, and no temporary file remains.
 pub fn save(path: impl AsRef<Path>, bytes: &[u8]) -> Result<(), SaveError> {
     save_all(&[(&Destination::new(path.as_ref())?, bytes)])
 }
 
-/// Puts contents into several files: all are written beside their targets before the first is
-/// renamed.
+/// Saves several files: writes all of them beside their targets before the first rename.
 ///
 /// # Errors
-/// [`SaveError`]. Unless a rename itself fails, which takes a change of the folders meanwhile, no
-/// file is changed.
+/// [`SaveError`]. All files are then unchanged, unless a rename itself fails because the folders
+/// have changed meanwhile.
 pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError> {
     let mut staged = Vec::with_capacity(files.len());
     for (place, content) in files.iter().filter(|file| !file.0.is_stream()) {
         staged.push(stage(place.path(), content)?);
     }
-    // What cannot be renamed cannot be undone either: it comes when the files are safe on the disk.
+    // Writes to streams cannot be undone, so they follow when the files are safe on the disk.
     for (place, content) in files {
         if let Some(mut stream) = place.stream.as_ref() {
             content.write_to(&mut stream).map_err(|error| SaveError::Io { path: place.path.clone(), error })?;
@@ -123,16 +121,15 @@ pub fn save_all<C: Content>(files: &[(&Destination, C)]) -> Result<(), SaveError
     }
     for (temporary, target) in staged {
         temporary.persist(&target).map_err(|error| SaveError::Io { path: target.clone(), error })?;
-        // The new name should outlive a power cut too; where folders cannot be synced, that is left
-        // to the system.
+        // Sync the folder, so that the new name survives a power failure. Where folders cannot be
+        // synced, the system decides.
         #[cfg(unix)]
         let _ = File::open(folder_of(&target)).and_then(|folder| folder.sync_all());
     }
     Ok(())
 }
 
-/// The file to be replaced and, if it is there, what is known of it; `None` if it is to be written
-/// to directly.
+/// File to replace and its metadata, if it exists; `None` if the path is to be written directly.
 fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
     let old = match fs::metadata(path) {
@@ -141,7 +138,7 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
             return Err(SaveError::NotAFile { path: path.into() });
         }
         Ok(old) if !old.is_file() || is_stream(path) => return Ok(None),
-        // A rename would replace even a file that must not be written.
+        // A rename would replace even a file without write permission.
         Ok(old) => OpenOptions::new().write(true).open(path).map(|_| Some(old)).map_err(io)?,
         Err(_) if fs::symlink_metadata(path).is_ok_and(|link| link.is_symlink()) => {
             return Err(SaveError::LostLink { path: path.into() });
@@ -149,7 +146,7 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => None,
         Err(error) => return Err(io(error)),
     };
-    // A symbolic link stays one: the file that it names is replaced.
+    // Keep a symbolic link and replace its target.
     let target = if old.is_some() { path.canonicalize().map_err(io)? } else { path.to_path_buf() };
     let folder = folder_of(&target);
     if !folder.is_dir() {
@@ -158,7 +155,7 @@ fn resolve(path: &Path) -> Result<Option<(PathBuf, Option<fs::Metadata>)>, SaveE
     Ok(Some((target, old)))
 }
 
-/// Whether bytes may be written to it one after the other.
+/// Returns true if bytes can be written to it sequentially.
 fn is_pipe_or_device(old: &fs::Metadata) -> bool {
     #[cfg(unix)]
     {
@@ -172,8 +169,8 @@ fn is_pipe_or_device(old: &fs::Metadata) -> bool {
     }
 }
 
-/// Opens a device or pipe without waiting for anybody. A redirected standard output is a file that
-/// may have bytes before ours.
+/// Opens a device or pipe without blocking. Appends, since a redirected standard output is a file
+/// that may contain earlier bytes.
 fn open_stream(path: &Path) -> Result<File, SaveError> {
     let mut options = OpenOptions::new();
     options.append(true);
@@ -182,7 +179,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
         use rustix::fs::{OFlags, fcntl_getfl, fcntl_setfl};
         use std::os::unix::fs::OpenOptionsExt;
         let opened = options.custom_flags(OFlags::NONBLOCK.bits() as i32).open(path).and_then(|stream| {
-            // Only opening should not wait: a reader may be slow.
+            // Only opening must not block: a reader may be slow.
             fcntl_setfl(&stream, fcntl_getfl(&stream)?.difference(OFlags::NONBLOCK))?;
             Ok(stream)
         });
@@ -200,7 +197,7 @@ fn open_stream(path: &Path) -> Result<File, SaveError> {
 /// Writes the temporary file for a target.
 fn stage(path: &Path, content: &impl Content) -> Result<(Temporary, PathBuf), SaveError> {
     let io = |error| SaveError::Io { path: path.into(), error };
-    // What was a file may be something else by now.
+    // The path may have changed its type since it was checked.
     let (target, old) = resolve(path)?.ok_or_else(|| SaveError::NotAFile { path: path.into() })?;
     let temporary = Temporary::new_in(folder_of(&target)).map_err(io)?;
     if let Some(old) = old {
@@ -211,13 +208,13 @@ fn stage(path: &Path, content: &impl Content) -> Result<(Temporary, PathBuf), Sa
     Ok((temporary, target))
 }
 
-/// The folder of a file; that of a bare name is the current one.
+/// Folder of a file; the current one for a bare name.
 fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
-/// Names of open files: the shell that redirected them holds the file itself, which a rename would
-/// not reach.
+/// Returns true for names of open files. The shell that redirected them has the file open, and a
+/// rename would not reach it.
 fn is_stream(path: &Path) -> bool {
     ["/dev/stdout", "/dev/stderr", "/dev/fd", "/proc"].iter().any(|stream| path.starts_with(stream))
 }

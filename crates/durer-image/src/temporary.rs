@@ -1,9 +1,9 @@
-//! Temporary files that leave nothing behind, even where the program is killed.
+//! Temporary files that leave nothing behind, even if the program is killed.
 //!
-//! On Linux the file has no name until its bytes are safe (`O_TMPFILE`), and vanishes with the
-//! program. Elsewhere it has one, and so it has for a moment before it replaces an old file; what a
-//! killed program left then, the next one removes. It knows it by the lock that a living program
-//! holds on its file.
+//! On Linux, the file has no name until it is complete (`O_TMPFILE`), and vanishes with the
+//! program. Elsewhere it has a name from the start, and on Linux for a moment before it replaces an
+//! old file. The next program removes temporary files left by a killed one: they lack the lock that
+//! a running program holds.
 
 use std::fs::{self, File};
 use std::io;
@@ -11,27 +11,27 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use tempfile::NamedTempFile;
 
-/// How the names of temporary files begin and end; those that were whole before they had one begin
+/// Prefix and suffix of temporary file names. Files that were complete before they got a name begin
 /// with `READY`.
 const PREFIX: &str = ".durer-";
 const READY: &str = ".durer-ready-";
 const SUFFIX: &str = ".tmp";
 
-/// A file without a lock that may not be whole is left alone for so long: its program may be about
-/// to lock it.
+/// Minimum age at which an unlocked file that may be incomplete is removed: its program may be
+/// about to lock it.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A file that is not yet where it should be.
+/// A file that is not yet at its target.
 pub(super) enum Temporary {
-    /// Without a name.
+    /// A file without a name.
     #[cfg(target_os = "linux")]
     Unnamed(File, PathBuf),
-    /// With a name of its own.
+    /// A file with a temporary name.
     Named(NamedTempFile),
 }
 
 impl Temporary {
-    /// An empty file in a folder.
+    /// Creates an empty file in a folder.
     pub(super) fn new_in(folder: &Path) -> io::Result<Self> {
         #[cfg(target_os = "linux")]
         if let Some(file) = unnamed(folder)? {
@@ -51,14 +51,14 @@ impl Temporary {
         }
     }
 
-    /// Gives it its name. A file that has this name already is replaced.
+    /// Moves the file to the target. Replaces an existing file.
     pub(super) fn persist(self, target: &Path) -> io::Result<()> {
         let named = match self {
             Temporary::Named(named) => named,
             #[cfg(target_os = "linux")]
             Temporary::Unnamed(file, folder) => match link(&file, target) {
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                    // A link replaces nothing; a rename does, and needs a name.
+                    // A link cannot replace a file, but a rename can, which needs a name.
                     let link = |path: &Path| link(&file, path);
                     let (_, path) = builder(READY).make_in(folder, link)?.into_parts();
                     return path.persist(target).map_err(|failed| failed.error);
@@ -73,13 +73,14 @@ impl Temporary {
 fn builder(prefix: &str) -> tempfile::Builder<'_, 'static> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(prefix).suffix(SUFFIX);
-    // As for any new file, the user's mask is taken off.
+    // The system applies the user's mask, as for any new file.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
 }
 
-/// A file without a name, where the system and the folder have them and names can be given later.
+/// Creates a file without a name, if the system and the folder support this and allow naming it
+/// later.
 #[cfg(target_os = "linux")]
 fn unnamed(folder: &Path) -> io::Result<Option<File>> {
     use rustix::fs::{Mode, OFlags};
@@ -88,7 +89,7 @@ fn unnamed(folder: &Path) -> io::Result<Option<File>> {
     }
     match rustix::fs::open(folder, OFlags::TMPFILE | OFlags::WRONLY | OFlags::CLOEXEC, Mode::from_raw_mode(0o666)) {
         Ok(file) => Ok(Some(file.into())),
-        // What systems without them say.
+        // Errors of systems without support.
         Err(rustix::io::Errno::OPNOTSUPP | rustix::io::Errno::ISDIR | rustix::io::Errno::INVAL) => Ok(None),
         Err(error) => Err(error.into()),
     }
@@ -102,8 +103,7 @@ fn link(file: &File, path: &Path) -> io::Result<()> {
     Ok(rustix::fs::linkat(CWD, own, CWD, path, AtFlags::SYMLINK_FOLLOW)?)
 }
 
-/// Marks a file as one of a living program; where that cannot be, it is only taken for older than
-/// it is.
+/// Locks the file, so that cleanup skips it. Without locks, only its age protects it.
 fn lock(file: &File) {
     #[cfg(unix)]
     let _ = rustix::fs::flock(file, rustix::fs::FlockOperation::NonBlockingLockExclusive);
@@ -111,7 +111,7 @@ fn lock(file: &File) {
     let _ = file;
 }
 
-/// Removes what killed programs left in a folder.
+/// Removes temporary files of killed programs from a folder.
 pub(super) fn remove_stale(folder: &Path) {
     #[cfg(unix)]
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -124,7 +124,7 @@ pub(super) fn remove_stale(folder: &Path) {
         let free = rustix::fs::flock(&file, rustix::fs::FlockOperation::NonBlockingLockExclusive).is_ok();
         let age = entry.metadata().and_then(|data| data.modified()).ok().and_then(|time| time.elapsed().ok());
         if free && (name.starts_with(READY) || age.is_some_and(|age| age > PATIENCE)) {
-            // Whoever may not remove it may not be bothered either.
+            // Ignore errors: the file may belong to another user.
             let _ = fs::remove_file(entry.path());
         }
     }
@@ -132,7 +132,7 @@ pub(super) fn remove_stale(folder: &Path) {
     let _ = folder;
 }
 
-/// The system's reason without the name of the temporary file, which nobody asked for.
+/// Removes the name of the temporary file from an error, since users do not know it.
 fn without_path(error: io::Error) -> io::Error {
     let inner = error.get_ref().and_then(std::error::Error::source).and_then(|e| e.downcast_ref::<io::Error>());
     match inner.and_then(io::Error::raw_os_error) {
@@ -155,7 +155,7 @@ mod tests {
         put(".durer-old.tmp");
         let old = File::options().write(true).open(folder.path().join(".durer-old.tmp")).unwrap();
         old.set_modified(std::time::SystemTime::now() - 2 * PATIENCE).unwrap();
-        // One of a living program.
+        // A file of a running program.
         let living = builder(READY).tempfile_in(folder.path()).unwrap();
         lock(living.as_file());
         remove_stale(folder.path());

@@ -1,25 +1,25 @@
-//! From linear floating point to eight bits, and back.
+//! Conversion between linear floating point and 8-bit values.
 
 use durer_bvh::math::{Vec3, fp};
 use std::sync::LazyLock;
 
-/// How a linear value becomes eight bits.
+/// Transfer function from linear values to 8-bit values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Transfer {
-    /// The curve of IEC 61966-2-1, rounded to nearest: what screens expect.
+    /// The curve of IEC 61966-2-1, rounded to nearest, as screens expect.
     #[default]
     Srgb,
     /// No curve, rounded to nearest.
     Linear,
-    /// No curve, cut off instead of rounded, as the programs of the course did it.
+    /// No curve, truncated instead of rounded, as in the programs of the course.
     Course,
 }
 
 impl Transfer {
-    /// All of them.
+    /// List of transfer functions.
     pub const ALL: [Transfer; 3] = [Transfer::Srgb, Transfer::Linear, Transfer::Course];
 
-    /// Its name on the command line.
+    /// Name on the command line.
     pub fn name(self) -> &'static str {
         match self {
             Transfer::Srgb => "srgb",
@@ -28,12 +28,12 @@ impl Transfer {
         }
     }
 
-    /// The one of a name.
+    /// Finds a transfer function by name.
     pub fn from_name(name: &str) -> Option<Transfer> {
         Transfer::ALL.into_iter().find(|transfer| transfer.name() == name)
     }
 
-    /// Eight bits for a linear value, clamped to 0..=255. NaN becomes 0.
+    /// Converts a linear value to 8 bits, clamped to 0..=255. NaN becomes 0.
     pub fn encode(self, value: f32) -> u8 {
         match self {
             Transfer::Srgb => SRGB.encode(value),
@@ -42,25 +42,25 @@ impl Transfer {
         }
     }
 
-    /// Eight bits for each channel.
+    /// Converts each channel to 8 bits.
     pub fn encode_pixel(self, pixel: Vec3) -> [u8; 3] {
         pixel.to_array().map(|value| self.encode(value))
     }
 }
 
-/// sRGB in eight bits, looked up.
+/// Lookup table for 8-bit sRGB.
 static SRGB: LazyLock<SrgbTable> = LazyLock::new(SrgbTable::new);
 
-/// Linear values from which on each of the 256 steps of the sRGB curve holds.
+/// Thresholds of the 256 steps of the sRGB curve.
 struct SrgbTable {
-    /// The least value of each step, and infinity behind the last.
+    /// Least linear value of each step, followed by infinity.
     least: [f32; 257],
-    /// The step at the beginning of each of [`CELLS`] equal parts of 0 to 1. No part has more than
-    /// one end of a step.
+    /// Step at the beginning of each of [`CELLS`] equal parts of [0, 1]. A part contains at most
+    /// one threshold.
     guide: [u8; CELLS + 1],
 }
 
-/// The curve is steepest at black: 255 * 12.92 steps for a value of 1.
+/// Number of cells. The curve is steepest at black: 255 * 12.92 steps per unit.
 const CELLS: usize = 4096;
 
 impl SrgbTable {
@@ -68,7 +68,7 @@ impl SrgbTable {
         let curve = |value: f32| round(srgb_from_linear(value));
         let mut least = [f32::INFINITY; 257];
         for (step, least) in least.iter_mut().enumerate().take(256) {
-            // Positive numbers are ordered as their bits are, and the curve never falls.
+            // Positive floats are ordered as their bits, and the curve is monotonic.
             let (mut low, mut high) = (0, 1.0_f32.to_bits());
             while low < high {
                 let middle = low.midpoint(high);
@@ -80,43 +80,43 @@ impl SrgbTable {
     }
 
     fn encode(&self, value: f32) -> u8 {
-        // What is no number stays that, and begins at the first step.
+        // NaN stays NaN, and its cell is 0.
         let value = value.clamp(0.0, 1.0);
         let step = usize::from(self.guide[(value * CELLS as f32) as usize]);
         (step + usize::from(value >= self.least[step + 1])) as u8
     }
 }
 
-/// 255 times a value, rounded to nearest. The conversion saturates, and makes 0 of NaN.
+/// Multiplies by 255 and rounds to nearest. The cast saturates and turns NaN into 0.
 fn round(value: f32) -> u8 {
     (value * 255.0).round() as u8
 }
 
 /// `(int)(value * 255)`, then clamped.
 ///
-/// What does not fit an `int` (infinities, NaN and very large values) became the least `int` on the
-/// machines of the course, and so 0.
+/// Values that do not fit an `int` (infinities, NaN, and very large values) became the least `int`
+/// on the machines of the course, and so 0.
 fn truncate(value: f32) -> u8 {
     let scaled = value * 255.0;
     if scaled < i32::MAX as f32 { (scaled as i32).clamp(0, 255) as u8 } else { 0 }
 }
 
-/// The sRGB curve, for values from 0 to 1.
+/// The sRGB curve for values in [0, 1].
 fn srgb_from_linear(value: f32) -> f32 {
     if value <= 0.0031308 { 12.92 * value } else { 1.055 * fp::pow(value, 1.0 / 2.4) - 0.055 }
 }
 
-/// An eight-bit value as it is: a 255th of it.
+/// Divides an 8-bit value by 255.
 pub fn decode_linear(value: u8) -> f32 {
     f32::from(value) / 255.0
 }
 
-/// The linear value of an eight-bit sRGB value: the inverse curve of IEC 61966-2-1.
+/// Linear value of an 8-bit sRGB value: the inverse curve of IEC 61966-2-1.
 pub fn decode_srgb(value: u8) -> f32 {
     linear_from_srgb(decode_linear(value))
 }
 
-/// The same for values from 0 to 1.
+/// Linear value of an sRGB value in [0, 1].
 pub fn linear_from_srgb(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
@@ -146,7 +146,7 @@ mod tests {
         assert_eq!(row(f32::NAN), [0, 0, 0]);
         assert_eq!(row(f32::INFINITY), [255, 255, 0]);
         assert_eq!(row(f32::NEG_INFINITY), [0, 0, 0]);
-        // The greatest values that an `int` holds, and those beyond it.
+        // The greatest values that fit an `int`, and larger ones.
         assert_eq!(row(8.0e6), [255, 255, 255]);
         assert_eq!(row(9.0e6), [255, 255, 0]);
         assert_eq!(row(f32::MAX), [255, 255, 0]);

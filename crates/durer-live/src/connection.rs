@@ -59,7 +59,7 @@ fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
 }
 
 fn upgrade(stream: &mut TcpStream, head: &Head, shared: &Shared) -> io::Result<()> {
-    // Scripts of other pages always send an origin; programs without one are no pages.
+    // Scripts of other pages always send an origin; programs without one are not pages.
     let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
         return send(stream, "426 Upgrade Required", "text/plain", b"this is a WebSocket\n");
     };

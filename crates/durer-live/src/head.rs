@@ -65,7 +65,8 @@ pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
 }
 
 impl Head {
-    /// Whether it comes from a page of this machine: a page of another name may be resolved to the loopback
+    /// Returns true if it comes from a page of this machine: a page of another name may be resolved to the
+    /// loopback
     /// interface, but still sends its own name. The port differs behind `ssh -L`.
     pub fn is_local(&self) -> bool {
         let Some(host) = &self.host else { return false };

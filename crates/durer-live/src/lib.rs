@@ -1,6 +1,7 @@
 //! A server for one who looks at a scene: the page, and a WebSocket to a [`durer_session::Host`].
 //!
-//! It listens on the loopback interface alone. Every path begins with a random token, `Host` and `Origin` must
+//! It listens on the loopback interface alone. Every path begins with a random token, `Host` and
+//! `Origin` must
 //! name the loopback interface, and no file but those of the page can be had.
 
 mod connection;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
 use std::time::Duration;
 
-/// At most so many connections are open at once.
+/// Maximum number of open connections.
 const MAX_CONNECTIONS: usize = 48;
 /// How often it is looked whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
@@ -28,7 +29,7 @@ pub struct Server {
     shared: Arc<Shared>,
 }
 
-/// What all connections know.
+/// State shared by the connections.
 #[derive(Debug)]
 pub(crate) struct Shared {
     pub token: String,
@@ -53,7 +54,7 @@ impl Server {
         Ok(Server { listener, shared: Arc::new(shared) })
     }
 
-    /// Where the page is.
+    /// Address of the page.
     ///
     /// # Errors
     ///
@@ -67,7 +68,7 @@ impl Server {
     ///
     /// # Errors
     ///
-    /// Those of the listener.
+    /// Errors of the listener.
     pub fn run(&self, stop: impl Fn() -> bool) -> io::Result<()> {
         while !stop() {
             match self.listener.accept() {

@@ -31,7 +31,7 @@ pub(crate) fn file(path: &str) -> Option<(&'static [u8], &'static str)> {
     Some((bytes, kind))
 }
 
-/// The page, which is told that a server is behind it.
+/// The page, with the mark that a server is behind it.
 pub(crate) fn index() -> Vec<u8> {
     let html = String::from_utf8_lossy(file("").map_or(&[][..], |found| found.0));
     html.replacen("<head>", "<head>\n    <meta name=\"durer-server\" content=\"1\" />", 1).into_bytes()

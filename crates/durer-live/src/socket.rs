@@ -19,7 +19,7 @@ const PATIENCE: Duration = Duration::from_secs(20);
 
 /// Answers messages, and works in between, until the page is gone.
 pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
-    // The end of a connection is no error.
+    // A connection that ends is expected.
     let _ = talk(stream, rest, shared);
 }
 

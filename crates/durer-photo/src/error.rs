@@ -1,30 +1,30 @@
-//! What is wrong with an input, and where.
+//! Errors of inputs, with their positions.
 
 use std::fmt;
 
-/// A message, with the place in a file where there is one.
+/// An error message with an optional position in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Error {
-    /// What is wrong, as a sentence without its full stop.
+    /// Description of the problem, as a sentence without a full stop.
     pub message: String,
-    /// The file, as the user named it; empty where no file is to blame.
+    /// File as named by the user; empty if the error concerns no file.
     pub file: String,
-    /// Line and column, counted from 1, in a text.
+    /// Line and column in a text file, counted from 1.
     pub place: Option<(usize, usize)>,
 }
 
 impl Error {
-    /// An error of no file in particular.
+    /// Creates an error without a file.
     pub fn new(message: impl Into<String>) -> Self {
         Error { message: message.into(), file: String::new(), place: None }
     }
 
-    /// An error in a file as a whole.
+    /// Creates an error in a file as a whole.
     pub fn of(file: &str, message: impl Into<String>) -> Self {
         Error { message: message.into(), file: file.into(), place: None }
     }
 
-    /// An error at a place of a text.
+    /// Creates an error at a position in a text file.
     pub fn at(file: &str, place: (usize, usize), message: impl Into<String>) -> Self {
         Error { message: message.into(), file: file.into(), place: Some(place) }
     }

@@ -1,11 +1,11 @@
-//! Why a camera stands where it does, and a point where it is: the perspective equations with their
+//! Explanations of the positions of cameras and points: the projection equations with their
 //! numbers.
 
 use crate::adjust::{Options, covariance};
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
-/// A point: its rays, and its residual in every photograph that sees it.
+/// Explains a point: its rays, and its residual in every photograph that observes it.
 pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     let count = all.points.len();
     let point = all
@@ -44,7 +44,7 @@ pub fn point(all: &Reconstruction, number: usize) -> Result<String, Error> {
     Ok(text)
 }
 
-/// A photograph's number by its name or by the number itself.
+/// Finds a photograph by name or number.
 pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     let number = all.views.iter().position(|view| view.name == name).or_else(|| name.parse().ok());
     number.filter(|number| *number < all.views.len()).ok_or_else(|| {
@@ -53,8 +53,8 @@ pub fn view_of(all: &Reconstruction, name: &str) -> Result<usize, Error> {
     })
 }
 
-/// A camera: the equations by which it sees its first points, what they leave, and how well it is
-/// determined.
+/// Explains a camera: the equations for its first points, their residuals, and how well the camera
+/// is determined.
 pub fn camera(all: &Reconstruction, view: usize) -> Result<String, Error> {
     let name = &all.views[view].name;
     let pose = all.views[view].pose.ok_or_else(|| Error::new(format!("nobody knows where {name} was taken")))?;

@@ -1,14 +1,14 @@
-//! Whether a JPEG is all there: decoders fill up with grey what is missing.
+//! Completeness check of JPEG files, since decoders fill missing parts with grey.
 
-/// Whether the marker of the picture's end is there, and not just that of a small picture within
-/// its head.
+/// Returns true if the file contains the end marker of the picture, not only that of a thumbnail in
+/// its header.
 ///
 /// Source: ITU-T T.81, *Digital Compression and Coding of Continuous-Tone Still Images*, annex B.
 pub fn is_whole(bytes: &[u8]) -> bool {
     const START: u8 = 0xd8;
     const END: u8 = 0xd9;
     let mut at = 0;
-    // In coded data 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7; before a marker it
+    // In coded data, 0xff is followed by 0 or by a restart marker, 0xd0 to 0xd7. Before a marker it
     // may be repeated.
     let is_marker = |pair: &[u8]| pair[0] == 0xff && !matches!(pair[1], 0 | 1 | 0xff | 0xd0..=0xd7);
     while let Some(pair) = bytes.get(at..at + 2) {
@@ -16,7 +16,7 @@ pub fn is_whole(bytes: &[u8]) -> bool {
             _ if !is_marker(pair) => 1,
             START => 2,
             END => return true,
-            // All other markers begin a segment, whose length counts its own two bytes.
+            // Other markers begin a segment, whose length includes its own two bytes.
             _ => match bytes.get(at + 2..at + 4) {
                 Some(length) => 2 + usize::from(u16::from_be_bytes([length[0], length[1]])),
                 None => return false,

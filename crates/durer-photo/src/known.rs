@@ -1,25 +1,25 @@
-//! What somebody knows of a photograph, or of the world in it: points, lines, control points.
+//! Known facts about a photograph or the world in it: points, lines, and control points.
 
 use crate::Observation;
 use nalgebra::{Vector2, Vector3};
 
-/// A point of the world and its pixel.
+/// A world point and its pixel.
 pub type Pair = (Vector3<f64>, Vector2<f64>);
 
-/// A place of the world, and where photographs see it.
+/// A world point and its observations.
 pub type Control = (Vector3<f64>, Vec<Observation>);
 
-/// A direction along an axis of the world.
+/// A direction along a world axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Axis {
     /// 0, 1, 2 for x, y, z.
     pub index: usize,
-    /// Whether it points to smaller values.
+    /// True if the direction points to smaller values.
     pub negative: bool,
 }
 
 impl Axis {
-    /// By its name: `x`, `-x` and so on, or as fSpy has it, `xPositive`, `xNegative`.
+    /// Parses a name: `x`, `-x`, and so on, or `xPositive`, `xNegative` as in fSpy.
     pub fn parse(name: &str) -> Option<Self> {
         let (bare, negative) = match name {
             name if name.ends_with("Negative") => (name.trim_end_matches("Negative"), true),
@@ -34,18 +34,17 @@ impl Axis {
     }
 }
 
-/// Lines of a photograph that are parallel in the world, in two directions at right angles to each
-/// other.
+/// Lines of a photograph that are parallel in the world, in two perpendicular directions.
 #[derive(Debug, Clone)]
 pub struct VanishingLines {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The principal point in pixels.
+    /// Principal point in pixels.
     pub center: Vector2<f64>,
-    /// The pixel of the world's origin.
+    /// Pixel of the world origin.
     pub origin: Vector2<f64>,
-    /// The axis of the world that leads towards each vanishing point.
+    /// World axis that leads towards each vanishing point.
     pub axes: [Axis; 2],
-    /// For each, lines by two of their pixels.
+    /// Lines for each axis, given by two of their pixels.
     pub lines: [Vec<[Vector2<f64>; 2]>; 2],
 }

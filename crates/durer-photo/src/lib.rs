@@ -1,25 +1,25 @@
-//! From photographs to cameras and points.
+//! Photogrammetry: cameras and points from photographs.
 //!
-//! Given photographs of a scene, [`matching`] finds the same points of the scene in several of
-//! them, [`solve`] finds where the photographs were taken and where the points are, and [`adjust`]
-//! makes both as exact as the photographs allow (bundle adjustment). [`resect`] finds the camera of
-//! a single photograph. [`mod@format`] reads and writes what other programs use.
+//! Given photographs of a scene, [`matching`] finds points of the scene that several of them show,
+//! [`solve`] computes the positions of the cameras and the points, and [`adjust`] refines both
+//! (bundle adjustment). [`resect`] computes the camera of a single photograph. [`mod@format`] reads
+//! and writes the formats of other programs.
 //!
 //! # Conventions
 //!
-//! A [`Pose`] takes a point X of the world to P = R X + t in the camera's own frame: x to the
-//! right, y downwards, z forward, along the view. A [`Lens`] takes P to a pixel: with p = P.xy /
-//! P.z and r = 1 + k1 |p|² + k2 |p|⁴,
+//! A [`Pose`] maps a world point X to P = R X + t in the camera frame: x to the right, y downwards,
+//! z forward, along the view. A [`Lens`] maps P to a pixel: with p = P.xy / P.z and r = 1 + k1 |p|²
+//! + k2 |p|⁴,
 //!
 //! ```text
 //! pixel = center + focal r (p.x, aspect p.y)
 //! ```
 //!
 //! in pixels from the upper left corner of the picture, so that the centre of the first pixel is at
-//! (0.5, 0.5). How the formats of other programs differ from this is one table,
-//! [`format::CONVENTIONS`].
+//! (0.5, 0.5). The table [`format::CONVENTIONS`] lists how the formats of other programs differ
+//! from this.
 //!
-//! Nothing here depends on the number of threads, on time, or on the platform's mathematical
+//! Results do not depend on the number of threads, on time, or on the platform's mathematical
 //! functions.
 
 pub mod adjust;

@@ -1,30 +1,30 @@
-//! Lenses, poses, views, points: what a reconstruction is made of.
+//! Reconstructions: lenses, poses, views, and points.
 
 use nalgebra::{Matrix3, Rotation3, Vector2, Vector3};
 
-/// What a camera does to a point in its own frame, by the formula of the [crate's](crate)
-/// conventions.
+/// Camera model that maps points in the camera frame to pixels, by the [conventions](crate) of this
+/// crate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lens {
-    /// Width and height of the photographs in pixels; 0 where a format does not tell.
+    /// Width and height of the photographs in pixels; 0 if a format does not store them.
     pub size: [u32; 2],
     /// Focal length in pixels.
     pub focal: f64,
-    /// Vertical focal length over horizontal one: 1 for square pixels.
+    /// Ratio of the vertical to the horizontal focal length: 1 for square pixels.
     pub aspect: f64,
-    /// The principal point in pixels from the upper left corner.
+    /// Principal point in pixels from the upper left corner.
     pub center: [f64; 2],
-    /// Radial distortion: factors of |p|² and |p|⁴.
+    /// Radial distortion: coefficients of |p|² and |p|⁴.
     pub radial: [f64; 2],
 }
 
 impl Lens {
-    /// A lens without distortion whose principal point is the middle.
+    /// Creates a lens without distortion whose principal point is the centre.
     pub fn new(size: [u32; 2], focal: f64) -> Self {
         Lens { size, focal, aspect: 1.0, center: size.map(|side| f64::from(side) / 2.0), radial: [0.0; 2] }
     }
 
-    /// The longer side in pixels; twice the focal length where the size is not known.
+    /// Length of the longer side in pixels; twice the focal length if the size is unknown.
     pub fn longer_side(&self) -> f64 {
         match self.size[0].max(self.size[1]) {
             0 => 2.0 * self.focal,
@@ -32,21 +32,21 @@ impl Lens {
         }
     }
 
-    /// The pixel of a point in the camera's frame. The formula holds behind the camera too; see
-    /// [`Pose::depth`].
+    /// Projects a point in the camera frame to a pixel. The formula also holds behind the camera;
+    /// see [`Pose::depth`].
     pub fn project(&self, p: &Vector3<f64>) -> Vector2<f64> {
         let (x, y) = (p.x / p.z, p.y / p.z);
         let factor = self.focal * self.factor(x * x + y * y);
         Vector2::new(self.center[0] + factor * x, self.center[1] + factor * self.aspect * y)
     }
 
-    /// 1 + k1 s + k2 s², for the square s of the radius.
+    /// Distortion factor 1 + k1 s + k2 s² for the squared radius s.
     pub fn factor(&self, s: f64) -> f64 {
         1.0 + s * (self.radial[0] + s * self.radial[1])
     }
 
-    /// The point (x, y, 1) that is seen at a pixel, by Newton's method; none where the distortion
-    /// has no inverse.
+    /// Computes the point (x, y, 1) that projects to a pixel, by Newton's method; `None` if the
+    /// distortion is not invertible there.
     pub fn unproject(&self, pixel: &Vector2<f64>) -> Option<Vector3<f64>> {
         let x = (pixel.x - self.center[0]) / self.focal;
         let y = (pixel.y - self.center[1]) / (self.focal * self.aspect);
@@ -54,7 +54,7 @@ impl Lens {
         let mut radius = wanted;
         for _ in 0..30 {
             let s = radius * radius;
-            // d/dr of r (1 + k1 r² + k2 r⁴).
+            // Derivative of r (1 + k1 r² + k2 r⁴) by r.
             let slope = 1.0 + s * (3.0 * self.radial[0] + 5.0 * s * self.radial[1]);
             if slope <= 1e-6 {
                 return None;
@@ -71,27 +71,28 @@ impl Lens {
     }
 }
 
-/// Where a camera stands and looks: P = R X + t.
+/// Position and orientation of a camera: P = R X + t.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// R: its rows are the camera's right, down and forward in the world.
+    /// Rotation R. Its rows are the camera's right, down, and forward directions in the world.
     pub rotation: Matrix3<f64>,
-    /// t.
+    /// Translation t.
     pub translation: Vector3<f64>,
 }
 
 impl Pose {
-    /// The camera at the origin that looks along +z.
+    /// Camera at the origin that looks along +z.
     pub fn identity() -> Self {
         Pose { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
-    /// The camera at a place, with a rotation.
+    /// Creates the pose of a camera from its position and rotation.
     pub fn at(center: &Vector3<f64>, rotation: Matrix3<f64>) -> Self {
         Pose { rotation, translation: -rotation * center }
     }
 
-    /// A camera at a place that looks at a point; `up` shows upwards in its picture.
+    /// Creates the pose of a camera at `center` that looks at `target`; `up` points upwards in its
+    /// picture.
     pub fn look_at(center: &Vector3<f64>, target: &Vector3<f64>, up: &Vector3<f64>) -> Self {
         let forward = (target - center).normalize();
         let right = forward.cross(up).normalize();
@@ -99,32 +100,32 @@ impl Pose {
         Pose::at(center, Matrix3::from_rows(&[right.transpose(), down.transpose(), forward.transpose()]))
     }
 
-    /// A point of the world in the camera's frame.
+    /// Transforms a world point to the camera frame.
     pub fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.rotation * point + self.translation
     }
 
-    /// Where the camera stands: -Rᵀ t.
+    /// Position of the camera: -Rᵀ t.
     pub fn center(&self) -> Vector3<f64> {
         -self.rotation.transpose() * self.translation
     }
 
-    /// How far before the camera a point is, along the view.
+    /// Distance of a point in front of the camera, along the view.
     pub fn depth(&self, point: &Vector3<f64>) -> f64 {
         self.apply(point).z
     }
 
-    /// The direction in the world of a direction in the camera's frame.
+    /// Transforms a direction from the camera frame to the world.
     pub fn outwards(&self, direction: &Vector3<f64>) -> Vector3<f64> {
         self.rotation.transpose() * direction
     }
 }
 
-/// The rotation about an axis by its length in radians (Rodrigues).
+/// Rotation about an axis by its length in radians (Rodrigues).
 pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     let angle = axis_angle.norm();
     let cross = axis_angle.cross_matrix();
-    // sin(a) / a and (1 - cos(a)) / a², whose series do not divide by zero.
+    // sin(a) / a and (1 - cos(a)) / a², by series that do not divide by zero.
     let (a, b) = if angle < 1e-4 {
         let s = angle * angle;
         (1.0 - s / 6.0, 0.5 - s / 24.0)
@@ -135,7 +136,7 @@ pub fn rotation_of(axis_angle: &Vector3<f64>) -> Matrix3<f64> {
     Matrix3::identity() + a * cross + b * cross * cross
 }
 
-/// The inverse of [`rotation_of`]: an axis whose length is at most π.
+/// Axis and angle of a rotation: the inverse of [`rotation_of`]. The length is at most π.
 pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     let [w, x, y, z] = quaternion_of(rotation);
     let axis = Vector3::new(x, y, z);
@@ -143,8 +144,8 @@ pub fn axis_angle_of(rotation: &Matrix3<f64>) -> Vector3<f64> {
     if length < 1e-300 { Vector3::zeros() } else { axis * (2.0 * libm::atan2(length, w) / length) }
 }
 
-/// The unit quaternion (w, x, y, z) of a rotation, with w >= 0. Shepperd's choice of the largest
-/// component.
+/// Unit quaternion (w, x, y, z) of a rotation, with w >= 0. Uses the largest component, as proposed
+/// by Shepperd.
 pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     let (a, b, c) = (r[(0, 0)], r[(1, 1)], r[(2, 2)]);
     let squares = [1.0 + a + b + c, 1.0 + a - b - c, 1.0 - a + b - c, 1.0 - a - b + c];
@@ -164,13 +165,13 @@ pub fn quaternion_of(r: &Matrix3<f64>) -> [f64; 4] {
     q.map(|c| c / norm)
 }
 
-/// The rotation of a quaternion (w, x, y, z), which need not have length 1.
+/// Rotation of a quaternion (w, x, y, z), which need not have length 1.
 pub fn rotation_of_quaternion([w, x, y, z]: [f64; 4]) -> Matrix3<f64> {
     let q = nalgebra::Quaternion::new(w, x, y, z);
     *Rotation3::from(nalgebra::UnitQuaternion::from_quaternion(q)).matrix()
 }
 
-/// The rotation nearest to a matrix (Frobenius norm), by its singular values.
+/// Rotation nearest to a matrix in the Frobenius norm, by singular value decomposition.
 pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
     let svd = matrix.svd(true, true);
     let (Some(u), Some(v)) = (svd.u, svd.v_t) else { return Matrix3::identity() };
@@ -181,75 +182,75 @@ pub fn nearest_rotation(matrix: &Matrix3<f64>) -> Matrix3<f64> {
 /// A photograph.
 #[derive(Debug, Clone, PartialEq)]
 pub struct View {
-    /// The photograph's file, or a number where a format has no names.
+    /// File name of the photograph, or a number if a format has no names.
     pub name: String,
-    /// Its lens, by number; several photographs may share one.
+    /// Number of the lens, which several photographs may share.
     pub lens: usize,
-    /// Where it was taken; none where that is not known (yet).
+    /// Pose of the camera; `None` if it is not (yet) known.
     pub pose: Option<Pose>,
 }
 
-/// Where a point is seen in a photograph.
+/// Observation of a point in a photograph.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Observation {
-    /// The photograph, by number.
+    /// Number of the photograph.
     pub view: usize,
-    /// The feature's number in its photograph.
+    /// Number of the feature in its photograph.
     pub feature: usize,
-    /// Pixels from the upper left corner.
+    /// Position in pixels from the upper left corner.
     pub pixel: Vector2<f64>,
 }
 
 /// A point of the scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Where it is in the world.
+    /// Position in the world.
     pub position: Vector3<f64>,
-    /// Red, green, blue.
+    /// Red, green, and blue.
     pub color: [u8; 3],
-    /// Where it is seen, in the order of the photographs.
+    /// Observations, in the order of the photographs.
     pub track: Vec<Observation>,
 }
 
-/// Cameras and points.
+/// A reconstruction of cameras and points.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reconstruction {
-    /// The lenses, each of one or more photographs.
+    /// Lenses, each of one or more photographs.
     pub lenses: Vec<Lens>,
-    /// The photographs, also those whose pose is not known.
+    /// Photographs, including those with an unknown pose.
     pub views: Vec<View>,
-    /// The points.
+    /// Points of the scene.
     pub points: Vec<Point>,
 }
 
-/// How well cameras and points agree with the photographs.
+/// Agreement of cameras and points with the photographs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fit {
-    /// Observations by photographs whose pose is known.
+    /// Number of observations by photographs with a known pose.
     pub observations: usize,
-    /// Half the sum of the squares of all residuals' components, in square pixels.
+    /// Half the sum of the squared residuals, in square pixels.
     pub cost: f64,
-    /// The root of the mean square of a residual's length, in pixels.
+    /// Root mean square length of the residuals, in pixels.
     pub rms: f64,
-    /// The longest residual, in pixels.
+    /// Length of the longest residual, in pixels.
     pub max: f64,
 }
 
 impl Reconstruction {
-    /// The pixel at which a photograph should see a point, less where it does; none where its pose
-    /// is not known.
+    /// Difference between the projection of a point and its observed pixel; `None` if the pose of
+    /// the photograph is unknown.
     pub fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<Vector2<f64>> {
         let view = &self.views[seen.view];
         let pose = view.pose.as_ref()?;
         Some(self.lenses[view.lens].project(&pose.apply(position)) - seen.pixel)
     }
 
-    /// The residuals of all observations by photographs whose pose is known.
+    /// Residuals of the observations by photographs with a known pose.
     pub fn residuals(&self) -> impl Iterator<Item = Vector2<f64>> {
         self.points.iter().flat_map(|point| point.track.iter().filter_map(|seen| self.residual(&point.position, seen)))
     }
 
-    /// How well it all agrees.
+    /// Computes the agreement of the reconstruction with the photographs.
     pub fn fit(&self) -> Fit {
         let mut fit = Fit::default();
         for square in self.residuals().map(|residual| residual.norm_squared()) {
@@ -261,26 +262,26 @@ impl Reconstruction {
         fit
     }
 
-    /// The standard deviation of a residual's components, in pixels, by the median of the
-    /// residuals' lengths: what is far off does not count. Normal errors have a median length
-    /// of √(2 ln 2) of them.
+    /// Standard deviation of a residual's components in pixels, from the median length of the
+    /// residuals, so that outliers do not count. The median length of normal errors is √(2 ln 2)
+    /// times their standard deviation.
     pub fn noise(&self) -> f64 {
         let mut lengths: Vec<f64> = self.residuals().map(|residual| residual.norm()).collect();
         lengths.sort_by(f64::total_cmp);
         lengths.get(lengths.len() / 2).map_or(0.0, |median| median / 1.1774)
     }
 
-    /// How many photographs have a pose.
+    /// Number of photographs with a known pose.
     pub fn registered(&self) -> usize {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
-    /// How many photographs see a point, on average.
+    /// Mean number of observations per point.
     pub fn track_length(&self) -> f64 {
         self.points.iter().map(|point| point.track.len()).sum::<usize>() as f64 / self.points.len().max(1) as f64
     }
 
-    /// The largest angle in radians between two rays to a point.
+    /// Largest angle in radians between two rays to a point.
     pub fn angle(&self, point: &Point) -> f64 {
         let toward = |seen: &Observation| {
             let center = self.views[seen.view].pose.as_ref()?.center();
@@ -288,7 +289,7 @@ impl Reconstruction {
         };
         let rays: Vec<Vector3<f64>> = point.track.iter().filter_map(toward).collect();
         let pairs = rays.iter().enumerate().flat_map(|(i, a)| rays[i + 1..].iter().map(move |b| (a, b)));
-        // The angle by its half's chord keeps its precision where it is small.
+        // Computing the angle from the chord of its half keeps small angles precise.
         pairs.map(|(a, b)| 2.0 * libm::asin(((a - b).norm() / 2.0).min(1.0))).fold(0.0, f64::max)
     }
 }

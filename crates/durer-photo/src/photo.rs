@@ -1,4 +1,4 @@
-//! Photographs as files: pixels, and what the camera wrote beside them.
+//! Photographs as files: pixels and metadata.
 
 use crate::Error;
 use crate::feature::Gray;
@@ -6,27 +6,27 @@ use crate::jpeg::is_whole;
 use image::{DynamicImage, ImageError, ImageFormat, ImageReader, Limits, RgbImage};
 use std::io::Cursor;
 
-/// A photograph's longer side must not have more pixels than this.
+/// Maximum length of a photograph's longer side in pixels.
 const LONGEST: u32 = 20_000;
 
 /// A photograph.
 pub struct Photo {
-    /// Its file's name.
+    /// File name.
     pub name: String,
-    /// Its pixels as they lie in the file, whatever the camera says of its being turned.
+    /// Pixels as stored in the file, regardless of the orientation in the metadata.
     pub pixels: RgbImage,
-    /// What the camera wrote.
+    /// EXIF metadata.
     pub exif: Exif,
 }
 
-/// What a camera writes beside the pixels, as far as it tells of the lens.
+/// Metadata about the lens.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Exif {
-    /// Maker and model.
+    /// Make and model.
     pub camera: String,
-    /// The focal length in pixels, and how it follows from what is written.
+    /// Focal length in pixels, and a description of its source.
     pub focal: Option<(f64, String)>,
-    /// What of it cannot be true.
+    /// Description of an implausible value.
     pub doubt: Option<String>,
 }
 
@@ -47,14 +47,14 @@ fn broken(file: &str, error: &ImageError) -> Error {
     Error::of(file, format!("cannot be read as a picture: {}", error.to_string().trim_end()))
 }
 
-/// Width and height of a photograph.
+/// Width and height of a photograph in pixels, from its header.
 pub fn size(file: &str, bytes: &[u8]) -> Result<[u32; 2], Error> {
     let size = reader(file, bytes)?.into_dimensions();
     let (width, height) = size.map_err(|error| broken(file, &error))?;
     Ok([width, height])
 }
 
-/// Reads a photograph.
+/// Decodes a photograph.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
     let reader = reader(name, bytes)?;
     if reader.format() == Some(ImageFormat::Jpeg) && !is_whole(bytes) {
@@ -70,13 +70,13 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Photo, Error> {
 }
 
 impl Photo {
-    /// Width and height.
+    /// Width and height in pixels.
     pub fn size(&self) -> [u32; 2] {
         [self.pixels.width(), self.pixels.height()]
     }
 
-    /// Its brightness from 0 to 1, with a longer side of at most so many pixels, and how many
-    /// pixels one of these is.
+    /// Greyscale picture with values from 0 to 1, reduced to a longer side of at most `side`
+    /// pixels, and the number of original pixels per reduced pixel along x and y.
     pub fn gray(&self, side: u32) -> (Gray, [f64; 2]) {
         let [width, height] = self.size();
         let scale = f64::from(side) / f64::from(width.max(height));
@@ -97,15 +97,14 @@ impl Photo {
         (gray, [f64::from(width) / f64::from(w), f64::from(height) / f64::from(h)])
     }
 
-    /// The colour at a place.
+    /// Colour at a position in pixels.
     pub fn color(&self, x: f64, y: f64) -> [u8; 3] {
         let [width, height] = self.size();
         self.pixels.get_pixel((x.max(0.0) as u32).min(width - 1), (y.max(0.0) as u32).min(height - 1)).0
     }
 }
 
-/// What of EXIF tells of the lens. What is broken is as if it were not there: photographs without
-/// it are usual.
+/// Reads the EXIF metadata about the lens. Invalid metadata counts as missing, which is common.
 fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     use exif::Tag;
     let mut found = Exif::default();
@@ -129,7 +128,7 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
     let diagonal = |a: f64, b: f64| (a * a + b * b).sqrt();
     let longer = width.max(height);
     let from_film = || {
-        // Equivalence is by the diagonal of 36 x 24 mm (CIPA DC-X005).
+        // The 35 mm equivalent refers to the diagonal of 36 x 24 mm (CIPA DC-X005).
         let film = number(Tag::FocalLengthIn35mmFilm)?;
         let focal = film * diagonal(width, height) / diagonal(36.0, 24.0);
         Some((focal, format!("{film} mm on 35 mm film")))
@@ -154,7 +153,7 @@ fn exif(bytes: &[u8], size: [u32; 2]) -> Exif {
 }
 
 impl Photo {
-    /// The photograph as a JPEG whose longer side has at most so many pixels.
+    /// Encodes the photograph as a JPEG whose longer side has at most `side` pixels.
     pub fn small(&self, side: u32) -> Result<Vec<u8>, Error> {
         let longer = self.pixels.width().max(self.pixels.height());
         let to = |pixels: u32| (pixels * side).div_ceil(longer).max(1);

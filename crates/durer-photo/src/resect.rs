@@ -1,5 +1,5 @@
-//! The camera of one photograph: from points of the world that it shows, or from lines that are
-//! parallel in the world.
+//! Camera of a single photograph, from known world points or from lines that are parallel in the
+//! world.
 
 use crate::adjust::{Loss, Options};
 use crate::geometry::camera::{linear, spread, take_apart};
@@ -8,46 +8,46 @@ use crate::solve::{pose_of, refined_pose};
 use crate::{Error, Lens, Pose};
 use nalgebra::{DMatrix, Matrix3, Vector2, Vector3};
 
-/// What is known of the lens, and how false points are told.
+/// Known properties of the lens, and the criterion for outliers.
 #[derive(Debug, Clone)]
 pub struct Known {
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The focal length in pixels, if it is known.
+    /// Focal length in pixels, if known.
     pub focal: Option<f64>,
-    /// Whether k1 and k2 are looked for.
+    /// True if k1 and k2 should be estimated.
     pub distortion: bool,
-    /// The longest residual in pixels of a point that is true.
+    /// Maximum residual of an inlier in pixels.
     pub threshold: f64,
 }
 
-/// A camera that was found.
+/// An estimated camera.
 #[derive(Debug, Clone)]
 pub struct Resection {
-    /// Its lens.
+    /// Estimated lens.
     pub lens: Lens,
-    /// Its pose.
+    /// Estimated pose.
     pub pose: Pose,
-    /// Which points agree.
+    /// Indices of the points that agree with the camera.
     pub inliers: Vec<usize>,
-    /// The root of the mean square of these points' residuals, in pixels.
+    /// Root mean square residual of the inliers, in pixels.
     pub rms: f64,
-    /// The ratio of the least to the largest singular value of the parameters' derivatives, each
-    /// scaled to the same length.
+    /// Ratio of the least to the largest singular value of the Jacobian, with columns scaled to the
+    /// same length.
     pub conditioning: f64,
 }
 
-/// The least spread of points in the third direction, as a share of that in the first.
+/// Minimum spread of the points in the third direction, relative to the first.
 const FLAT: f64 = 1e-3;
-/// The least conditioning.
+/// Minimum conditioning.
 const CONDITIONED: f64 = 1e-6;
 
-/// Finds the camera. The principal point is the middle, pixels are square.
+/// Estimates the camera, with the principal point in the centre and square pixels.
 ///
 /// # Errors
 ///
-/// Says why the points tell no camera: too few, in a line, in a plane without a known focal length,
-/// or none that they agree on.
+/// If the points do not determine a camera: too few points, points on a line, points in a plane
+/// without a known focal length, or points that do not agree on any camera.
 pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     let points: Vec<Vector3<f64>> = pairs.iter().map(|pair| pair.0).collect();
     let least = if known.focal.is_some() { 4 } else { 6 };
@@ -86,7 +86,7 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     let mut best: Option<Resection> = None;
     for focal in candidates {
         let lens = Lens::new(known.size, focal);
-        // A focal length that is nearly right leaves points nearly right.
+        // An inexact focal length gives inexact residuals, too.
         let wide = if known.focal.is_some() { known.threshold } else { known.threshold.max(0.02 * side) };
         let Some(found) = from_lens(pairs, lens, known, wide) else { continue };
         let better = |best: &Resection| (found.inliers.len(), -found.rms) > (best.inliers.len(), -best.rms);
@@ -94,7 +94,7 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
             best = Some(found);
         }
     }
-    // A few points of many agree with some camera by chance.
+    // A few of many points agree with some camera by chance.
     let enough = |best: &Resection| best.inliers.len() >= least.max((2 * pairs.len()).div_ceil(3));
     let best = best.filter(enough).ok_or_else(|| {
         let limit = known.threshold;
@@ -111,10 +111,10 @@ pub fn camera(pairs: &[Pair], known: &Known) -> Result<Resection, Error> {
     Ok(best)
 }
 
-/// The camera from a focal length to begin with.
+/// Estimates the camera from an initial focal length.
 fn from_lens(pairs: &[Pair], lens: Lens, known: &Known, wide: f64) -> Option<Resection> {
     let (pose, inliers) = pose_of(pairs, &lens, wide, 0).or_else(|| {
-        // Four points alone: RANSAC wants one more than makes a model.
+        // Exactly four points: RANSAC needs one more than its model.
         let all: Vec<usize> = (0..pairs.len()).collect();
         let directions: Option<Vec<_>> = pairs[..3].iter().map(|pair| lens.unproject(&pair.1)).collect();
         let [a, b, c] = directions?.try_into().ok()?;
@@ -155,7 +155,7 @@ fn residual(lens: &Lens, pose: &Pose, (point, pixel): &Pair) -> f64 {
     if p.z > 0.0 { (lens.project(&p) - pixel).norm() } else { f64::INFINITY }
 }
 
-/// See [`Resection::conditioning`].
+/// Computes [`Resection::conditioning`].
 fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], focal: bool) -> f64 {
     let columns = if focal { 7 } else { 6 };
     let mut rows = DMatrix::zeros(2 * inliers.len().max(4), columns);
@@ -171,7 +171,7 @@ fn conditioning(lens: &Lens, pose: &Pose, pairs: &[Pair], inliers: &[usize], foc
     values[columns - 1] / values[0]
 }
 
-/// Where lines meet: the homogeneous point whose distances from all are least.
+/// Intersection of lines: the homogeneous point with the least distances to them.
 fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     let homogeneous = |p: &Vector2<f64>| Vector3::new(p.x / size, p.y / size, 1.0);
     let line = |ends: &[Vector2<f64>; 2]| homogeneous(&ends[0]).cross(&homogeneous(&ends[1])).try_normalize(1e-12);
@@ -183,8 +183,9 @@ fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
 }
 
-/// The camera whose vanishing points are v and w: f² = -(v - c)·(w - c), and the directions (v - c,
-/// f), (w - c, f) are the axes. The origin is so far away; photographs do not tell their scale.
+/// Estimates the camera with vanishing points v and w: f² = -(v - c)·(w - c), and (v - c, f) and (w
+/// - c, f) are the directions of the axes. `distance` is the distance of the origin, since
+/// photographs do not determine their scale.
 ///
 /// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 /// section 8.6; Guillou and others, *Using Vanishing Points for Camera Calibration and Coarse 3D
@@ -192,7 +193,7 @@ fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
 ///
 /// # Errors
 ///
-/// Says why the lines tell no camera.
+/// If the lines do not determine a camera.
 pub fn from_vanishing_lines(known: &VanishingLines, distance: f64) -> Result<(Lens, Pose), Error> {
     let size = f64::from(known.size[0].max(known.size[1]));
     let [one, two] = known.axes;

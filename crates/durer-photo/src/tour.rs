@@ -1,4 +1,4 @@
-//! What a page needs on which one walks among photographs.
+//! Data for a web page that shows photographs in space.
 
 use crate::Reconstruction;
 use crate::geometry::camera::spread;
@@ -8,27 +8,27 @@ use serde::Serialize;
 /// A photograph in space.
 #[derive(Debug, Clone, Serialize)]
 pub struct Shown {
-    /// The view's number.
+    /// Number of the view.
     pub view: usize,
-    /// Its file's name.
+    /// File name.
     pub name: String,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
     /// Focal length in pixels.
     pub focal: f64,
-    /// Where it was taken.
+    /// Position of the camera.
     pub center: [f64; 3],
-    /// Rows: right, down, forward in the world.
+    /// Rows: right, down, and forward in the world.
     pub rotation: [[f64; 3]; 3],
-    /// The corners of the photograph on the plane it is shown on: upper left, upper right, lower
-    /// right, lower left.
+    /// Corners of the photograph on its plane: upper left, upper right, lower right, and lower
+    /// left.
     pub corners: [[f64; 3]; 4],
-    /// The points it sees, by number.
+    /// Numbers of the points that it observes.
     pub points: Vec<usize>,
 }
 
-/// The photographs whose place is known, each on the plane that fits the points it sees; where that
-/// is seen from too far aside, on one across its view.
+/// Photographs with a known pose, each on the plane that fits its points or, if that plane is too
+/// oblique, on a plane perpendicular to the view.
 pub fn shown(all: &Reconstruction) -> Vec<Shown> {
     let mut seen = vec![Vec::new(); all.views.len()];
     for (i, point) in all.points.iter().enumerate() {
@@ -52,7 +52,7 @@ pub fn shown(all: &Reconstruction) -> Vec<Shown> {
         let rays = [ray(0.0, 0.0), ray(width, 0.0), ray(width, height), ray(0.0, height)];
         let on = |(origin, normal): (Vector3<f64>, Vector3<f64>)| {
             let far = rays.map(|ray| (origin - center).dot(&normal) / ray.dot(&normal));
-            // A ray is as long as its depth is large.
+            // Rays have unit depth, so their lengths compare with depths.
             far.iter()
                 .all(|t| (0.3 * depth..3.0 * depth).contains(t))
                 .then(|| [0, 1, 2, 3].map(|i| center + far[i] * rays[i]))
@@ -73,8 +73,7 @@ pub fn shown(all: &Reconstruction) -> Vec<Shown> {
     list
 }
 
-/// The plane nearest to points: one of its own, and its normal; none where they are not flat at
-/// all.
+/// Plane that fits points best, as a point and a normal; `None` if the points are not nearly flat.
 fn plane(points: &[Vector3<f64>]) -> Option<(Vector3<f64>, Vector3<f64>)> {
     let [_, second, third] = spread(points);
     if points.len() < 8 || third > 0.7 * second {

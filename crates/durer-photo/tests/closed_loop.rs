@@ -1,5 +1,5 @@
-//! Cameras and points that are made up are found again: exactly, with false correspondences, and
-//! with errors as large as their covariance says.
+//! Closed-loop tests: synthetic cameras and points are reconstructed exactly, with outliers, and
+//! with errors that match their covariance.
 
 use durer_photo::adjust::{Options as Adjust, adjust, covariance};
 use durer_photo::geometry::align::{Similarity, cameras as aligned};
@@ -22,7 +22,7 @@ fn cameras(count: u32) -> Vec<Pose> {
     (0..count).map(camera).collect()
 }
 
-/// Cameras and points; observations have normal errors of so many pixels.
+/// Cameras and points with normally distributed errors of `noise` pixels.
 fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     let random = &mut Random::new(seed);
     let lens = Lens { radial: [-0.08, 0.03], ..Lens::new(SIZE, FOCAL) };
@@ -33,7 +33,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
         for (view, pose) in poses.iter().enumerate() {
             let error = noise * Vector2::new(random.normal(), random.normal());
             let pixel = lens.project(&pose.apply(&position)) + error;
-            // Things are hidden now and then.
+            // Points are occluded now and then.
             if random.unit() < 0.6 {
                 track.push(Observation { view, feature: 0, pixel });
             }
@@ -45,7 +45,7 @@ fn scene(views: u32, points: usize, noise: f64, seed: u64) -> Reconstruction {
     Reconstruction { lenses: vec![lens], views: poses.iter().enumerate().map(view).collect(), points }
 }
 
-/// What matching would have found, with a share of observations that are false.
+/// Matches of a scene, with a share of false observations.
 fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     let random = &mut Random::new(99);
     let track = |point: &Point| {
@@ -77,7 +77,7 @@ fn matches(all: &Reconstruction, focal: f64, outliers: f64) -> Matches {
     Matches { format: FORMAT.into(), pictures: all.views.iter().map(picture).collect(), links, tracks }
 }
 
-/// The farthest camera and the largest angle in degrees, after the best similarity.
+/// Maximum distance of cameras and maximum angle in degrees, after the best similarity.
 fn differences(found: &Reconstruction, truth: &Reconstruction) -> (f64, f64) {
     let poses = |all: &Reconstruction| all.views.iter().map(|view| view.pose.unwrap()).collect::<Vec<_>>();
     let (found, truth) = (poses(found), poses(truth));
@@ -98,7 +98,7 @@ fn cameras_are_found_from_correspondences() {
         let (far, angle) = differences(&solved.all, &truth);
         let wrong = (solved.all.lenses[0].focal / FOCAL - 1.0).abs();
         println!("{focal} {outliers}: {far} {angle} {wrong}");
-        // The scene is 3 long.
+        // The scene is 3 units wide.
         assert!(far < 0.003 && angle < 0.05 && wrong < 0.002, "{far} {angle} {wrong}");
     }
 }
@@ -118,7 +118,7 @@ fn nothing_depends_on_the_number_of_threads() {
 fn what_tells_no_depth_is_named() {
     let why =
         |all: &Reconstruction| solve(&matches(all, FOCAL, 0.0), &Options::default(), &|_| {}).err().unwrap().message;
-    // A camera that only turns.
+    // A camera that only rotates.
     let mut turned = scene(4, 300, 0.2, 3);
     let center = turned.views[0].pose.unwrap().center();
     for (i, view) in turned.views.iter_mut().enumerate() {
@@ -130,20 +130,20 @@ fn what_tells_no_depth_is_named() {
         }
     }
     assert!(why(&turned).contains("the camera turned and did not move"), "{}", why(&turned));
-    // False matches alone.
+    // False matches only.
     let chance = matches(&scene(4, 300, 0.2, 3), FOCAL, 1.0);
     let error = solve(&chance, &Options::default(), &|_| {}).err().unwrap();
     assert!(error.message.contains("enough points that agree"), "{error}");
 }
 
-/// The reconstruction in the frame in which the first camera is the true one, and so is one
-/// component of another's translation.
+/// Transforms the reconstruction so that the first camera and one component of another camera's
+/// translation equal the true ones.
 fn in_frame(found: &mut Reconstruction, truth: &Reconstruction, far: usize, component: usize) {
     let pose = |all: &Reconstruction, i: usize| all.views[i].pose.unwrap();
     let rotation = pose(truth, 0).rotation.transpose() * pose(found, 0).rotation;
     let (from, to) = (pose(found, 0).center(), pose(truth, 0).center());
     Similarity { scale: 1.0, rotation, shift: to - rotation * from }.apply_to(found);
-    // Growing about the first camera by s changes the other's translation from a + b to a + s b.
+    // Scaling by s about the first camera changes the other's translation from a + b to a + s b.
     let there = pose(found, far);
     let a = -(there.rotation * to)[component];
     let scale = (pose(truth, far).translation[component] - a) / (there.translation[component] - a);
@@ -177,7 +177,7 @@ fn errors_are_as_large_as_their_covariance_says() {
         sum += error.dot(&Cholesky::new(part).unwrap().solve(&error));
         count += n;
     }
-    // χ² of so many degrees of freedom has that mean and a variance of twice as much.
+    // χ² with n degrees of freedom has mean n and variance 2 n.
     let off = (sum - count as f64) / (2.0 * count as f64).sqrt();
     println!("χ² {sum} of {count}: {off} standard deviations");
     assert!(off.abs() < 4.0, "{sum} of {count}");

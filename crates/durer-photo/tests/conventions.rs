@@ -1,5 +1,5 @@
-//! What the table of conventions says, by hand: one camera that sees one point, written as each
-//! format has it.
+//! Tests of the table of conventions: one camera that observes one point, written by hand in each
+//! format.
 
 use durer_photo::format::{CONVENTIONS, Output, read, read_control};
 use durer_photo::matching::FORMAT;
@@ -8,17 +8,17 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use std::path::Path;
 use tempfile::TempDir;
 
-// A picture of 640 x 480 pixels, f = 500, k1 = 0.1; the camera is turned by a right angle about z,
+// A picture of 640 x 480 pixels, f = 500, k1 = 0.1. The camera is rotated by a right angle about z,
 // t = (0.5, 1, 5). It sees X = (1, 2, 3) at P = (-1.5, 2, 8): p = (-0.1875, 0.25), r = 1 + 0.1 |p|²
-// = 1.009765625, and so 94.66552734375 pixels left of the middle and 126.220703125 below it.
+// = 1.009765625, and so 94.66552734375 pixels left of the centre and 126.220703125 below it.
 const PIXEL: [f64; 2] = [320.0 - 94.66552734375, 240.0 + 126.220703125];
 const CENTER: [f64; 3] = [-1.0, 0.5, -5.0];
 const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// A format by its name in the table, what is read, and its files.
+/// Name of a format in the table, path to read, and files.
 type Case = (&'static str, &'static str, Vec<(&'static str, Vec<u8>)>);
 
-/// Each format that is read.
+/// Files of every format that is read.
 fn files() -> Vec<Case> {
     let bundler = "# Bundle file v0.3\n1 1\n500 0.1 0\n0 -1 0\n-1 0 0\n0 0 -1\n0.5 -1 -5\n1 2 3\n10 20 30\n1 0 0 -94.66552734375 -126.220703125\n";
     // A half turn about (1, -1, 0).
@@ -32,7 +32,7 @@ fn files() -> Vec<Case> {
         "viewTransform": {"rows": [[0, -1, 0, 0.5], [-1, 0, 0, -1], [0, 0, -1, -5], [0, 0, 0, 1]]}}"#;
     let ply = "ply\nformat ascii 1.0\ncomment cameras at the end: 1\nelement vertex 2\nproperty double x\nproperty double y\nproperty double z\n\
         property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n1 2 3 10 20 30\n-1 0.5 -5 255 0 0\n";
-    // A camera within a node that is moved, turned by a half turn about x and twice as large; and
+    // A camera in a node that is translated, rotated by a half turn about x, and scaled by 2; and
     // 1, 2, 3 as floats, 10, 20, 30 as bytes.
     let data = "AACAPwAAAEAAAEBAChQe/w==";
     let gltf = format!(
@@ -90,7 +90,7 @@ fn files() -> Vec<Case> {
     ]
 }
 
-/// Whether it is the camera and the point of the hand's calculation.
+/// Checks that the camera and the point equal the ones computed by hand.
 #[track_caller]
 fn is_as_meant(all: &Reconstruction, name: &str) {
     assert_eq!(all.views.len(), usize::from(name != "PLY"), "{name}");
@@ -115,8 +115,7 @@ fn view_is_as_meant(all: &Reconstruction, view: &View, name: &str) {
     let radial = if name == "fSpy" { 0.0 } else { 0.1 };
     assert!((lens.focal - 500.0).abs() < 1e-9, "{name}: {}", lens.focal);
     assert_eq!((lens.aspect, lens.center, lens.radial), (1.0, [320.0, 240.0], [radial, 0.0]), "{name}");
-    // By whatever way it is written, the camera sees the point at the pixel that was worked out by
-    // hand.
+    // In every format, the camera sees the point at the pixel computed by hand.
     let pixel = lens.project(&pose.apply(&Vector3::new(1.0, 2.0, 3.0)));
     assert!(name == "fSpy" || (pixel - Vector2::from(PIXEL)).norm() < 1e-9, "{name}: {pixel}");
 }
@@ -145,7 +144,7 @@ fn every_format_means_what_the_table_says() {
         files.iter().for_each(|(file, bytes)| put(place.path(), file, bytes));
         let all = told(&place.path().join(path));
         is_as_meant(&all, name);
-        // What is written is read as the same again.
+        // Written files are read back as the same.
         let row = CONVENTIONS.iter().find(|row| row.name == name).unwrap();
         if row.way.contains("out") {
             let again = place.path().join("again").join(path);
@@ -171,8 +170,8 @@ fn what_is_written_for_other_programs_means_what_the_table_says() {
         value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect::<Vec<f64>>()
     };
     assert!((Vector3::from_iterator(numbers(&node["translation"])) - Vector3::from(CENTER)).norm() < 1e-12);
-    // From the camera's frame to the world: its -z is the world's z, its x the world's -y, and its
-    // y the world's -x.
+    // From the camera frame to the world: -z becomes the world's z, x the world's -y, and y the
+    // world's -x.
     let q = numbers(&node["rotation"]);
     let q = nalgebra::UnitQuaternion::from_quaternion(nalgebra::Quaternion::new(q[3], q[0], q[1], q[2]));
     for (axis, there) in [(-Vector3::z(), Vector3::z()), (Vector3::x(), -Vector3::y()), (Vector3::y(), -Vector3::x())] {
@@ -193,7 +192,7 @@ fn what_is_written_for_other_programs_means_what_the_table_says() {
     assert_eq!(ply[body..], [row([1.0, 2.0, 3.0], [10, 20, 30]), row(CENTER, [255, 0, 0])].concat());
 }
 
-/// A cloud of two points as PLY, for each way of writing its numbers.
+/// A cloud of two points as PLY, in each encoding.
 fn clouds() -> Vec<(&'static str, Vec<u8>)> {
     let head = |format: &str, shade: &str| {
         format!(
@@ -232,7 +231,7 @@ fn clouds_are_read_however_their_numbers_are_written() {
         let all = read(&place.path().join("cloud.ply")).unwrap();
         let rows: Vec<_> = all.points.iter().map(|point| (<[f64; 3]>::from(point.position), point.color)).collect();
         assert_eq!(rows, [([0.5, -1.0, 0.25], [0, 255, 128]), ([3.0, 4.0, 1e9], [1, 2, 3])], "{format}");
-        // What is cut off within the points is refused.
+        // Files truncated within the points are rejected.
         for cut in 0..bytes.len() - 11 {
             put(place.path(), "cloud.ply", &bytes[..cut]);
             assert!(
@@ -316,13 +315,13 @@ fn binary_gltf_is_read_and_cameras_of_other_programs_have_a_thousand_rows() {
     let head = [&b"glTF"[..], &2_u32.to_le_bytes(), &(12 + chunks.len() as u32).to_le_bytes()].concat();
     put(place.path(), "c.glb", &[head, chunks].concat());
     let all = read(&place.path().join("c.glb")).unwrap();
-    // Both have one lens, of a right angle from top to bottom.
+    // Both cameras share a lens with a vertical field of view of a right angle.
     assert_eq!((all.lenses.len(), all.views.len(), all.lenses[0].size), (1, 2, [1500, 1000]));
     assert!((all.lenses[0].focal - 500.0).abs() < 1e-9 && all.views[0].name == "Camera");
     let centers: Vec<_> = all.views.iter().map(|view| view.pose.unwrap().center()).collect();
     assert_eq!(centers, [Vector3::new(1.0, 2.0, 3.0), Vector3::zeros()]);
-    // It looks along -z: what is there and to the right, and higher, is right of the middle and
-    // above it.
+    // The camera looks along -z: a point in front, to the right and higher, is right of the centre
+    // and above it.
     let pixel = all.lenses[0].project(&all.views[1].pose.unwrap().apply(&Vector3::new(1.0, 0.5, -2.0)));
     assert!((pixel - Vector2::new(1000.0, 375.0)).norm() < 1e-9, "{pixel}");
     let positions: Vec<[f64; 3]> = all.points.iter().map(|point| point.position.into()).collect();

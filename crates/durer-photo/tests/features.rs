@@ -1,8 +1,9 @@
-//! Salient points are where they are, and turn and grow with the picture.
+//! Tests of salient points: they are found at their positions, and rotate and scale with the
+//! picture.
 
 use durer_photo::feature::{Gray, features};
 
-/// A round blot at a place, in pixels from the upper left corner.
+/// A round blob, at a position in pixels from the upper left corner.
 fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
     let value = |i: usize| {
         let (dx, dy) = ((i % side) as f32 + 0.5 - x, (i / side) as f32 + 0.5 - y);
@@ -13,7 +14,8 @@ fn blot(side: usize, x: f32, y: f32, sigma: f32) -> Gray {
 
 #[test]
 fn blots_are_found_where_they_are() {
-    // Pictures of up to 1000 pixels are doubled first, larger ones are not; blots of all octaves.
+    // Pictures of up to 1000 pixels are doubled first, larger ones are not. The blobs cover all
+    // octaves.
     for (side, x, y, sigma) in [
         (100, 50.3, 47.8, 2.0),
         (90, 40.4, 44.1, 1.3),

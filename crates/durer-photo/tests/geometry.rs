@@ -1,4 +1,4 @@
-//! The small solvers find what made their data, and say so where data tell nothing.
+//! Tests of the small solvers: they find the model of their data, and report degenerate data.
 
 use durer_photo::geometry::align::{Similarity, cameras, similarity};
 use durer_photo::geometry::camera::{linear, take_apart};
@@ -30,7 +30,7 @@ fn seen(pose: &Pose, point: &Vector3<f64>) -> Vector2<f64> {
     Vector2::new(p.x / p.z, p.y / p.z)
 }
 
-/// Whether two matrices are the same up to a factor.
+/// Returns true if two matrices are equal up to a factor.
 fn same(a: &Matrix3<f64>, b: &Matrix3<f64>) -> bool {
     let (a, b) = (a / a.norm(), b / b.norm());
     (a - b).norm().min((a + b).norm()) < 1e-6
@@ -57,7 +57,7 @@ fn two_views_are_found_from_five_seven_and_eight_points() {
         assert!((found.rotation - second.rotation).norm() < 1e-9);
         assert!((found.translation - second.translation.normalize()).norm() < 1e-9);
     }
-    // A polynomial of degree ten loses digits where five points nearly fit a family of motions.
+    // The polynomial of degree ten loses digits if five points nearly fit a family of motions.
     assert!(missed <= 3, "{missed}");
 }
 
@@ -72,7 +72,7 @@ fn three_points_give_the_pose_among_others() {
         assert!(poses.iter().any(|pose| near(pose) < 1e-5), "{:?}", poses.iter().map(near).collect::<Vec<_>>());
         assert!(poses.len() <= 4);
     }
-    // In a line, no pose is better than another.
+    // For points on a line, the pose is not unique.
     let line = [0.0, 1.0, 2.0].map(|x| Vector3::new(x, x, 5.0));
     assert!(p3p(&line, &line).is_empty());
 }
@@ -86,12 +86,12 @@ fn false_matches_are_told_from_true_ones() {
         let (a, b) = (seen(&Pose::identity(), &p), seen(&second, &p));
         (500.0 * a, if truth { 500.0 * b } else { 300.0 * vector(random, 1.0).xy() })
     };
-    // More than half are false.
+    // More than half of the pairs are outliers.
     let pairs: Vec<_> = (0..300).map(|i| pair(random, i % 5 < 2)).collect();
     let search = Search { threshold: 0.5, samples: 20000, seed: 7 };
     let (f, inliers) = ransac(&Pairs(&pairs), &search).unwrap();
     assert!((0..300).filter(|i| i % 5 < 2).all(|i| inliers.contains(&i)));
-    // By chance some false ones lie on their lines.
+    // By chance, some outliers lie on their epipolar lines.
     assert!(inliers.len() < 130, "{}", inliers.len());
     assert_eq!(ransac(&Pairs(&pairs), &search).unwrap(), (f, inliers));
 }
@@ -106,7 +106,7 @@ fn a_similarity_is_found_again() {
     assert!((found.scale - 2.5).abs() < 1e-12 && (found.rotation - rotation).norm() < 1e-12);
     let line: Vec<_> = (0..5).map(|i| Vector3::new(f64::from(i), 0.0, 0.0)).collect();
     assert_eq!(similarity(&line, &line), None);
-    // Cameras in a line tell by their own rotations how it is turned about itself.
+    // The rotations of cameras on a line determine the rotation about the line.
     let mut turned = |center: &Vector3<f64>| Pose::at(center, rotation_of(&vector(random, 2.0)));
     let there: Vec<Pose> = line.iter().map(&mut turned).collect();
     let mut all = Reconstruction::default();
@@ -150,18 +150,18 @@ fn known(focal: Option<f64>) -> Known {
 #[test]
 fn one_photograph_of_known_points_gives_its_camera() {
     let (lens, truth, mut pairs) = photographed(20, false);
-    // Two are wrong.
+    // Two outliers.
     pairs[3].1.x += 90.0;
     pairs[11].1.y -= 60.0;
     let found = camera(&pairs, &known(None)).unwrap();
     assert!((found.lens.focal - lens.focal).abs() < 1e-3, "{:?}", found.lens);
     assert!((found.pose.center() - truth.center()).norm() < 1e-5);
     assert!(!found.inliers.contains(&3) && !found.inliers.contains(&11) && found.inliers.len() == 18);
-    // In a plane, with a focal length that is known.
+    // In a plane, with a known focal length.
     let (lens, truth, pairs) = photographed(12, true);
     let found = camera(&pairs, &known(Some(lens.focal))).unwrap();
     assert!((found.pose.center() - truth.center()).norm() < 1e-4);
-    // The direct linear transform alone, of a lens without distortion.
+    // The direct linear transform alone, for a lens without distortion.
     let plain = Lens::new([800, 600], 750.0);
     let points: Vec<_> = photographed(8, false).2.into_iter().map(|pair| pair.0).collect();
     let pixels: Vec<_> = points.iter().map(|p| plain.project(&truth.apply(p))).collect();
@@ -190,7 +190,7 @@ fn vanishing_lines_give_the_camera() {
     let lens = Lens::new([1000, 700], 900.0);
     let truth = Pose::look_at(&Vector3::new(4.0, 3.0, 5.0), &Vector3::zeros(), &Vector3::y());
     let pixel = |x: f64, y: f64, z: f64| lens.project(&truth.apply(&Vector3::new(x, y, z)));
-    // Towards -x, and towards -z: both lie on the far side.
+    // Towards -x and -z, which both lie on the far side.
     let lines = [
         vec![[pixel(1.0, 0.0, 0.0), pixel(-2.0, 0.0, 0.0)], [pixel(1.0, 0.0, 1.0), pixel(-2.0, 0.0, 1.0)]],
         vec![[pixel(0.0, 0.0, 1.0), pixel(0.0, 0.0, -2.0)], [pixel(1.0, 0.5, 1.0), pixel(1.0, 0.5, -2.0)]],

@@ -1,5 +1,5 @@
-//! What other programs wrote is read as they meant it: reprojection gives the figures that they, or
-//! their papers, give.
+//! Tests with files of other programs: reprojection gives the figures published by the programs or
+//! their papers.
 
 use durer_photo::adjust::{Loss, Options, adjust, covariance};
 use durer_photo::format::{Output, read, read_project};
@@ -13,7 +13,7 @@ use durer_photo::{matching, photo};
 use nalgebra::{Cholesky, DMatrix, DVector, Vector3};
 use std::path::{Path, PathBuf};
 
-/// The shared photographs, if they are here.
+/// Folder of shared photographs, if it exists.
 fn samples() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("samples/photos");
@@ -24,7 +24,7 @@ fn samples() -> Option<PathBuf> {
     Some(folder)
 }
 
-/// A file's reconstruction, with how many views, points and observations it must have.
+/// Reads a file and checks its numbers of views, points, and observations.
 fn sample(folder: &Path, name: &str, views: usize, points: usize, observations: usize) -> (Reconstruction, Fit) {
     let all = read(&folder.join(name)).unwrap();
     let fit = all.fit();
@@ -72,7 +72,7 @@ fn adjusting_reaches_the_published_ends() {
         let report = adjust(&mut all, &Options::default());
         assert!(report.converged && all.fit().cost <= before, "{name}");
     }
-    // Its false observations are many, and OpenSfM gives them less weight.
+    // It has many outliers, which OpenSfM weights less.
     let mut berlin = read(&folder.join("opensfm-berlin/reconstruction_example.json")).unwrap();
     let before = berlin.fit().cost;
     adjust(&mut berlin, &Options { loss: Loss::Huber(3.0), ..Options::default() });
@@ -106,7 +106,7 @@ fn every_format_gives_back_what_it_was_given() {
     }
 }
 
-/// glTF has no tracks, and places in single precision; PLY has no cameras.
+/// glTF has no tracks, and stores positions in single precision; PLY has no cameras.
 #[test]
 fn gltf_gives_back_cameras_and_ply_gives_back_points() {
     let Some(folder) = samples() else { return };
@@ -126,13 +126,13 @@ fn gltf_gives_back_cameras_and_ply_gives_back_points() {
             assert_eq!(ours.position, theirs.position.map(|value| f64::from(value as f32)));
         }
     }
-    // With what is in the glTF file, lens and pose, all is seen where it was.
+    // With the lens and pose of the glTF file, the projections stay the same.
     let mut seen = berlin.clone();
     (seen.lenses, seen.views) = (gltf.lenses, gltf.views);
     near(seen.fit().cost, berlin.fit().cost, 1e-6);
 }
 
-/// The cameras and points of photographs of a folder.
+/// Reconstructs the photographs of a folder.
 fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     let options = matching::Options { features: 1500, ..Default::default() };
     let described = names.iter().map(|name| {
@@ -143,8 +143,8 @@ fn solved(folder: &Path, names: &[String]) -> Reconstruction {
     solve(&matches, &Default::default(), &|_| {}).unwrap().all
 }
 
-/// How far the centres of cameras are from others' at most, by number, as a share of the largest
-/// distance between two of these.
+/// Maximum distance between corresponding camera centres, as a share of the largest distance
+/// between two centres of `theirs`.
 fn apart(ours: &Reconstruction, theirs: &Reconstruction) -> f64 {
     let both = ours.views.iter().zip(&theirs.views);
     let (ours, theirs): (Vec<_>, Vec<_>) = both.filter_map(|(a, b)| Some((a.pose?.center(), b.pose?.center()))).unzip();
@@ -176,22 +176,23 @@ fn photographs_become_cameras() {
     stored_places_are_off(&solved, &bundler);
 }
 
-/// The places that Bundler stored are off by more than a hundredth of their extent. It gave each
-/// photograph a focal length of its own, from 638 to 729 pixels, though EXIF tells one, and least
-/// squares took some false observations for true.
+/// Shows that the positions stored by Bundler are off by more than a hundredth of their extent.
+/// Bundler gave each photograph its own focal length, from 638 to 729 pixels, although EXIF
+/// contains only one, and least squares accepted some outliers.
 fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
-    // What Bundler saw fits our cameras better than its own, though it chose by these what it kept.
+    // Bundler's observations fit our cameras better than its own, although it selected them with
+    // its own.
     let (ours, theirs) = (median_residual(solved, bundler), median_residual(bundler, bundler));
     println!("median residual of what Bundler saw: {ours} with our cameras, {theirs} with its own");
     assert!(ours < 0.85 * theirs, "{ours} {theirs}");
-    // What it saw, with one lens, gives ours.
+    // Its observations, with a single lens, reproduce our cameras.
     let mut one = bundler.clone();
     one.lenses = vec![durer_photo::Lens { radial: [0.0; 2], ..bundler.lenses[0] }];
     one.views.iter_mut().for_each(|view| view.lens = 0);
     adjust(&mut one, &Options { loss: Loss::Cauchy(1.0), ..Options::default() });
     assert!(apart(solved, &one) < 0.005, "{}", apart(solved, &one));
-    // So does what it saw with its lenses and least squares, but for the few observations that are
-    // more than two pixels off.
+    // So do its observations with its lenses and least squares, except the few that are off by more
+    // than two pixels.
     let mut clean = bundler.clone();
     let mut dropped = 0;
     for (point, known) in clean.points.iter_mut().zip(&one.points) {
@@ -206,8 +207,7 @@ fn stored_places_are_off(solved: &Reconstruction, bundler: &Reconstruction) {
     assert!(dropped < 25 && from_ours < 0.01 && from_stored > 0.015, "{dropped} {from_ours} {from_stored}");
 }
 
-/// The median residual of what was seen, each point where the rays of some cameras come nearest to
-/// each other.
+/// Median residual of observations, with each point triangulated from the rays of `cameras`.
 fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     let mut all = Vec::new();
     for point in &seen.points {
@@ -224,8 +224,8 @@ fn median_residual(cameras: &Reconstruction, seen: &Reconstruction) -> f64 {
     all[all.len() / 2]
 }
 
-/// How far places are from where they were, if Bundler's observations have normal errors as large
-/// as their residuals: the median of what so many draws from the covariance of its places give.
+/// Checks the uncertainty of the positions if Bundler's observations have normal errors as large as
+/// their residuals: the median over draws from the covariance.
 #[test]
 fn what_bundler_saw_does_not_tell_places_to_a_hundredth() {
     let Some(folder) = samples() else { return };
@@ -259,7 +259,7 @@ fn a_wrong_focal_length_in_exif_is_found_out() {
     let Some(folder) = samples() else { return };
     let bundler = read(&folder.join("gtsam/Balbianello.out")).unwrap();
     let names: Vec<String> = (1..6).map(|i| format!("BalbianelloMedium-{i}.jpg")).collect();
-    // The photographs were made smaller, and EXIF tells of 3767 pixels.
+    // The photographs were reduced in size, and EXIF contains 3767 pixels.
     let solved = solved(&folder.join("gtsam"), &names);
     assert_eq!(solved.registered(), 5);
     assert!(solved.fit().rms <= 0.6 && (solved.lenses[0].focal - 520.0).abs() < 15.0, "{:?}", solved.lenses[0]);
@@ -275,7 +275,7 @@ fn three_photographs_of_a_phone_become_cameras() {
     let solved = solved(&folder.join("images"), &names);
     assert_eq!(solved.registered(), 3);
     let (ours, theirs) = (solved.fit(), opensfm.fit());
-    // Features are found in photographs that were made smaller, by 3264 / 1600.
+    // Features are found in photographs reduced by 3264 / 1600.
     println!("{ours:?} {}", apart(&solved, &opensfm));
     assert!(ours.rms <= 0.6 * 3264.0 / 1600.0 && ours.rms < 0.5 * theirs.rms, "{ours:?}");
     assert!(apart(&solved, &opensfm) < 0.01, "{}", apart(&solved, &opensfm));
@@ -286,8 +286,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     let Some(folder) = samples() else { return };
     let all = read(&folder.join("fspy/json_export.json")).unwrap();
     let (lens, pose) = (all.lenses[0], all.views[0].pose.unwrap());
-    // The file: -x leads to (1.605, 0.001), z to (-0.652, 0.003), y to (-0.375, -436), where the
-    // longer side is from -1 to 1.
+    // According to the file, -x leads to (1.605, 0.001), z to (-0.652, 0.003), and y to (-0.375,
+    // -436), with the longer side from -1 to 1.
     for (axis, x, y) in [
         (-nalgebra::Vector3::x(), 1.6051650133994935_f64, 0.001021010320067342_f64),
         (nalgebra::Vector3::z(), -0.652074716204382, 0.0029610261811691915),
@@ -295,7 +295,8 @@ fn fspy_cameras_see_their_vanishing_points() {
     ] {
         let pixel = lens.project(&(pose.rotation * axis));
         let (u, v) = ((pixel.x - lens.center[0]) / 719.5, (lens.center[1] - pixel.y) / 719.5);
-        // The axis y is seen nearly across: its vanishing point is far, and known to fewer digits.
+        // The y axis is almost perpendicular to the view: its vanishing point is far away and less
+        // exact.
         assert!((u - x).abs() < 1e-3 * (1.0 + y.abs()) && (v - y).abs() < 1e-3 * (1.0 + y.abs()), "{u} {v}");
     }
     let mut found = 0;

@@ -4,6 +4,7 @@ use crate::work::install;
 use durer::image::compare::{self as comparing, Options, Picture, Scale};
 use durer::image::{Image, Layer, Transfer, WriteOptions, format_for};
 use durer::math::Vec3;
+use durer::report;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray3};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -37,7 +38,7 @@ pub fn compare<'py>(
     let picture = Picture { image: image(&picture.0)?, scale: scale(picture.1) };
     let options = Options { tolerance, allowed, ..Options::default() };
     let found = install(py, None, || comparing::compare(&reference, &picture, &options)).map_err(wrong)?;
-    Ok((durer_cli::embed::comparison(&found).to_string(), found.flip_map.into_pyarray(py)))
+    Ok((report::comparison(&found, &[]).to_string(), found.flip_map.into_pyarray(py)))
 }
 
 /// A picture with its name, the share of each pixel that is seen, and whether it is light.

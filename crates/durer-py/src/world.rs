@@ -2,14 +2,17 @@
 
 use crate::rays::{self, JOB, Rays};
 use crate::work::{LOOK, each, install, look, pool};
+use durer::check::{Subject, check};
 use durer::diag::{Diagnostics, Files, Severity};
 use durer::film::aov::Aov;
 use durer::image::Layer;
-use durer::render::{self, Control, RenderOutcome};
+use durer::options::RenderOptions;
+use durer::render::explain::Names;
+use durer::render::{self, RenderOutcome};
+use durer::report;
 use durer::source::SourceError;
 use durer::world::Interaction;
 use durer::{Loaded, load, load_text};
-use durer_cli::embed::{self, Asked};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyOSError, PyValueError};
@@ -77,8 +80,13 @@ fn unreadable(error: &SourceError, path: &Path) -> PyErr {
     }
 }
 
-fn asked(words: &[String]) -> PyResult<Asked> {
-    Asked::new(words).map_err(PyValueError::new_err)
+/// Options as pairs of name and text.
+type Pairs = Vec<(String, String)>;
+
+fn options(pairs: &Pairs) -> PyResult<RenderOptions> {
+    let mut options = RenderOptions::default();
+    pairs.iter().try_for_each(|(name, text)| options.set(name, text)).map_err(PyValueError::new_err)?;
+    Ok(options)
 }
 
 #[pymethods]
@@ -90,9 +98,9 @@ impl World {
         path: PathBuf,
         text: Option<Vec<u8>>,
         given: Vec<(String, Vec<u8>)>,
-        words: Vec<String>,
+        pairs: Pairs,
     ) -> PyResult<Self> {
-        let mut options = asked(&words)?.load_options().map_err(PyValueError::new_err)?;
+        let mut options = options(&pairs)?.load_options();
         options.given = given.into_iter().map(|(name, bytes)| (name, bytes.into())).collect();
         install(py, options.threads, || {
             let (mut files, mut read) = (Files::default(), Diagnostics::default());
@@ -107,7 +115,8 @@ impl World {
                 (Some(loaded), Some(world)) => Ok(World { loaded, world, files, read }),
                 _ => {
                     let message = lines(&files, &read, |severity| severity == Severity::Error).join("\n");
-                    Err(SceneError::new_err((message, embed::reported(&files, &read).to_string())))
+                    let found = report::findings(&durer::check::reported(&read), &files);
+                    Err(SceneError::new_err((message, found.to_string())))
                 }
             }
         })
@@ -139,17 +148,17 @@ impl World {
     }
 
     /// A part of a picture of which nothing is made yet.
-    fn part(&self, py: Python, words: Vec<String>) -> PyResult<Part> {
-        let asked = asked(&words)?;
-        let job = asked.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let part = install(py, None, || render::PartialRender::new(&self.world, &job, asked.shard()))
+    fn part(&self, py: Python, pairs: Pairs) -> PyResult<Part> {
+        let options = options(&pairs)?;
+        let job = options.resolve(&self.loaded).map_err(PyValueError::new_err)?;
+        let part = install(py, None, || render::PartialRender::new(&self.world, &job, options.shard))
             .map_err(|e| PyValueError::new_err(e.to_string()))?;
         Ok(Part(Arc::new(part)))
     }
 
     /// Goes on with a part; says whether it is finished.
-    fn render(&self, py: Python, part: &Part, words: Vec<String>, watch: Option<Py<PyAny>>) -> PyResult<bool> {
-        let (control, part): (Control, _) = (asked(&words)?.control(), part.0.clone());
+    fn render(&self, py: Python, part: &Part, pairs: Pairs, watch: Option<Py<PyAny>>) -> PyResult<bool> {
+        let (control, part) = (options(&pairs)?.control(), part.0.clone());
         let (stop, interrupted) = py.detach(|| {
             std::thread::scope(|scope| {
                 let (end, wait) = mpsc::channel::<()>();
@@ -237,16 +246,21 @@ impl World {
     }
 
     /// Why a pixel has its colour, as JSON.
-    fn explain(&self, py: Python, words: Vec<String>, pixel: (u32, u32)) -> PyResult<String> {
-        let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        let found = install(py, None, || embed::explanation(&self.loaded, &self.world, &self.files, &job, pixel));
-        found.map(|value| value.to_string()).map_err(PyValueError::new_err)
+    fn explain(&self, py: Python, pairs: Pairs, pixel: (u32, u32)) -> PyResult<String> {
+        let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
+        let explain = || render::explain::explain(&self.world, &job, pixel.0, pixel.1);
+        let found = install(py, None, explain).map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let names = Names { scene: &self.loaded.scene, world: &self.world, files: &self.files };
+        Ok(report::explanation(&report::Subject::Pixel(found), &names).to_string())
     }
 
     /// What is odd about it, as JSON.
-    fn check(&self, py: Python, words: Vec<String>) -> PyResult<String> {
-        let job = asked(&words)?.job(&self.loaded).map_err(PyValueError::new_err)?;
-        Ok(install(py, None, || embed::findings(&self.loaded, &self.world, &self.files, &self.read, &job).to_string()))
+    fn check(&self, py: Python, pairs: Pairs) -> PyResult<String> {
+        let job = options(&pairs)?.resolve(&self.loaded).map_err(PyValueError::new_err)?;
+        let World { loaded, world, files, read } = self;
+        let (scene, dialect) = (&loaded.scene, loaded.dialect);
+        let subject = Subject { scene, world, dialect, files, job: &job, exposure: 1.0, rejected: None };
+        Ok(install(py, None, || report::findings(&check(&subject, read), files).to_string()))
     }
 }
 

@@ -8,10 +8,6 @@ use std::sync::{Once, mpsc};
 /// More threads than this are never started, whatever is asked for.
 pub const MOST: usize = 1024;
 
-/// Room for the recursion of Whitted's tracer, 256 levels at most. Paths are loops and need some
-/// 64 KiB, whatever their depth.
-const STACK: usize = 16 << 20;
-
 /// How many threads there should be: as asked for; else as `RAYON_NUM_THREADS` says; else as many
 /// as the machine has.
 fn wanted(asked: Option<usize>) -> usize {
@@ -25,7 +21,7 @@ fn started(asked: Option<usize>) -> Vec<mpsc::Sender<ThreadBuilder>> {
     let start = |_| {
         let (sender, receiver) = mpsc::channel::<ThreadBuilder>();
         let run = move || receiver.recv().into_iter().for_each(ThreadBuilder::run);
-        std::thread::Builder::new().stack_size(STACK).spawn(run).ok().map(|_| sender)
+        std::thread::Builder::new().spawn(run).ok().map(|_| sender)
     };
     (0..wanted(asked)).map_while(start).collect()
 }

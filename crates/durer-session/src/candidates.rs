@@ -1,4 +1,4 @@
-//! What each object says of a ray, and why it is not the one that is seen.
+//! Tests of a ray against each object, with the reason why an object is not the one that is seen.
 
 use crate::document::Compiled;
 use crate::protocol::{CastAccount, HitAccount, ObjectTest, Row, Verdict};
@@ -8,7 +8,7 @@ use durer::shape::{Plane, Primitive, Shape, Sphere};
 use durer::world::{Geometry, Hit, Object};
 use glam::DVec3;
 
-/// At most so many objects are told about.
+/// Maximum number of objects that are listed.
 const MAX_TESTS: usize = 200;
 
 /// Asks all objects about a ray.
@@ -92,7 +92,7 @@ fn text(t: f32) -> String {
     number(t.into())
 }
 
-/// How an object of a kind is met, in numbers of its own space.
+/// How an object of a kind is met, in numbers of object space.
 fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
     let line = Line { origin: ray.origin.as_dvec3(), dir: ray.dir.as_dvec3() };
     let back = object.center;
@@ -122,7 +122,7 @@ fn formulas(object: &Object, ray: &Ray, hit: Option<&Hit>) -> Vec<Row> {
     }
 }
 
-/// What follows.
+/// The conclusion.
 fn so(words: &str) -> Row {
     Row { name: "so".into(), formula: String::new(), numbers: String::new(), result: words.into(), value: None }
 }
@@ -198,7 +198,7 @@ fn triangle(corners: [Vec3; 3], line: &Line) -> Vec<Row> {
     rows
 }
 
-/// Where a line meets another shape, by the shape itself.
+/// Crossings of a line with another shape, found by the shape.
 fn crossings(shape: &Primitive, back: Vec3, line: &Line) -> Vec<Row> {
     let moved = Line { origin: line.origin - back.as_dvec3(), dir: line.dir };
     let mut found: Vec<f64> = Vec::new();

@@ -49,7 +49,8 @@ impl Document {
         std::str::from_utf8(&self.bytes).ok()
     }
 
-    /// Reads and compiles the text. Tells what is wrong with it; after errors, what was compiled before
+    /// Reads and compiles the text. Tells what is wrong with it; after errors, what was compiled
+    /// before
     /// stays.
     pub fn compile(&mut self) -> (bool, Vec<Finding>) {
         let (mut files, mut diagnostics) = (Files::default(), Diagnostics::default());
@@ -62,7 +63,7 @@ impl Document {
         (true, findings)
     }
 
-    /// Where the camera's statement stands in the text: keyword to closing brace.
+    /// Byte range of the camera's statement in the text, from its keyword to its closing brace.
     pub fn camera_statement(&self) -> Option<(usize, usize)> {
         let compiled = self.compiled.as_ref()?;
         let span = compiled.loaded.scene.camera_span;
@@ -105,7 +106,7 @@ impl Compiled {
         Names { files: &self.files, scene: &self.loaded.scene, world: &self.world }
     }
 
-    /// What `durer check` says.
+    /// Findings of `durer check`.
     pub fn check(&self, job: &Job) -> Vec<Finding> {
         let subject = Subject {
             scene: &self.loaded.scene,

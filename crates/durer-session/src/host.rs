@@ -4,7 +4,7 @@ use crate::protocol::{Answer, Ask, Event, Request};
 use crate::session::{Clock, Session, Start};
 use std::collections::BTreeMap;
 
-/// At most so many sessions: each has a scene in memory.
+/// Maximum number of sessions; each has a scene in memory.
 const MAX_SESSIONS: usize = 64;
 
 /// The sessions of a page.
@@ -29,7 +29,7 @@ impl Host {
         let Ask { session, id, request } = match serde_json::from_str(message) {
             Ok(ask) => ask,
             Err(error) => {
-                let event = Event::Refused { why: format!("this is no question: {error}") };
+                let event = Event::Refused { why: format!("this is not a request: {error}") };
                 return send(Answer { session: 0, id: 0, event }.encode(&[]));
             }
         };
@@ -51,12 +51,13 @@ impl Host {
         found.handle(request, &mut say);
     }
 
-    /// Whether there is work for [`Host::step`].
+    /// Returns true if there is work for [`Host::step`].
     pub fn is_busy(&self) -> bool {
         self.sessions.values().any(Session::is_busy)
     }
 
-    /// Does some milliseconds of work: for a session of which nothing is seen yet, best the one that was asked last;
+    /// Does some milliseconds of work: for a session of which nothing is seen yet, best the one
+    /// that was asked last;
     /// else for each in turn.
     pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
         let Some(session) = self.next() else { return };

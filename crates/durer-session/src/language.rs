@@ -4,7 +4,7 @@ use crate::protocol::{Word, WordField};
 use durer::dialect::Dialect;
 use durer::format::course::reference::{Entry, FieldEntry, Spelling, entries};
 
-/// All words that our own dialect has.
+/// Words of Dürer's own dialect.
 pub(crate) fn words() -> Vec<Word> {
     entries().iter().filter_map(word).collect()
 }

@@ -1,7 +1,9 @@
-//! A scene that somebody looks at: its text is edited, the camera is moved, pictures come from coarse to
+//! A scene that somebody looks at: its text is edited, the camera is moved, pictures come from
+//! coarse to
 //! fine, and pixels are explained.
 //!
-//! [`Session`] does the work and [`Host`] keeps several. They speak the messages of [`protocol`], and know
+//! [`Session`] does the work and [`Host`] keeps several. They speak the messages of [`protocol`],
+//! and know
 //! neither sockets nor browsers: `durer-live` and `durer-wasm` carry the messages.
 
 mod candidates;

@@ -11,7 +11,7 @@ use glam::Quat;
 /// How near to its axis a camera that orbits may come, in radians.
 const POLE: f32 = 0.02;
 
-/// How far away what a camera looks at is.
+/// Distance of what a camera looks at.
 pub(crate) fn distance(world: &World) -> f32 {
     let frame = world.camera_frame();
     let ray = durer::math::Ray::new(frame.eye, frame.forward);
@@ -112,7 +112,7 @@ fn spelled(field: &Field) -> &'static str {
     field.spelling(Dialect::Durer).unwrap_or(field.name)
 }
 
-/// A camera as a page is told.
+/// The state of a camera, for the page.
 pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance: f32) -> CameraState {
     let (camera, frame) = (world.camera(), world.camera_frame());
     CameraState {

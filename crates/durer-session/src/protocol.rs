@@ -1,7 +1,9 @@
 //! The messages between a page and a session.
 //!
-//! A page sends [`Ask`]s as JSON and gets [`Answer`]s. An answer is written as the length of its JSON (four
-//! bytes, little endian), the JSON, and bytes that belong to it: pixels, or a file. The same types in
+//! A page sends [`Ask`]s as JSON and gets [`Answer`]s. An answer is written as the length of its
+//! JSON (four
+//! bytes, little endian), the JSON, and bytes that belong to it: pixels, or a file. The same types
+//! in
 //! TypeScript are in `web/src/protocol.ts`, written by the tests of this crate.
 
 mod account;
@@ -33,16 +35,17 @@ pub struct Answer {
     pub session: u32,
     /// The question that it answers; 0 where nobody asked.
     pub id: u32,
-    /// What it says.
+    /// The event.
     pub event: Event,
 }
 
-/// What a page can ask.
+/// Requests of a page.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Request {
-    /// Opens a scene by its text, or the file that the server was started with. Answer: [`Event::Opened`], then
+    /// Opens a scene by its text, or the file that the server was started with. Answer:
+    /// [`Event::Opened`], then
     /// [`Event::Scene`].
     Open {
         /// The name of the file; its ending says the format.
@@ -56,7 +59,7 @@ pub enum Request {
         name: String,
         /// Its bytes in base64.
         base64: String,
-        /// Whether it is the scene itself.
+        /// True for the scene itself.
         opens: bool,
     },
     /// Replaces the scene's text. Answer: [`Event::Scene`].
@@ -75,7 +78,7 @@ pub enum Request {
     Show {
         /// `color`, or the name of another picture.
         picture: String,
-        /// What multiplies light, in powers of two.
+        /// Exposure in stops: light is multiplied by this power of two.
         stops: f32,
         /// Name of the tone curve.
         tone: String,
@@ -89,7 +92,7 @@ pub enum Request {
     Move {
         /// How.
         motion: Motion,
-        /// Whether more is to come at once: then only coarse pictures are made.
+        /// True while the motion lasts: only coarse pictures are made.
         moving: bool,
     },
     /// Sets a field of the camera. Answer: [`Event::Camera`].
@@ -98,20 +101,20 @@ pub enum Request {
         name: String,
         /// Its numbers.
         values: Vec<f32>,
-        /// Whether more is to come at once.
+        /// True while the motion lasts.
         moving: bool,
     },
     /// Puts a perspective camera into the scene. Answer: [`Event::Camera`].
     Look {
         /// The eye.
         center: [f32; 3],
-        /// Where it looks.
+        /// View direction.
         direction: [f32; 3],
-        /// What is up.
+        /// Up direction.
         up: [f32; 3],
         /// Field of view across the larger side, in degrees.
         angle: f32,
-        /// Whether more is to come at once.
+        /// True while the motion lasts.
         moving: bool,
     },
     /// Writes the camera into the text. Answer: [`Event::Text`].
@@ -127,11 +130,11 @@ pub enum Request {
     },
     /// Asks what each object says of a ray. Answer: [`Event::Cast`].
     Cast {
-        /// Where the ray starts.
+        /// Origin of the ray.
         origin: [f32; 3],
         /// Its direction, of any length.
         direction: [f32; 3],
-        /// Where it ends.
+        /// End.
         t_max: Option<f32>,
     },
     /// Asks for the lines of all objects. Answer: [`Event::Outlines`].
@@ -145,19 +148,19 @@ pub enum Request {
     },
     /// Writes the text into the scene's file. Answer: [`Event::Saved`] or [`Event::Conflict`].
     Save {
-        /// Whether what others wrote meanwhile is overwritten.
+        /// True to overwrite what other programs wrote meanwhile.
         force: bool,
     },
-    /// Stops work on the picture, or goes on with it: for pages that do not show it just now.
+    /// Pauses or resumes work on the picture, for pages that do not show it.
     Pause {
-        /// Whether to stop.
+        /// True to pause.
         pause: bool,
     },
     /// Ends the session.
     Close,
 }
 
-/// What a session says.
+/// Events of a session.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 #[serde(tag = "kind", rename_all = "snake_case")]
@@ -170,25 +173,25 @@ pub enum Event {
         name: String,
         /// Its text; `None` for a model in a binary format.
         text: Option<String>,
-        /// Whether it can be saved.
+        /// True if it can be saved.
         saves: bool,
-        /// All pictures that can be shown.
+        /// Pictures that can be shown.
         pictures: Vec<Choice>,
-        /// All tone curves.
+        /// Tone curves.
         tones: Vec<String>,
-        /// All integrators.
+        /// Integrators.
         integrators: Vec<Choice>,
     },
     /// A text was read.
     Scene {
-        /// What is wrong or odd with it.
+        /// Findings of the reader.
         findings: Vec<Finding>,
-        /// What is in it; `None` where it has errors: the picture is that of the last one without.
+        /// Contents; `None` if it has errors, and the picture stays the last one.
         contents: Option<Contents>,
         /// Time to read and compile it, in milliseconds.
         ms: f64,
     },
-    /// What `durer check` finds, once there is time to look.
+    /// Findings of `durer check`, after the picture.
     Checked {
         /// The findings, those of [`Event::Scene`] among them.
         findings: Vec<Finding>,
@@ -200,7 +203,7 @@ pub enum Event {
     },
     /// A picture; its pixels follow, four bytes each: red, green, blue, coverage.
     Picture {
-        /// What it is.
+        /// Meaning.
         head: PictureHead,
     },
     /// Why a pixel has its colour.
@@ -208,12 +211,12 @@ pub enum Event {
         /// The pixel.
         pixel: PixelAccount,
     },
-    /// What each object says of a ray.
+    /// Tests of a ray against each object.
     Cast {
         /// The answer of all.
         cast: CastAccount,
     },
-    /// What the scene looks like in lines.
+    /// Line drawing of the scene.
     Outlines {
         /// One for each object, up to a limit.
         outlines: Vec<Outline>,
@@ -222,14 +225,14 @@ pub enum Event {
     },
     /// The words of the language.
     Language {
-        /// All that begin something.
+        /// Words that begin a statement.
         words: Vec<Word>,
     },
     /// The text was changed by the session, or on disk.
     Text {
         /// The new text.
         text: String,
-        /// Whether it was changed on disk.
+        /// True if it was changed on disk.
         from_disk: bool,
     },
     /// A picture as a file; its bytes follow.
@@ -241,7 +244,7 @@ pub enum Event {
     Saved,
     /// The file was changed since it was read; nothing was written.
     Conflict,
-    /// What was asked cannot be done.
+    /// The request failed.
     Refused {
         /// Why.
         why: String,

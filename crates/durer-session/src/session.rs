@@ -20,12 +20,12 @@ use std::sync::Arc;
 /// Tells the time in milliseconds from any moment on.
 pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
 
-/// At most so many objects are named.
+/// Maximum number of objects that are listed.
 const MAX_THINGS: usize = 2000;
 /// The largest text or file that a page may send.
 const MAX_BYTES: usize = 256 << 20;
 
-/// What a session begins with.
+/// Starting state of a session.
 #[derive(Clone, Debug, Default)]
 pub struct Start {
     /// The file that is opened where a page names none, and is saved.
@@ -43,16 +43,16 @@ pub struct Session {
     viewer: Viewer,
     /// Distance of what the camera looks at.
     distance: f32,
-    /// Whether the scene is still to be checked.
+    /// True until the scene is checked.
     unchecked: bool,
     paused: bool,
-    /// What the scene's file was when it was read or saved.
+    /// Stamp of the scene's file when it was read or saved.
     #[cfg(feature = "fs")]
     stamp: Option<durer::source::Stamp>,
-    /// What it was when the page was told of a change.
+    /// Its stamp when the page last heard of a change.
     #[cfg(feature = "fs")]
     told: Option<durer::source::Stamp>,
-    /// Whether the document is the server's file.
+    /// True if the document is the server's file.
     on_disk: bool,
 }
 
@@ -75,12 +75,12 @@ impl Session {
         }
     }
 
-    /// Whether there is work for [`Session::step`].
+    /// Returns true if there is work for [`Session::step`].
     pub fn is_busy(&self) -> bool {
         !self.paused && (self.viewer.is_busy() || self.unchecked)
     }
 
-    /// Whether there is nothing to be seen yet of the last change.
+    /// Returns true if no picture shows the last change yet.
     pub(crate) fn is_urgent(&self) -> bool {
         !self.paused && self.viewer.is_urgent()
     }
@@ -105,7 +105,7 @@ impl Session {
             Request::Show { picture, stops, tone } => {
                 let same = self.viewer.picture == picture;
                 if picture != "color" && !AOVS.iter().any(|aov| aov.name == picture) {
-                    return Err(format!("there is no picture `{picture}`"));
+                    return Err(format!("unknown picture `{picture}`"));
                 }
                 (self.viewer.picture, self.viewer.stops, self.viewer.tone) = (picture, stops.clamp(-40.0, 40.0), tone);
                 match self.viewer.again(&*self.clock).filter(|_| same) {
@@ -184,7 +184,7 @@ impl Session {
 
     fn compiled(&mut self) -> Result<&mut Compiled, String> {
         let compiled = self.document.as_mut().and_then(|document| document.compiled.as_mut());
-        compiled.ok_or_else(|| "there is no scene without errors".into())
+        compiled.ok_or_else(|| "the scene has errors".into())
     }
 
     fn open(&mut self, name: String, text: Option<String>, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
@@ -203,12 +203,13 @@ impl Session {
                 }
                 (path, bytes)
             }
-            (None, None) => return Err("there is no file to open".into()),
+            (None, None) => return Err("the server has no file to open".into()),
         };
         self.begin(path, bytes, tell)
     }
 
-    /// The path of a scene that a page gives: in the folder of the server's file, and nowhere else, so that it can
+    /// The path of a scene that a page gives: in the folder of the server's file, and nowhere else,
+    /// so that it can
     /// name the files there and no others.
     fn beside(&self, name: &str) -> PathBuf {
         let folder = self.start.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
@@ -259,14 +260,15 @@ impl Session {
         if text.len() > MAX_BYTES {
             return Err("the text is too long".into());
         }
-        self.document.as_mut().ok_or("there is no scene")?.bytes = text.into_bytes().into();
+        self.document.as_mut().ok_or("no scene is open")?.bytes = text.into_bytes().into();
         self.read(false, tell)
     }
 
-    /// Reads and compiles the text. A camera that was moved stays where it is, unless the text moves it too.
+    /// Reads and compiles the text. A camera that was moved stays where it is, unless the text
+    /// moves it too.
     fn read(&mut self, anew: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
         let start = (self.clock)();
-        let document = self.document.as_mut().ok_or("there is no scene")?;
+        let document = self.document.as_mut().ok_or("no scene is open")?;
         let before = document.compiled.as_ref().filter(|_| !anew);
         let held = before.map(|compiled| (compiled.written.clone(), compiled.world.camera().clone()));
         let (ok, findings) = document.compile();
@@ -293,8 +295,8 @@ impl Session {
 
     fn contents(&mut self) -> Result<Contents, String> {
         let far = self.distance;
-        let document = self.document.as_ref().ok_or("there is no scene")?;
-        let compiled = document.compiled.as_ref().ok_or("there is no scene without errors")?;
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let (world, names) = (&compiled.world, compiled.names());
         let thing = |name: String, span| Thing { name, place: compiled.place(span) };
         let objects = world.objects().iter().enumerate().take(MAX_THINGS);
@@ -353,15 +355,16 @@ impl Session {
 
     fn write_camera(&mut self) -> Result<String, String> {
         let statement = self.camera()?.statement;
-        let document = self.document.as_ref().ok_or("there is no scene")?;
-        let (start, end) = document.camera_statement().ok_or("this file has no camera that could be written anew")?;
-        let text = document.text().ok_or("this file is no text")?;
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let (start, end) =
+            document.camera_statement().ok_or("the camera of this file cannot be replaced in its text")?;
+        let text = document.text().ok_or("this file is not text")?;
         Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
     }
 
     fn explain(&mut self, x: u32, y: u32, sample: Option<u32>) -> Result<Event, String> {
-        let document = self.document.as_ref().ok_or("there is no scene")?;
-        let compiled = document.compiled.as_ref().ok_or("there is no scene without errors")?;
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
         let job = self.viewer.job_of(compiled, "color")?;
         let explanation = explain_of(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
         Ok(Event::Explained { pixel: terms::account(compiled, &job, &explanation, sample) })
@@ -408,11 +411,11 @@ impl Session {
 
     #[cfg(not(feature = "fs"))]
     fn save(&mut self, _: bool) -> Result<Event, String> {
-        Err("there are no files here".into())
+        Err("files cannot be saved here".into())
     }
 
-    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page is told when it
-    /// saves.
+    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page
+    /// hears of the conflict when it saves.
     #[cfg(feature = "fs")]
     pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
         let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };

@@ -66,7 +66,7 @@ fn camera_rows(compiled: &Compiled, job: &Job, place: Vec2) -> Vec<Row> {
     rows
 }
 
-/// What is known where a term stands.
+/// Context of a term.
 #[derive(Clone, Default)]
 struct Around {
     dir: Vec3,

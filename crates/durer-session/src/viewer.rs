@@ -15,12 +15,12 @@ const RESTING: f64 = 45.0;
 const STEP: f64 = 12.0;
 /// Milliseconds between pictures of one render.
 const BETWEEN: f64 = 160.0;
-/// What side of a pixel a coarse picture may have.
+/// Sides of a coarse picture's pixels, in pixels.
 const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
 /// The largest side of a picture.
 const LARGEST: u32 = 8192;
 
-/// What a page looks at.
+/// The picture of a session.
 pub(crate) struct Viewer {
     pub width: u32,
     pub height: u32,
@@ -40,7 +40,7 @@ pub(crate) struct Viewer {
     rays: u64,
 }
 
-/// How far the picture is.
+/// Stage of the picture.
 enum Stage {
     /// There is nothing to do.
     Rest,
@@ -87,7 +87,7 @@ impl Viewer {
         (self.width, self.height) = (width.clamp(1, LARGEST), height.clamp(1, LARGEST));
     }
 
-    /// Begins anew, since something was changed.
+    /// Restarts the picture after a change.
     pub fn restart(&mut self, now: f64) {
         (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
     }
@@ -97,7 +97,7 @@ impl Viewer {
         (self.cost, self.shown) = (None, None);
     }
 
-    /// Whether no picture was made yet of the last change.
+    /// Returns true if no picture shows the last change yet.
     pub fn is_urgent(&self) -> bool {
         matches!(self.stage, Stage::Coarse)
     }
@@ -159,7 +159,8 @@ impl Viewer {
         while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
         let shown = self.picture_of(&render, [coarse.width, coarse.height], 1, None)?;
         let made = (clock() - start) / f64::from(coarse.width * coarse.height);
-        // A clock without steps, or a first picture that was slow for want of caches, is forgotten soon.
+        // A clock without steps, or a first picture that was slow for want of caches, is forgotten
+        // soon.
         let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
         self.cost = (made > 0.0).then_some(known).or(self.cost);
         self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
@@ -208,7 +209,7 @@ impl Viewer {
         Ok(shown)
     }
 
-    /// The picture that is there, shown anew.
+    /// The finished picture, encoded again.
     pub fn again(&self, clock: &dyn Fn() -> f64) -> Option<Shown> {
         let render = self.shown.as_ref().filter(|_| !self.is_busy())?;
         let job = render.part().job();
@@ -222,7 +223,7 @@ impl Viewer {
         let render = self.shown.as_ref().ok_or("the picture is not finished yet")?;
         let mut rendered = render.part().pictures().map_err(|error| error.to_string())?;
         let layer = if rendered.layers.is_empty() { None } else { Some(rendered.layers.swap_remove(0)) };
-        export(name, &layer.ok_or("there is no picture")?, display(self.stops, &self.tone))
+        export(name, &layer.ok_or("the job has no picture")?, display(self.stops, &self.tone))
     }
 
     fn picture_of(
@@ -234,7 +235,7 @@ impl Viewer {
     ) -> Result<Shown, String> {
         let rendered = render.part().pictures().map_err(wrong)?;
         let color = self.picture == "color";
-        let layer = rendered.pictures.first().ok_or("there is no picture")?;
+        let layer = rendered.pictures.first().ok_or("the job has no picture")?;
         let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
         let head = PictureHead {
             picture: self.picture.clone(),

@@ -23,7 +23,7 @@ impl Page {
         all
     }
 
-    /// All pictures until there is nothing to do.
+    /// Pictures until the session rests.
     fn pictures(&mut self) -> Vec<(PictureHead, Vec<u8>)> {
         let mut all = Vec::new();
         while self.0.is_busy() {

@@ -38,6 +38,6 @@ impl Engine {
 }
 
 fn call(send: &Function, bytes: &[u8]) {
-    // What the page does with an answer is not told.
+    // An error of the page's own code stays there.
     let _ = send.call1(&JsValue::NULL, &Uint8Array::from(bytes));
 }

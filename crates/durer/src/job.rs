@@ -7,10 +7,9 @@
 use durer_diag::did_you_mean;
 use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
-
+use durer_render::film::course::CourseFilter;
 use durer_render::film::false_color::LightScale;
 use durer_render::integrator::{Method, Settings};
-use durer_render::render::course::CourseFilter;
 use durer_render::render::{Crop, Job, Sampling};
 use durer_scene::camera::{Projection, Raster};
 use durer_scene::describe::{DescribedList, Field, Value};
@@ -162,7 +161,7 @@ macro_rules! options {
                         return Err(otherwise.into());
                     }
                     Some(OptionForm::Words(words)) if !words().contains(&text) => {
-                        return Err(format!("say one of {}", words().join(", ")));
+                        return Err(format!("it is one of {}", words().join(", ")));
                     }
                     _ => {}
                 }
@@ -392,6 +391,7 @@ impl RenderJob {
         if method.is_random() && (is(self.jitter) || is(self.blur)) {
             return Err(format!("--jitter and --blur make no sense with --integrator {}", method.name()));
         }
+        self.check_combination()?;
         let depth_range = self.depth_range.map(|[min, max]| (min, max));
         if depth_range.is_some_and(|(min, max)| !(min.is_finite() && max.is_finite() && min != max)) {
             return Err("--depth-range needs two different numbers".into());
@@ -437,6 +437,27 @@ impl RenderJob {
             depth_range,
             light_scale,
         })
+    }
+
+    /// Refuses options that contradict each other.
+    fn check_combination(&self) -> Result<(), String> {
+        let is = |flag: Option<bool>| flag.unwrap_or(false);
+        let wrong = if (is(self.jitter) || is(self.blur))
+            && (self.samples.is_some() || self.sampler.is_some() || self.filter.is_some())
+        {
+            "--jitter and --blur have samples of their own: leave out --samples, --sampler and --filter"
+        } else if is(self.adaptive) && self.noise_threshold.is_some() {
+            "--adaptive and --noise-threshold each decide the samples: leave one of them out"
+        } else if is(self.adaptive) && (is(self.jitter) || is(self.blur)) {
+            "--adaptive cannot divide the samples of --jitter and --blur"
+        } else if is(self.light_log) && self.light_range.is_none() {
+            "--light-log needs --light-range"
+        } else if self.filter_radius.is_some() && self.filter.is_none() {
+            "--filter-radius needs --filter"
+        } else {
+            return Ok(());
+        };
+        Err(wrong.into())
     }
 
     fn sampling(&self, context: &JobContext, plenty: u32) -> Result<Sampling, String> {

@@ -32,7 +32,8 @@
 //! ```
 //!
 //! This crate is the face of the others: it loads files ([`open`], [`load()`]), has the defaults of
-//! pictures ([`job`]) and passes on the modules of the crates that do the work.
+//! pictures ([`job`]), gives answers as JSON ([`report`]) and passes on the modules of the crates that do the
+//! work.
 
 pub mod compiled;
 pub mod error;
@@ -42,8 +43,11 @@ pub mod fuzz;
 pub mod job;
 #[cfg(feature = "load")]
 pub mod load;
+#[cfg(feature = "options")]
+pub mod options;
 pub mod prelude;
 pub mod renderer;
+pub mod report;
 
 #[cfg(feature = "fs")]
 pub use compiled::open;

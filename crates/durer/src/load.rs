@@ -1,5 +1,6 @@
 //! From a file's path to a world: format, dialect, rules, files.
 
+use crate::job::JobContext;
 use durer_diag::{Diagnostic, Diagnostics, Files, Severity};
 use durer_formats::Decoder;
 use durer_formats::beside::{Beside, put_beside};
@@ -218,6 +219,13 @@ fn portability(bytes: &[u8], file: u32, dialect: Dialect, said: &Diagnostics) ->
 }
 
 impl Loaded {
+    /// What the defaults of a job follow from. `timed`: a time limit decides when there are enough samples.
+    pub fn job_context(&self, timed: bool) -> JobContext<'_> {
+        // Our own dialect is one to ask for, but not an old program.
+        let emulates = self.guess.is_none() && self.dialect != Dialect::Durer;
+        JobContext { scene: &self.scene, rules: &self.rules, emulates, timed }
+    }
+
     /// Where the files are that were read for it, the scene's own not among them. All are known
     /// when it is compiled.
     pub fn files(&self) -> Vec<PathBuf> {

@@ -1,4 +1,4 @@
-//! A binary tree over references, from the top down by the surface area heuristic.
+//! A binary tree over references, built top down by the surface area heuristic.
 
 use super::builder::{Bin, Builder, half_area};
 use super::cut::HALVING_DEPTH;
@@ -10,17 +10,19 @@ use crate::math::{Aabb, Vec3};
 use crate::parallel;
 use glam::Vec4;
 
-/// Subtrees of more references than this are built in parallel.
+/// Number of references above which subtrees are built in parallel.
 const PARALLEL: u32 = 4096;
 
-/// A node. Nodes lie in depth-first order: the left child follows its parent, the right child what
-/// is below the left one, and behind that, where subtrees were built in parallel, room that is left
-/// over.
+/// A node of a binary tree. Nodes are in depth-first order: the left child follows its parent, and
+/// the right child follows the subtree of the left one. Unused nodes may lie between subtrees that
+/// were built in parallel.
 #[derive(Clone, Copy, Debug)]
 pub struct BinaryNode {
-    /// With the number of references in the fourth lane, and whether it is a leaf.
+    /// Minimum corner. The fourth lane holds the number of references, tagged as leaf or inner
+    /// node.
     pub min: Vec4,
-    /// With a leaf's first reference, or half of how far behind its parent the right child is.
+    /// Maximum corner. The fourth lane holds the first reference of a leaf, or half the distance
+    /// from an inner node to its right child.
     pub max: Vec4,
 }
 
@@ -28,7 +30,7 @@ const INNER: u32 = 2;
 const LEAF: u32 = 3;
 
 impl BinaryNode {
-    /// What room that is left over holds.
+    /// An unused node.
     pub const NONE: BinaryNode = BinaryNode { min: Vec4::ZERO, max: Vec4::ZERO };
 
     pub fn leaf(mut min: Vec4, mut max: Vec4, count: u32, first: u32) -> Self {
@@ -42,7 +44,7 @@ impl BinaryNode {
         BinaryNode { min, max }
     }
 
-    /// Whether it is one, not [`BinaryNode::NONE`].
+    /// Returns false for [`BinaryNode::NONE`].
     #[inline]
     pub fn is_there(&self) -> bool {
         self.count() > 0
@@ -53,19 +55,19 @@ impl BinaryNode {
         self.min.w.to_bits() >> 28 == LEAF
     }
 
-    /// How many references are below it.
+    /// Number of references in the subtree.
     #[inline]
     pub fn count(&self) -> usize {
         lane_number(self.min.w) as usize
     }
 
-    /// Where a leaf's references begin.
+    /// Position of a leaf's first reference.
     #[inline]
     pub fn first(&self) -> usize {
         lane_number(self.max.w) as usize
     }
 
-    /// How far behind its parent the right child is.
+    /// Distance from the node to its right child, in nodes.
     #[inline]
     pub fn right(&self) -> usize {
         2 * lane_number(self.max.w) as usize
@@ -76,31 +78,31 @@ impl BinaryNode {
     }
 }
 
-/// The tree, and what sizes are multiplied by before areas are compared.
+/// A binary tree, and the factor that scales sizes before areas are compared.
 pub struct Tree {
     pub nodes: Vec<BinaryNode>,
     pub scale: f32,
-    /// Whether things are in several leaves.
+    /// True if a primitive is in several leaves.
     pub is_cut: bool,
 }
 
-/// What a subtree is built over.
+/// Range of references for a subtree.
 struct BuildRange<'a> {
-    /// As many as there are, and room for those that cuts add.
+    /// References of the subtree, followed by space for those that splits add.
     references: &'a mut [Reference],
-    /// The place of the first among all.
+    /// Position of the first reference in the list of all references.
     first: usize,
     searches: Searches,
 }
 
-/// How many references are below a node, and how many nodes from it on are taken.
+/// Number of references in a subtree, and number of nodes reserved for it.
 struct SubtreeSize {
     references: u32,
     nodes: usize,
 }
 
-/// Builds a tree over at least one reference; triangles whose corners are known may be cut. With
-/// it come the references of its leaves; those that are in no leaf mean nothing.
+/// Builds a tree over at least one reference. Triangles with known corners may be split. Also
+/// returns the references of the leaves; references outside of all leaves are meaningless.
 pub fn build(
     mut references: Vec<Reference>,
     settings: &BuildSettings,
@@ -116,16 +118,16 @@ pub fn build(
     let room = BuildRange { references: &mut references, first: 0, searches: Searches::default() };
     let counts = builder.subtree(room, &mut nodes, &all, 0);
     nodes.truncate(counts.nodes);
-    // Most of the room was for leaves of one reference.
+    // Most of the space was for leaves with one reference.
     nodes.shrink_to_fit();
     (Tree { nodes, scale, is_cut: counts.references > all.count }, references)
 }
 
 impl BuildRange<'_> {
-    /// Where the room of the right one of two children begins, by how many references are in each.
+    /// Start of the right child's range, given the numbers of references in both children.
     ///
-    /// What there is to spare goes where more references are, but not where there are too few to be
-    /// cut.
+    /// Space for splits is shared in proportion to the numbers of references, but a child with too
+    /// few references to be split gets none.
     fn middle(&self, left: usize, right: usize) -> usize {
         let spare = self.references.len() - left - right;
         let for_left = match [left, right].map(|count| count > MIN_REFERENCES) {
@@ -138,8 +140,8 @@ impl BuildRange<'_> {
 }
 
 impl Builder<'_> {
-    /// Builds over the references that a room begins with. There must be twice as many nodes as it
-    /// has references, less one.
+    /// Builds a subtree over the first `all.count` references of `room`. `nodes` must have space
+    /// for twice as many nodes as `room` has references, minus one.
     fn subtree(&self, mut room: BuildRange, nodes: &mut [BinaryNode], all: &Bin, depth: usize) -> SubtreeSize {
         let (Bin { min, max, .. }, count) = (*all, all.count as usize);
         let spare = room.references.len() - count;
@@ -191,7 +193,7 @@ impl Builder<'_> {
         SubtreeSize { references, nodes: 1 + left.nodes + right.nodes }
     }
 
-    /// Whether a few references are so near each other that boxes of their own would spare few
+    /// Returns true if a few references are so close together that separate boxes would save few
     /// tests.
     fn is_whole(&self, references: &[Reference], all: &Bin) -> bool {
         let areas = references.iter().map(|r| half_area(r.min, r.max, self.scale));
@@ -207,8 +209,8 @@ mod tests {
     use crate::node::MAX_ITEMS;
     use crate::triangles::tests::bars;
 
-    /// Checks a tree over so many triangles, with room for so many references; gives how many slots
-    /// hold nothing.
+    /// Checks a tree over `triangles` triangles with space for `room` references. Returns the
+    /// number of unused nodes.
     fn check(tree: &Tree, references: &[Reference], triangles: usize, room: usize) -> usize {
         let (mut is_node, mut is_taken) = (vec![false; tree.nodes.len()], vec![false; room]);
         let (mut is_met, mut stack) = (vec![false; triangles], vec![0]);
@@ -241,9 +243,9 @@ mod tests {
         nothing.inspect(|(node, _)| assert!(!node.is_there())).count()
     }
 
-    /// Every triangle is in leaves that share no references, nodes are where their parents say, and
-    /// what is left over is empty: whether cuts are as many as are of use or as there is room for,
-    /// and whether subtrees are built side by side.
+    /// Every triangle is in a leaf, leaves do not share references, nodes are where their parents
+    /// refer to, and other nodes are unused. Holds if splits are limited by their use or by space,
+    /// and for parallel builds.
     #[test]
     fn leaves_share_nothing_and_hold_everything() {
         let mut random = Random(11);

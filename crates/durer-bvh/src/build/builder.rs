@@ -1,14 +1,14 @@
-//! What all ways to divide references share: boxes that grow, and what is known of the whole build.
+//! Growing boxes, and the parameters of a build, shared by all kinds of splits.
 
 use super::reference::Reference;
 use crate::math::{Aabb, Vec3};
 use crate::parallel;
 use glam::Vec4;
 
-/// More references than this are looked at in parallel.
+/// Number of references above which they are processed in parallel.
 pub const MIN_PARALLEL: usize = 1 << 15;
 
-/// Half the area of a box.
+/// Half the surface area of a scaled box.
 #[inline]
 pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
     let d = ((max - min) * scale).max(Vec4::ZERO);
@@ -17,17 +17,17 @@ pub fn half_area(min: Vec4, max: Vec4, scale: f32) -> f32 {
 
 pub struct Builder<'a> {
     pub scale: f32,
-    /// Half the area of everything.
+    /// Half the surface area of the root.
     pub area: f32,
-    /// So many references may stay together.
+    /// Maximum number of references that may stay together in one leaf.
     pub whole: usize,
-    /// How many bins so many references are put into, at most.
+    /// Maximum number of bins for a number of references.
     pub bins: fn(usize) -> usize,
-    /// Where things are triangles that may be cut, their corners; else nothing.
+    /// Corners of the triangles that may be split; empty for other primitives.
     pub corners: &'a [[Vec3; 3]],
 }
 
-/// A box that grows, and how many references are in it.
+/// A growing box and the number of references in it.
 #[derive(Clone, Copy)]
 pub struct Bin {
     pub min: Vec4,
@@ -52,7 +52,7 @@ impl Bin {
         Bin { count: self.count + 1, ..self.around(r) }
     }
 
-    /// Grown, but not counted.
+    /// Grows the box without counting the reference.
     #[inline]
     pub fn around(self, r: &Reference) -> Bin {
         Bin { min: self.min.min(r.min), max: self.max.max(r.max), ..self }
@@ -69,8 +69,8 @@ impl Bin {
     }
 }
 
-/// The box around what is known of each reference. Four grow in turn, for each step of one waits
-/// for that before.
+/// Bounds of a property of all references. Grows four boxes in turn, since each step of one waits
+/// for the previous step.
 pub fn around_all(references: &[Reference], of: &(impl Fn(&Reference) -> [Vec4; 2] + Sync)) -> [Vec4; 2] {
     if references.len() > MIN_PARALLEL {
         let (a, b) = references.split_at(references.len() / 2);

@@ -1,7 +1,7 @@
-//! Ways to divide references into two sets by the surface area heuristic.
+//! Object splits: partitions of references into two sets by the surface area heuristic.
 //!
-//! Many references are put into bins along each axis; of few, all divisions are tried.
-//! Source: Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
+//! Many references are binned along each axis; for a few, all partitions are compared. Source:
+//! Wald, *On fast Construction of SAH-based Bounding Volume Hierarchies*, IEEE RT 2007.
 
 use super::builder::{Bin, Builder, MIN_PARALLEL, around_all};
 use super::reference::Reference;
@@ -9,12 +9,12 @@ use super::settings::BINS;
 use crate::parallel;
 use glam::{IVec4, Mat4, Vec4};
 
-/// Below this depth things are halved by number, which bounds the depth of all trees: 28 levels
-/// halve 2^28 things.
+/// Depth from which references are halved by number, which bounds the depth of all trees: 28 levels
+/// halve 2^28 primitives.
 pub const HALVING_DEPTH: usize = 60;
-/// Of so few references all divisions are tried.
+/// Maximum number of references for which all partitions are compared.
 const MAX_EXHAUSTIVE: usize = 4;
-/// So many are worth bins of their own for each half of them.
+/// Minimum number of references for separate bins for each half.
 const MIN_FOR_MORE_BINS: usize = 64;
 
 /// Bins of equal width over the centres of references.
@@ -28,17 +28,17 @@ struct Grid {
 impl Grid {
     fn new(references: &[Reference], bins: usize) -> Grid {
         let [low, high] = middles(references);
-        // Where a size is zero or leaves the range, all fall into the first bin.
+        // If an extent is zero or out of range, everything falls into the first bin.
         let scale = bins as f32 * (1.0 - 1e-6) / (high - low);
         let scale = Vec4::select(scale.cmplt(Vec4::INFINITY), scale, Vec4::ZERO);
         Grid { low, scale, bins }
     }
 
-    /// A reference's bins, added to 2^23, where the last place of a number is 1.
+    /// Bins of a reference along each axis, added to 2^23, so that the lowest bit counts 1.
     #[inline(always)]
     fn at(&self, r: &Reference) -> Vec4 {
         let at = (r.middle() - self.low) * self.scale - 0.5;
-        // Also where it is not a number.
+        // Replaces NaN, too.
         let at = Vec4::select(at.cmpgt(Vec4::ZERO), at, Vec4::ZERO);
         at.min(Vec4::splat((self.bins - 1) as f32)) + FIRST
     }
@@ -46,12 +46,12 @@ impl Grid {
 
 const FIRST: f32 = (1 << 23) as f32;
 
-/// The box around all [`Reference::middle`].
+/// Bounds of all [`Reference::middle`].
 fn middles(references: &[Reference]) -> [Vec4; 2] {
     around_all(references, &|r| [r.middle(); 2])
 }
 
-/// For each axis a box, and how many references are in it.
+/// A box and a number of references for each axis.
 #[derive(Clone, Copy)]
 struct Bins {
     boxes: [[Vec4; 2]; 3],
@@ -69,7 +69,7 @@ impl Bins {
         self.counts += other.counts;
     }
 
-    /// Their costs, side by side.
+    /// Costs along all axes.
     #[inline(always)]
     fn costs(&self, scale: f32) -> Vec4 {
         let size = |axis: usize| ((self.boxes[axis][1] - self.boxes[axis][0]) * scale).max(Vec4::ZERO);
@@ -102,8 +102,9 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
             bins.counts[axis] += 1;
         }
     };
-    // Neighbours in the list fall into the same bins, and would wait for each other; so do all
-    // where there is but one bin along an axis.
+    // Consecutive references often fall into the same bin and would wait for each other, so
+    // alternate between the two halves of the list. All references fall into the same bin if there
+    // is only one along an axis.
     let (a, b) = references.split_at(references.len() / 2);
     if references.len() < MIN_FOR_MORE_BINS {
         for (a, b) in a.iter().zip(b) {
@@ -123,7 +124,7 @@ fn filled<const N: usize>(references: &[Reference], grid: &Grid) -> [Bins; N] {
     bins
 }
 
-/// A way to divide references into two sets, and the boxes of these.
+/// A partition of references into two sets, with the boxes of both.
 pub struct Cut {
     pub cost: f32,
     pub sides: [Bin; 2],
@@ -131,18 +132,18 @@ pub struct Cut {
 }
 
 enum Split {
-    /// Those in bins before a border along an axis go to the left.
+    /// References in bins before a border along an axis go left.
     Bins { grid: Grid, axis: usize, border: usize },
-    /// Those with a bit in the mask go to the left.
+    /// References whose bits are set in the mask go left.
     Mask(usize),
-    /// Half of them, along the longest axis.
+    /// Half of the references go left, sorted along the longest axis.
     Half,
 }
 
 impl Builder<'_> {
-    /// The cheapest way to make two sets of references.
+    /// Finds the cheapest partition of the references.
     pub fn cut(&self, references: &[Reference], all: &Bin, depth: usize) -> Cut {
-        // Its two sides are not known yet, but within all.
+        // The boxes of both sides are not known yet, but lie within `all`.
         let half = Cut { cost: all.cost(self.scale), sides: [*all; 2], way: Split::Half };
         let count = references.len();
         if depth >= HALVING_DEPTH {
@@ -156,11 +157,11 @@ impl Builder<'_> {
         }
     }
 
-    /// The cheapest plane between bins, or `None` where centres cannot be told apart.
+    /// Finds the cheapest border between bins; `None` if all centres are in one bin.
     fn binned<const N: usize>(&self, references: &[Reference]) -> Option<Cut> {
         let grid = Grid::new(references, (self.bins)(references.len()).min(N));
         let bins = filled::<N>(references, &grid);
-        // Costs of everything right of each border, then the sum from the left, along all axes at
+        // Costs of everything to the right of each border, then sums from the left, for all axes at
         // once.
         let mut right_costs = [Vec4::ZERO; N];
         let mut right = Bins::EMPTY;
@@ -185,7 +186,7 @@ impl Builder<'_> {
         (cost < f32::INFINITY).then_some(Cut { cost, sides, way: Split::Bins { grid, axis, border } })
     }
 
-    /// The cheapest of all ways to divide a few references.
+    /// Compares all partitions of a few references.
     fn few(&self, references: &[Reference]) -> Cut {
         let count = references.len();
         let full = (1 << count) - 1;
@@ -206,13 +207,13 @@ impl Builder<'_> {
         Cut { cost, sides: [sets[mask], sets[full - mask]], way: Split::Mask(mask) }
     }
 
-    /// Sorts references into the two sets of a cut; gives their boxes, and how many are in the
+    /// Partitions the references in place. Returns the boxes of both sets and the size of the
     /// first.
     pub fn divide(&self, references: &mut [Reference], cut: &Cut) -> ([Bin; 2], usize) {
         let [left, right] = cut.sides;
         match cut.way {
             Split::Bins { grid, axis, border } => {
-                // Along the other axes nothing is before it.
+                // Along the other axes, no bin is before the border.
                 let mut borders = Vec4::NEG_INFINITY;
                 borders[axis] = FIRST + border as f32;
                 partition(references, |r| grid.at(r).cmplt(borders).any());
@@ -236,18 +237,18 @@ impl Builder<'_> {
     }
 }
 
-/// Moves the references that pass to the front.
+/// Moves the references that satisfy the predicate to the front.
 fn partition(references: &mut [Reference], is_left: impl Fn(&Reference) -> bool) {
     let mut left = 0;
     for i in 0..references.len() {
         let (here, other) = (references[i], references[left]);
         (references[i], references[left]) = (other, here);
-        // Without a branch, which would be guessed wrongly half of the time.
+        // Branchless, since a branch would be mispredicted half of the time.
         left += usize::from(is_left(&here));
     }
 }
 
-/// Sorts along the longest axis and cuts in the middle.
+/// Sorts along the longest axis and splits in the middle.
 fn halve(references: &mut [Reference]) -> (&mut [Reference], &mut [Reference]) {
     let [low, high] = middles(references);
     let axis = (high - low).truncate().max_position();

@@ -1,4 +1,5 @@
-//! Building a tree: references to things, a binary tree over them, and eight-wide nodes from that.
+//! Tree building: references to primitives, a binary tree over them, and the eight-wide nodes made
+//! from it.
 
 mod binary;
 mod builder;
@@ -20,24 +21,25 @@ pub(crate) use settings::BuildSettings;
 use settings::MIN_GAIN;
 use wide::CollapsePlan;
 
-/// What is better for two children may be worse for eight, most of all where things were cut. After
-/// so many passes this can be told.
+/// Number of reinsertion passes after which a tree with split triangles is compared with the best
+/// one so far: an improvement of the binary tree may be worse for the wide tree, above all after
+/// splits.
 const TRUSTED_PASSES: usize = 2;
 
 /// A finished tree.
 pub(super) struct Tree {
     pub nodes: Vec<WideNode>,
-    /// Numbers of things by place.
+    /// Primitive numbers in the order of the leaves.
     pub order: Vec<u32>,
     pub bounds: Aabb,
 }
 
-/// Builds a tree over boxes: a function of the references and settings alone.
+/// Builds a tree over boxes. The result depends on the references and settings alone.
 pub(super) fn build(references: Vec<Reference>, settings: &BuildSettings) -> Tree {
     build_of(references, settings, Vec::new())
 }
 
-/// Builds a tree over so many triangles, which may be cut.
+/// Builds a tree over `count` triangles, which may be split.
 pub(super) fn build_triangles(
     count: usize,
     corners_of: &(impl Fn(u32) -> [Vec3; 3] + Sync),
@@ -47,7 +49,7 @@ pub(super) fn build_triangles(
     if settings.splits == 0.0 {
         return build_of(triangle_references(count, settings, corners_of), settings, Vec::new());
     }
-    // Whoever looks for planes asks for the same corners at many levels.
+    // The search for split planes needs the same corners at many levels.
     let corners = listed(count, 0, |i| corners_of(i as u32));
     build_of(triangle_references(count, settings, &|i| corners[i as usize]), settings, corners)
 }
@@ -66,22 +68,21 @@ fn build_of(references: Vec<Reference>, settings: &BuildSettings, corners: Vec<[
     Tree { nodes, order, bounds }
 }
 
-/// Has a tree's subtrees moved to better places, as long as that pays; gives what is then cheapest
-/// for each node.
+/// Improves a tree by reinsertion as long as that pays, and returns the best collapse plan.
 fn improved(tree: &mut binary::Tree, settings: &BuildSettings) -> CollapsePlan {
     let mut plans = CollapsePlan::new(&tree.nodes, tree.scale, settings);
-    // With fewer nodes all are the root and its children, which stay.
+    // With fewer nodes, all are the root or its children, which stay.
     if settings.reinsertions == 0 || tree.nodes.len() < 5 {
         return plans;
     }
     let mut work = Linked::new(tree);
     for pass in 1..=settings.reinsertions {
-        // Also where areas are no numbers nothing more is tried.
+        // Also stops if areas are NaN.
         let goes_on = work.pass() >= MIN_GAIN && pass < settings.reinsertions;
         if !goes_on || pass == TRUSTED_PASSES && tree.is_cut {
             let Some(nodes) = work.in_order() else { break };
             let others = CollapsePlan::new(&nodes, tree.scale, settings);
-            // At equal cost fewer triangles are tested.
+            // At equal cost, fewer triangles are tested.
             if others.cost <= 1.01 * plans.cost {
                 (tree.nodes, plans) = (nodes, others);
             } else {

@@ -1,4 +1,4 @@
-//! References to things: boxes with numbers, of which trees are built.
+//! References to primitives: numbered boxes from which trees are built.
 
 use super::settings::BuildSettings;
 use crate::lanes::listed;
@@ -7,7 +7,7 @@ use crate::node::MAX_ITEMS;
 use crate::parallel;
 use glam::Vec4;
 
-/// A box of a thing or of a part of it, and the thing's number.
+/// Box of a primitive or of a part of it, with the number of the primitive.
 #[derive(Clone, Copy, Debug)]
 pub struct Reference {
     pub min: Vec4,
@@ -34,8 +34,8 @@ impl Reference {
     }
 }
 
-/// A number below 2^28 and a tag of 2 or 3 in the fourth lane of a vector: as a normal `f32`, which
-/// no arithmetic on the lane slows down.
+/// Encodes a number below 2^28 and a tag of 2 or 3 as a normal `f32` for the fourth lane of a
+/// vector. Normal numbers do not slow down arithmetic on the lane.
 pub fn lane(tag: u32, number: u32) -> f32 {
     f32::from_bits(number | tag << 28)
 }
@@ -44,20 +44,20 @@ pub fn lane_number(lane: f32) -> u32 {
     lane.to_bits() & !(3 << 28)
 }
 
-/// References to boxes 0, 1, 2, ... but for the empty ones.
+/// References to boxes 0, 1, 2, ..., without the empty ones.
 pub fn references(boxes: &[Aabb]) -> Vec<Reference> {
     assert!(boxes.len() <= MAX_ITEMS, "a tree holds less than 2^28 things");
     let full = boxes.iter().enumerate().filter(|(_, b)| !b.is_empty());
     full.map(|(i, b)| Reference::new(*b, i as u32)).collect()
 }
 
-/// Whether a triangle can be hit.
+/// Returns true if all corners are finite, so that the triangle can be hit.
 pub fn is_finite(corners: &[Vec3; 3]) -> bool {
     corners.iter().all(|p| p.is_finite())
 }
 
-/// References to triangles 0, 1, 2, ..., with room for those that cuts add; those with corners that
-/// are no finite points are left out.
+/// References to triangles 0, 1, 2, ..., with capacity for those that splits add. Triangles with a
+/// corner that is not finite are left out.
 pub fn triangle_references(
     count: usize,
     settings: &BuildSettings,
@@ -73,10 +73,10 @@ pub fn triangle_references(
     references
 }
 
-/// A power of two that brings sizes near 1, so that areas neither overflow nor vanish.
+/// Power of two that scales sizes to about 1, so that areas neither overflow nor vanish.
 pub fn area_scale(bounds: Aabb) -> f32 {
     let size = (bounds.max * 0.5 - bounds.min * 0.5).max_element();
     let exponent = size.to_bits() >> 23 & 0xff;
-    // 2^-e for a size of about 2^e, itself kept in range.
+    // 2^-e for a size of about 2^e, clamped to the range of `f32`.
     f32::from_bits((254 - exponent.clamp(1, 253)) << 23)
 }

@@ -1,4 +1,4 @@
-//! Improving a binary tree: subtrees are taken out and put where they enlarge boxes least.
+//! Optimisation of a binary tree by reinsertion: moves subtrees to where they enlarge boxes least.
 //!
 //! Source: Meister, Bittner, *Parallel Reinsertion for Bounding Volume Hierarchy Optimization*,
 //! Eurographics 2018.
@@ -10,12 +10,12 @@ use crate::lanes::room;
 use crate::node::MAX_DEPTH;
 use crate::parallel;
 
-/// In each pass this share of nodes are looked at. Where much can be spared, most of that is in few
-/// of them.
+/// Share of the nodes that a pass examines. If much can be saved, most of the savings are in a few
+/// nodes.
 const SHARE: f64 = 0.04;
-/// And so many times as many where what may be spared does not say where.
+/// Factor of further nodes to examine if the possible savings do not predict the actual ones.
 const MAX_SHARES: usize = 3;
-/// A search for a better place ends after so many nodes.
+/// Maximum number of nodes visited in a search for a better place.
 const PATIENCE: usize = 1 << 8;
 
 const NONE: u32 = u32::MAX;
@@ -36,7 +36,7 @@ struct Link {
     children: [u32; 2],
 }
 
-/// A subtree, where it should go, and how much area that saves.
+/// A subtree, its new sibling, and the area that the move saves.
 #[derive(Clone, Copy)]
 struct Move {
     gain: f32,
@@ -44,10 +44,10 @@ struct Move {
     to: u32,
 }
 
-/// What moving a node may spare, and the node.
+/// Maximum area that moving a node may save, and the node.
 type Candidate = (f32, u32);
 
-/// So many of some nodes, those of which most may be spared, and the others.
+/// Partitions `nodes` into the `count` nodes with the greatest possible savings, and the others.
 fn greatest(nodes: &mut [Candidate], count: usize) -> (&[Candidate], &mut [Candidate]) {
     let count = count.min(nodes.len());
     if count < nodes.len() {
@@ -61,8 +61,8 @@ impl Linked {
     pub fn new(tree: &Tree) -> Self {
         let scale = tree.scale;
         let mut nodes: Vec<Link> = room(tree.nodes.len());
-        // Nodes follow each other in depth-first order: what comes is a child of the last one that
-        // has less than two.
+        // Nodes are in depth-first order: each is a child of the last node with fewer than two
+        // children.
         let mut parents = Vec::new();
         for &node in tree.nodes.iter().filter(|node| node.is_there()) {
             let i = nodes.len() as u32;
@@ -89,11 +89,11 @@ impl Linked {
         if a == i { b } else { a }
     }
 
-    /// Looks for better places where most may be spared, and takes those that do not meddle with
-    /// each other; gives the share of all areas that this spares.
+    /// Searches for better places for the nodes with the greatest possible savings and applies the
+    /// moves that do not conflict. Returns the share of the total area that they save.
     pub fn pass(&mut self) -> f64 {
-        // Taking a subtree out spares at least its parent's area, and putting it anywhere costs at
-        // least its own. Infinite areas have no difference.
+        // Removing a subtree saves at least its parent's area, and inserting it costs at least its
+        // own area. `max` also replaces the NaN difference of infinite areas.
         let spared = |i: u32| ((self.at(self.at(i).parent).area - self.at(i).area).max(0.0), i);
         // The root and its children stay.
         let movable = |&i: &u32| i != 0 && self.at(i).parent != 0;
@@ -103,8 +103,8 @@ impl Linked {
         let (next, rest) = greatest(rest, count / 4);
         let (mut moves, more) = (self.moves(first), self.moves(next));
         let gain = |moves: &[Move]| moves.iter().map(|m| f64::from(m.gain)).sum::<f64>();
-        // Where what is found hardly becomes less with what may be spared, that does not say where
-        // to look, and more is looked at.
+        // If the actual savings hardly decrease with the possible ones, these do not predict where
+        // to search: examine more nodes.
         let is_even = 4.0 * gain(&more) >= (0.25 * gain(&moves)).max(MIN_GAIN * self.area);
         moves.extend(more);
         if is_even {
@@ -127,12 +127,13 @@ impl Linked {
         (before - self.area) / before
     }
 
-    /// Better places for some nodes.
+    /// Finds better places for some nodes.
     fn moves(&self, candidates: &[Candidate]) -> Vec<Move> {
         parallel::filter_map(candidates, 64, |&(_, from)| self.find(from))
     }
 
-    /// Whether a node lies in a subtree, as it may after an earlier move of the same pass.
+    /// Returns true if a node lies in a subtree. An earlier move of the same pass may have put it
+    /// there.
     fn is_below(&self, mut i: u32, subtree: u32) -> bool {
         while i != NONE && i != subtree {
             i = self.at(i).parent;
@@ -140,13 +141,13 @@ impl Linked {
         i == subtree
     }
 
-    /// The best place for a subtree, searched upwards from where it is, and from there down into
-    /// the siblings.
+    /// Finds the best place for a subtree: searches upwards from its position, and from there down
+    /// into the siblings.
     fn find(&self, from: u32) -> Option<Move> {
         let Link { node, area, parent, .. } = *self.at(from);
         let merged = |other: &Link| half_area(node.min.min(other.node.min), node.max.max(other.node.max), self.scale);
         let mut best = Move { gain: 0.0, from, to: NONE };
-        // Without the subtree its parent goes, and the boxes above shrink.
+        // Removing the subtree removes its parent, and the boxes above shrink.
         let mut saved = self.at(parent).area;
         let mut pivot = parent;
         let mut sibling = self.sibling(from);
@@ -184,7 +185,7 @@ impl Linked {
         (best.to != NONE).then_some(best)
     }
 
-    /// Takes a subtree with its parent out, and puts the parent between a node and that node's
+    /// Removes a subtree and its parent, and inserts the parent between the node `to` and its
     /// parent.
     fn apply(&mut self, from: u32, to: u32) {
         let parent = self.at(from).parent;
@@ -206,14 +207,14 @@ impl Linked {
         self.nodes[new as usize].parent = parent;
     }
 
-    /// Makes boxes fit again, from a node upwards to where nothing changes.
+    /// Refits boxes from a node upwards until nothing changes.
     fn refit(&mut self, mut i: u32) {
         while i != NONE && self.fit(i) {
             i = self.at(i).parent;
         }
     }
 
-    /// Makes the box of a node fit its children; gives whether it is another one.
+    /// Fits the box of a node to its children. Returns true if the box has changed.
     fn fit(&mut self, i: u32) -> bool {
         let [a, b] = self.at(i).children.map(|child| self.at(child).node);
         let node = BinaryNode::inner(a.min.min(b.min), a.max.max(b.max), 0, 0);
@@ -225,7 +226,7 @@ impl Linked {
         is_other
     }
 
-    /// The nodes in depth-first order with their counts; `None` if the tree is too deep.
+    /// Nodes in depth-first order with their counts; `None` if the tree is too deep.
     pub fn in_order(&self) -> Option<Vec<BinaryNode>> {
         let mut nodes: Vec<BinaryNode> = room(self.nodes.len());
         let mut stack = vec![(0, 1)];
@@ -263,13 +264,13 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::Random;
 
-    /// After each pass boxes and areas are those of what is around their children, the same things
-    /// are in leaves, and as much is spared as is said.
+    /// After each pass, boxes and areas match their children, leaves hold the same primitives, and
+    /// the saved area is as reported.
     #[test]
     fn boxes_fit_after_each_pass() {
         let mut random = Random(3);
         for count in [5, 60, 3_000, 6_000] {
-            // Some are great and many are small, so that the first tree is not the best.
+            // A few large boxes among many small ones, so that the first tree is not optimal.
             let square = |x: f32| x * x;
             let boxes: Vec<Aabb> = (0..count)
                 .map(|_| {
@@ -277,8 +278,8 @@ mod tests {
                     Aabb { min: at - size, max: at + size }
                 })
                 .collect();
-            // Where few stay together room is left over between subtrees that are built side by
-            // side.
+            // With few references in a leaf, unused nodes remain between subtrees that were built
+            // in parallel.
             let settings = BuildSettings { whole: 3, ..BuildSettings::THINGS };
             let (tree, _) = binary::build(references(&boxes), &settings, &[]);
             assert!((count > 4096) == tree.nodes.iter().any(|node| !node.is_there()));

@@ -1,8 +1,8 @@
-//! Ways to cut the space of a node in two, where parts of a triangle then go to both sides.
+//! Spatial splits: planes that divide the space of a node, so that parts of a triangle go to both
+//! sides.
 //!
-//! Where the cheapest division of references into two sets leaves boxes that overlap, planes are
-//! tried too; a plane cuts the triangles that it goes through, unless it is cheaper to leave one
-//! whole on one side.
+//! If the boxes of the cheapest partition of references overlap, planes are tried too. A plane
+//! splits the triangles that it intersects, unless it is cheaper to keep one whole on one side.
 //! Source: Stich, Friedrich, Dietrich, *Spatial Splits in Bounding Volume Hierarchies*, HPG 2009.
 
 use super::builder::{Bin, Builder, half_area};
@@ -12,28 +12,28 @@ use super::settings::BINS;
 use crate::math::Vec3;
 use glam::{BVec4A, Vec4};
 
-/// Planes are tried where the overlap has at least this share of the node's area,
+/// Minimum overlap for which planes are tried, as a share of the node's area.
 const OVERLAP: f32 = 0.226;
-/// and this share of the area of everything,
+/// Minimum overlap for which planes are tried, as a share of the root's area.
 const MIN_SIZE: f32 = 1e-5;
-/// across axes along which the node is at least so long, as a share of its greatest length.
+/// Minimum extent of the node along the normal of a plane, as a share of its longest extent.
 const LENGTH: f32 = 0.3;
-/// They must cost less than this share of what the best two sets cost.
+/// Maximum cost of a plane, as a share of the cost of the best partition.
 const GAIN: f32 = 0.95;
-/// With so few references or fewer, cuts spare less than they cost.
+/// Number of references up to which splits save less than they cost.
 pub const MIN_REFERENCES: usize = 330;
-/// After so many searches in vain, one below the other, one level is left out before the next, then
-/// two, up to four.
+/// Number of failed searches along a path after which levels are skipped: one, then two, up to
+/// four.
 const IN_VAIN: u32 = 3;
 
-/// What is known of searches for planes above a node.
+/// State of the searches for planes above a node.
 #[derive(Clone, Copy, Default)]
 pub struct Searches {
     in_vain: u32,
     pause: u32,
 }
 
-/// A plane that costs so much, all areas times numbers of references.
+/// A split plane. The cost is the sum of area times number of references.
 struct Plane {
     cost: f32,
     axis: usize,
@@ -41,8 +41,8 @@ struct Plane {
 }
 
 impl Builder<'_> {
-    /// The references on both sides of a plane, if that is better than a cut into two sets, and at
-    /// most so many more.
+    /// References on both sides of the best plane, if that is better than `cut` and adds at most
+    /// `spare` references.
     pub fn parts(
         &self,
         references: &[Reference],
@@ -77,7 +77,7 @@ impl Builder<'_> {
         (lens.iter().all(|&len| 0 < len && len < count) && lens[0] + lens[1] <= count + spare).then_some(parts)
     }
 
-    /// The cheapest plane between bins of equal width.
+    /// Finds the cheapest plane between bins of equal width.
     fn plane(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
         if !(bounds.max - bounds.min).truncate().is_finite() {
             return None;
@@ -91,14 +91,14 @@ impl Builder<'_> {
     }
 
     fn plane_across<const AXIS: usize>(&self, references: &[Reference], bounds: &Bin) -> Option<Plane> {
-        // Few references fill few bins.
+        // A few references need only a few bins.
         let count = if references.len() > 256 { BINS } else { BINS / 2 };
         let (low, high) = (bounds.min[AXIS], bounds.max[AXIS]);
         if high - low < LENGTH * (bounds.max - bounds.min).truncate().max_element() {
             return None;
         }
         let width = (high - low) / count as f32;
-        // Flat and immense things are not cut.
+        // Flat and immense nodes are not split.
         if !(width.is_normal() && low + width > low && high - width < high) {
             return None;
         }
@@ -142,8 +142,8 @@ impl Builder<'_> {
         best
     }
 
-    /// The references on both sides of a plane. Those that it goes through are cut, unless the
-    /// boxes that grow when one stays whole cost less.
+    /// References on both sides of a plane. References that intersect the plane are split, unless
+    /// enlarging the box of one side costs less.
     fn halves(&self, references: &[Reference], &Plane { axis, at, .. }: &Plane) -> [Vec<Reference>; 2] {
         let (mut left, mut right, mut through) = (Vec::new(), Vec::new(), Vec::new());
         for r in references {
@@ -175,7 +175,7 @@ impl Builder<'_> {
         let cost = |[l, r]: &[Bin; 2]| l.cost(scale) + r.cost(scale);
         for (whole, [a, b]) in through {
             let [l, r] = sides;
-            // Its own half is among those counted on either side.
+            // Both sides already include the halves of this reference.
             let all_left = [l.around(&whole), Bin { count: r.count - 1, ..r }];
             let all_right = [Bin { count: l.count - 1, ..l }, r.around(&whole)];
             if cost(&sides) < cost(&all_left).min(cost(&all_right)) {
@@ -193,14 +193,14 @@ impl Builder<'_> {
     }
 }
 
-/// A triangle with its corners in order along an axis.
+/// A triangle with its corners sorted along an axis.
 struct Sorted<const AXIS: usize> {
     corners: [Vec4; 3],
-    /// Bound on the rounding of a section.
+    /// Bound on the rounding error of a section.
     slack: Vec4,
 }
 
-/// The box of what lies in a plane across the axis: a line between two points.
+/// Bounding box of the line segment in which a plane across the axis cuts the triangle.
 struct Section {
     at: f32,
     min: Vec4,
@@ -216,13 +216,13 @@ impl<const AXIS: usize> Sorted<AXIS> {
         let (b, c) = sort(b, c);
         let (a, b) = sort(a, b);
         let most = a.abs().max(b.abs()).max(c.abs());
-        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis: an error of at most
-        // 5 units in the last place of q - p, twice the largest coordinate, and one of the sum; a
-        // unit is half of epsilon. The rest is for underflow.
+        // A section is p + (q - p) t with t = (x - p) / (q - p) along the axis. Its error is at
+        // most 5 units in the last place of q - p, which is at most twice the largest coordinate,
+        // and one of the sum; a unit is half of epsilon. The rest covers underflow.
         Sorted { corners: [a, b, c], slack: 8.0 * f32::EPSILON * most + f32::MIN_POSITIVE }
     }
 
-    /// The section at a place, or the first or last corner where none is there.
+    /// Section at a coordinate, or the first or last corner outside the triangle.
     #[inline(always)]
     fn section(&self, at: f32) -> Section {
         let [a, b, c] = self.corners;
@@ -237,8 +237,7 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Section { at, min: p.min(q) - self.slack, max: p.max(q) + self.slack }
     }
 
-    /// The box of what lies between two sections, within that of a reference; empty if nothing
-    /// does.
+    /// Box of the part of a reference between two sections; empty if there is none.
     #[inline(always)]
     fn between(&self, from: &Section, to: &Section, r: &Reference) -> Reference {
         let middle = self.corners[1];
@@ -253,7 +252,7 @@ impl<const AXIS: usize> Sorted<AXIS> {
         Reference { min: min.max(low), max: max.min(high) }
     }
 
-    /// What of a reference lies on both sides of a plane.
+    /// Parts of a reference on both sides of a plane.
     fn halves(&self, at: f32, r: &Reference) -> [Reference; 2] {
         let [from, middle, to] = [r.min[AXIS], at, r.max[AXIS]].map(|x| self.section(x));
         [self.between(&from, &middle, r), self.between(&middle, &to, r)]
@@ -266,8 +265,8 @@ mod tests {
     use crate::math::Aabb;
     use crate::math::random::{Random, rounds};
 
-    /// Points of a triangle are in the box of the half on their side, whatever the triangle and its
-    /// present box.
+    /// Checks that random points of a triangle lie in the box of the half on their side, for any
+    /// triangle and reference box.
     fn check<const AXIS: usize>(random: &mut Random, corners: [Vec3; 3], within: Aabb) -> usize {
         let r = Reference::new(within, 7);
         let (low, high) = (within.min[AXIS], within.max[AXIS]);
@@ -282,7 +281,7 @@ mod tests {
             let [u, v] = if u + v > 1.0 { [1.0 - u, 1.0 - v] } else { [u, v] };
             let [a, b, c] = corners.map(|p| p.as_dvec3());
             let p = a * (1.0 - u - v) + b * u + c * v;
-            // What the point itself is rounded by; a section's own rounding is far greater.
+            // Rounding error of the point itself; the error of a section is far greater.
             let slack = 1e-14 * (a.abs().max(b.abs()).max(c.abs())).max_element();
             let is_in =
                 |b: Aabb, slack: f64| (p.cmpge(b.min.as_dvec3() - slack) & p.cmple(b.max.as_dvec3() + slack)).all();
@@ -302,7 +301,7 @@ mod tests {
         for round in 0..rounds(20_000) {
             let scale = [1.0, 1e-30, 1e30, 1e-5][round % 4];
             let offset = [0.0, 1e4, 0.0, 3.0][round % 4] * random.point();
-            // Slivers, flat ones, and corners at the same height.
+            // Slivers, flat triangles, and corners at the same height.
             let mut corners = [(); 3].map(|()| scale * (random.point() + offset));
             match random.below(4) {
                 0 => corners[2] = corners[0].midpoint(corners[1]) + 1e-6 * scale * random.point(),

@@ -1,6 +1,7 @@
-//! Eight-wide nodes from a binary tree, at the least cost by the surface area heuristic.
+//! Eight-wide nodes from a binary tree, at minimal cost by the surface area heuristic.
 //!
-//! The cost of a subtree as a forest of at most i roots follows from those of its two children:
+//! The cost C(n, i) of a subtree n as a forest of at most i roots follows from its children l and
+//! r:
 //!
 //!   C(n, 1) = leaf(n), or A(n) + M + min over k of C(l, k) + C(r, 8 - k), if less without M,
 //!   C(n, i) = min(C(n, i - 1), min over k of C(l, k) + C(r, i - k)).
@@ -17,10 +18,10 @@ use crate::node::{self, LEAF, LEAF_SIZE, WideNode};
 use crate::parallel;
 use glam::Vec3A;
 
-/// Subtrees of more references than this are worked on in parallel.
+/// Number of references above which subtrees are processed in parallel.
 const PARALLEL: usize = 4096;
 
-/// What is cheapest for each node of a binary tree, and the cost of it all.
+/// Cheapest choice for each node of a binary tree, and the total cost.
 pub struct CollapsePlan {
     plans: Vec<Plan>,
     pub cost: f32,
@@ -36,8 +37,8 @@ impl CollapsePlan {
     }
 }
 
-/// The nodes, and the things of their leaves; `numbers` are those of the things by their places in
-/// the leaves of the binary tree.
+/// Builds the wide nodes and lists the primitives of their leaves. `numbers` holds the primitive
+/// numbers in the order of the binary tree's leaves.
 pub fn collapse(tree: &binary::Tree, numbers: &[u32], plans: CollapsePlan) -> (Vec<WideNode>, Vec<u32>) {
     let writer = NodeWriter { tree, numbers, plans: plans.plans };
     let mut cuts = CutPoints::default();
@@ -45,17 +46,18 @@ pub fn collapse(tree: &binary::Tree, numbers: &[u32], plans: CollapsePlan) -> (V
     let subtrees: Vec<SubtreeNodes> = parallel::map(&cuts.below, |&i| writer.subtree(i));
     let count = cuts.above + subtrees.iter().map(|subtree| subtree.nodes.len()).sum::<usize>();
     let mut all = SubtreeNodes { nodes: room(count), order: room(writer.node(0).count()) };
-    // A tree of one leaf still needs a node to hold it.
+    // A tree of one leaf still needs a node.
     all.nodes.push(WideNode::EMPTY);
     writer.fill(&mut all, 0, 0, &mut subtrees.iter());
     (all.nodes, all.order)
 }
 
-/// Costs of a subtree as a forest of at most 1, 2, ... 7 roots.
+/// Costs of a subtree as a forest of at most 1, 2, ..., 7 roots.
 type Costs = [f32; WIDTH - 1];
 
-/// What is cheapest: bit 0 says whether the subtree is a leaf as a whole, and three bits from 3 i
-/// on, how many of at most i roots are in the left child, 0 where fewer roots cost no more.
+/// Cheapest choice for a node. Bit 0 is set if the subtree becomes a leaf. The three bits from 3 i
+/// on are the number of roots in the left child out of at most i roots, or 0 if fewer roots cost no
+/// more.
 #[derive(Clone, Copy, Default)]
 struct Plan(u32);
 
@@ -73,8 +75,8 @@ impl Plan {
     }
 }
 
-/// Least costs of two children's forests with so many roots together, and how many of them are the
-/// left one's.
+/// Minimal cost of two children's forests with `roots` roots in total, and the number of roots in
+/// the left child.
 #[inline(always)]
 fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     let most = WIDTH - 1;
@@ -86,16 +88,16 @@ fn shared(left: &Costs, right: &Costs, roots: usize) -> (f32, usize) {
     best
 }
 
-/// What things cost.
+/// Parameters of the cost function.
 struct Prices<'a> {
-    /// Of areas.
+    /// Factor for sizes before areas are computed.
     scale: f32,
-    /// Of the memory of a node.
+    /// Cost of a node's memory.
     node_cost: f32,
     settings: &'a BuildSettings,
 }
 
-/// Finds what is cheapest for all nodes of a subtree.
+/// Finds the cheapest choices for all nodes of a subtree.
 fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Costs {
     let (node, &Prices { scale, node_cost, settings }) = (&nodes[0], prices);
     let (area, count) = (half_area(node.min, node.max, scale), node.count());
@@ -112,12 +114,12 @@ fn plan(nodes: &[binary::BinaryNode], plans: &mut [Plan], prices: &Prices) -> Co
     } else {
         (plan(left_nodes, left_plans, prices), plan(right_nodes, right_plans, prices))
     };
-    // There are no more roots than references.
+    // The number of roots is limited by the number of references.
     let most = count.min(WIDTH);
     let (opened, k) = shared(&left, &right, most);
     own.set_left(WIDTH, k);
     let opened = area + opened;
-    // Where costs are no numbers, as with infinite areas, small subtrees are leaves.
+    // If costs are NaN, as with infinite areas, small subtrees become leaves.
     let dearer = opened < leaf;
     let is_leaf = count <= settings.leaf_size && !dearer;
     own.0 |= u32::from(is_leaf);
@@ -138,22 +140,21 @@ struct NodeWriter<'a> {
     plans: Vec<Plan>,
 }
 
-/// A wide node, all nodes below it, and the things of their leaves; addresses and things count from
-/// 0.
+/// A wide node with all nodes below it and the primitives of their leaves. Offsets and positions
+/// count from 0.
 struct SubtreeNodes {
     nodes: Vec<WideNode>,
     order: Vec<u32>,
 }
 
-/// Binary nodes that become the children of a wide one.
+/// Binary nodes that become the children of a wide node.
 #[derive(Default)]
 struct Children {
     list: [usize; WIDTH],
     count: usize,
 }
 
-/// Where a tree comes apart into subtrees that are made side by side: binary nodes, and how many
-/// wide nodes are above them.
+/// Roots of the subtrees that are built in parallel, and the number of wide nodes above them.
 #[derive(Default)]
 struct CutPoints {
     above: usize,
@@ -165,7 +166,7 @@ impl NodeWriter<'_> {
         &self.tree.nodes[i]
     }
 
-    /// The children of a node that is opened.
+    /// Children of the wide node for a binary node.
     fn open(&self, i: usize) -> Children {
         let mut children = Children::default();
         match self.node(i).is_leaf() {
@@ -175,7 +176,7 @@ impl NodeWriter<'_> {
         children
     }
 
-    /// Adds a subtree's best forest of at most so many roots.
+    /// Adds the best forest of a subtree with at most `roots` roots.
     fn forest(&self, i: usize, mut roots: usize, children: &mut Children) {
         while roots > 1 && self.plans[i].left(roots) == 0 {
             roots -= 1;
@@ -194,8 +195,8 @@ impl NodeWriter<'_> {
         self.forest(i + self.node(i).right(), roots - left, children);
     }
 
-    /// Finds, in the order of [`NodeWriter::fill`], nodes of so few references that what is below
-    /// is not worth sharing.
+    /// Finds the nodes with too few references to parallelise further, in the order of
+    /// [`NodeWriter::fill`].
     fn cuts(&self, i: usize, cuts: &mut CutPoints) {
         if self.node(i).count() <= PARALLEL {
             return cuts.below.push(i);
@@ -206,7 +207,7 @@ impl NodeWriter<'_> {
         inner.for_each(|&i| self.cuts(i, cuts));
     }
 
-    /// A node of the children of a binary one, and all below.
+    /// Builds the wide node for a binary node and all nodes below.
     fn subtree(&self, i: usize) -> SubtreeNodes {
         let count = self.node(i).count();
         let mut subtree = SubtreeNodes { nodes: Vec::with_capacity(count / 16 + 1), order: Vec::with_capacity(count) };
@@ -215,8 +216,8 @@ impl NodeWriter<'_> {
         subtree
     }
 
-    /// Fills a node with the children of a binary one, and all below; where subtrees are ready,
-    /// with those.
+    /// Fills a wide node from a binary one, and all nodes below. Takes subtrees from `ready` while
+    /// there are any.
     fn fill(&self, all: &mut SubtreeNodes, number: usize, i: usize, ready: &mut std::slice::Iter<SubtreeNodes>) {
         if self.node(i).count() <= PARALLEL
             && let Some(subtree) = ready.next()
@@ -229,11 +230,11 @@ impl NodeWriter<'_> {
         }
     }
 
-    /// Fills a node with the children of a binary one; gives where the inner ones of these are to
-    /// be, and which they are.
+    /// Fills a wide node with the children of a binary one. Returns the position reserved for its
+    /// inner children, and their binary nodes.
     ///
-    /// What a ray is likely to need together lies together: first the leaves of a node, then its
-    /// inner children, side by side, and then what is below each of them.
+    /// Data that a ray is likely to need together is stored together: first the leaves of a node,
+    /// then its inner children side by side, then the nodes below each of them.
     fn wide(&self, subtree: &mut SubtreeNodes, number: usize, i: usize) -> (usize, Children) {
         let children = self.open(i);
         let list = &children.list[..children.count];
@@ -258,7 +259,7 @@ impl NodeWriter<'_> {
         (first, inner)
     }
 
-    /// Writes a leaf of everything below a binary node.
+    /// Writes a leaf with all primitives below a binary node.
     fn leaf(&self, subtree: &mut SubtreeNodes, i: usize) -> u32 {
         let (mut items, mut count) = ([0; LEAF_SIZE], 0);
         let most = self.node(i).count();
@@ -271,7 +272,7 @@ impl NodeWriter<'_> {
             }
         }
         if self.tree.is_cut {
-            // Parts of a thing that was cut, when together again, count once.
+            // Reunited parts of a split primitive count once.
             items[..count].sort_unstable();
             let mut different = 1;
             for i in 1..count {
@@ -289,9 +290,9 @@ impl NodeWriter<'_> {
 }
 
 impl SubtreeNodes {
-    /// Puts another subtree's first node to a place, and the others to the end.
+    /// Copies the root of a subtree to position `number`, and appends its other nodes.
     fn append(&mut self, number: usize, other: &SubtreeNodes) {
-        // No address is too great if that of the last is not.
+        // Checks that the offset of the last node is in range.
         node::node_offset(self.nodes.len() + other.nodes.len() - 2);
         let (nodes, items) = (node::node_offset(self.nodes.len() - 1), self.order.len() as u32);
         let moved = |node: &WideNode| {
@@ -309,12 +310,13 @@ impl SubtreeNodes {
     }
 }
 
-/// What [`WideNode::from_last`] is where children rise along an axis, the first and the last with
-/// such areas.
+/// Value of [`WideNode::from_last`] for children sorted along an axis, from the areas of the first
+/// and the last.
 ///
-/// If the nearest hit is wanted, they come from near to far. Where any will do, from far to near: a
-/// ray begins on a surface that it leaves, and what is near is that surface. But in a box at the
-/// far end that is small beside that at the near end a hit is less likely.
+/// Closest-hit rays visit children from near to far. Any-hit rays visit them from far to near,
+/// since a ray usually starts on a surface, which then is the nearest geometry. If the farthest box
+/// is much smaller than the nearest one, a hit there is less likely, and the order is from near to
+/// far.
 fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     const NEGATIVE: [u32; 3] = [0b1010_1010, 0b1100_1100, 0b1111_0000];
     const SMALL: f32 = 0.5;
@@ -323,10 +325,10 @@ fn from_last(axis: usize, [first, last]: [f32; 2]) -> [u32; 2] {
     [negative, any & 255]
 }
 
-/// A place for each of some children, and what [`WideNode::from_last`] then is.
+/// Value of [`WideNode::from_last`], and a slot for each child.
 ///
-/// They are in order along the axis along which they lie apart best: two that are apart are met in
-/// the right order by every ray; that they both are met is the likelier the greater they are.
+/// Children are sorted along the axis that separates them best. Every ray hits two separated
+/// children in the right order, and the larger they are, the more likely it hits both.
 fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
     let mut areas = [0.0; WIDTH];
     areas.iter_mut().zip(bounds).for_each(|(area, bounds)| *area = bounds.half_area());
@@ -340,7 +342,7 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
         }
     }
     let axis = (1..3).fold(0, |best, axis| if apart[axis] > apart[best] { axis } else { best });
-    // Of those at the same place, in the order of their numbers.
+    // Ties keep the order of the children.
     let mut places = [0; WIDTH];
     for (i, a) in bounds.iter().enumerate() {
         let center = a.center()[axis];
@@ -360,9 +362,8 @@ fn places(bounds: &[Aabb]) -> ([u32; 2], [usize; WIDTH]) {
 mod tests {
     use super::*;
 
-    /// Of two children that are apart along an axis, whichever comes first and whichever is
-    /// greater, the nearer one is first if the nearest hit is wanted; if any will do the farther
-    /// one, unless it is less than half as large.
+    /// If two children are separated along an axis, closest-hit rays visit the nearer one first.
+    /// Any-hit rays visit the farther one first, unless it is less than half as large.
     #[test]
     fn children_come_in_the_order_that_rays_want() {
         let child = |axis: usize, at: f32, size: f32| {
@@ -370,7 +371,7 @@ mod tests {
             (min[axis], max[axis]) = (at, at + size);
             Aabb { min: min.into(), max: max.into() }
         };
-        // Sizes of the lower and of the upper one, and whether either is small beside the other.
+        // Sizes of the lower and upper child, and flags if either is small compared to the other.
         let pairs =
             [(1.0, 1.0, [false; 2]), (1.0, 0.9, [false; 2]), (0.5, 1.0, [true, false]), (1.0, 0.5, [false, true])];
         for (axis, (lower, upper, small)) in (0..3).flat_map(|axis| pairs.map(|pair| (axis, pair))) {

@@ -8,7 +8,7 @@ use crate::node::WIDTH;
 use std::arch::asm;
 use std::arch::x86_64::*;
 
-/// Proof that the processor has AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
+/// Proof that the processor supports AVX2, FMA, BMI 1 and 2, LZCNT, and POPCNT.
 #[derive(Clone, Copy)]
 pub struct Avx2(());
 
@@ -23,23 +23,23 @@ pub fn is_available() -> bool {
 
 /// # Safety
 ///
-/// [`is_available`] must have said so.
+/// [`is_available`] must have returned true.
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx2(()))
 }
 
-/// What an operation's safety rests on, said once.
+/// Wraps unsafe instructions that share one safety argument.
 macro_rules! proven {
     ($($code:tt)*) => {
-        // SAFETY: a value of the type proves that the processor has the instructions; references
-        // are valid.
+        // SAFETY: a value of the type proves that the processor has the instructions, and
+        // references are valid.
         unsafe { $($code)* }
     };
 }
 pub(super) use proven;
 
-/// Operations that are one instruction each.
+/// Implements operations that are one instruction each.
 macro_rules! operations {
     ($floats:ty: $($name:ident($($x:ident),+) = $instruction:ident;)*) => {$(
         #[inline(always)]
@@ -50,7 +50,7 @@ macro_rules! operations {
 }
 pub(super) use operations;
 
-/// What [`Numbers`] asks of eight lanes, but for comparisons.
+/// Implements [`Numbers`] on eight lanes, except comparisons.
 macro_rules! arithmetic_of_eight {
     () => {
         $crate::lanes::avx2::operations! { __m256:
@@ -74,7 +74,7 @@ macro_rules! arithmetic_of_eight {
 }
 pub(super) use arithmetic_of_eight;
 
-/// What [`Lanes`] asks of eight lanes, but for masks.
+/// Implements [`Lanes`] on eight lanes, except operations with masks.
 macro_rules! order_of_eight {
     () => {
         #[inline(always)]
@@ -148,14 +148,14 @@ macro_rules! order_of_eight {
         }
         #[inline(always)]
         fn prefetch<T>(self, at: *const T) {
-            // SAFETY: the instruction takes any address.
+            // SAFETY: the instruction accepts any address.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(at.cast()) };
         }
     };
 }
 pub(super) use order_of_eight;
 
-/// Nine rows.
+/// Loads the nine rows of a leaf's corners.
 #[inline(always)]
 pub(super) fn corners(
     from: &super::operations::Rows,
@@ -163,15 +163,15 @@ pub(super) fn corners(
 ) -> [[__m256; 3]; 3] {
     macro_rules! row {
         ($corner:literal, $k:literal) => {
-            // SAFETY: by `Columns::new` it begins in one of the first nine rows; the features are
-            // proven by the caller.
+            // SAFETY: by `Columns::new`, the vector begins in one of the first nine rows. The
+            // caller proves that the processor has the instructions.
             unsafe { _mm256_loadu_ps(from.as_ptr().add(starts[$k]).add($corner * corner)) }
         };
     }
     [[row!(0, 0), row!(0, 1), row!(0, 2)], [row!(1, 0), row!(1, 1), row!(1, 2)], [row!(2, 0), row!(2, 1), row!(2, 2)]]
 }
 
-/// The least of eight numbers.
+/// Minimum of eight unsigned integers.
 #[inline(always)]
 pub(super) fn least(a: __m256i) -> u32 {
     proven! {
@@ -181,8 +181,7 @@ pub(super) fn least(a: __m256i) -> u32 {
     }
 }
 
-/// An instruction as it stands, which the compiler takes for no other, and of which it changes no
-/// order.
+/// Wraps an instruction in assembly, so that the compiler neither replaces nor reorders it.
 macro_rules! literally {
     ($name:ident = $instruction:literal) => {
         /// # Safety
@@ -192,7 +191,7 @@ macro_rules! literally {
         #[target_feature(enable = "avx2")]
         pub(super) unsafe fn $name(a: __m256, b: __m256) -> __m256 {
             let c;
-            // SAFETY: it computes one register from two.
+            // SAFETY: the instruction computes one register from two.
             unsafe {
                 asm!(
                     concat!($instruction, " {c}, {a}, {b}"),
@@ -206,14 +205,14 @@ macro_rules! literally {
         }
     };
 }
-// Of signed integers. Of the intrinsics, the compiler compares what is last with what comes right
-// before it first, and makes masks of comparisons, which takes longer. (Where all are compared so,
-// not the last only, vectors must be moved between registers.)
+// Comparisons of signed integers. With intrinsics, the compiler compares the last operand with the
+// one before first and turns comparisons into masks, which takes longer. Used for the last
+// comparison only, since wrapping all of them would move vectors between registers.
 literally!(greater = "vpmaxsd");
 literally!(lesser = "vpminsd");
 literally!(is_greater = "vpcmpgtd");
 
-/// Ones in the lanes whose bits are set.
+/// Sets all bits in the lanes whose mask bits are set.
 #[inline(always)]
 fn lanes_of(mask: u32) -> __m256i {
     proven! {
@@ -222,7 +221,7 @@ fn lanes_of(mask: u32) -> __m256i {
     }
 }
 
-/// Rows to columns: pairs, then fours, then halves.
+/// Transposes rows to columns: pairs, then fours, then halves.
 #[inline(always)]
 pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; WIDTH] {
     proven! {
@@ -247,7 +246,8 @@ pub(super) fn transpose([a, b, c, d, e, f, g, h]: [__m256; WIDTH]) -> [__m256; W
     }
 }
 
-/// Operations on `f64`, one instruction each; of the last ones, those that make `copysign`.
+/// Implements arithmetic on `f64`, one instruction each. The bracketed instructions make up
+/// `copysign`.
 macro_rules! doubles {
     ($doubles:ident: $($name:ident = $instruction:ident;)*
      [sqrt = $sqrt:ident; copysign = $splat:ident, $and:ident, $andnot:ident, $or:ident]) => {
@@ -274,7 +274,7 @@ macro_rules! doubles {
 }
 pub(super) use doubles;
 
-/// Four `f64`, with AVX2.
+/// Four `f64` in an AVX register.
 #[derive(Clone, Copy)]
 pub struct Four(__m256d);
 
@@ -288,7 +288,7 @@ doubles! { Four:
     [sqrt = _mm256_sqrt_pd; copysign = _mm256_set1_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_or_pd]
 }
 
-/// A vector in double precision.
+/// Converts a vector to double precision.
 #[inline(always)]
 pub(super) fn triple(v: glam::Vec3A) -> Four {
     proven!(Four(_mm256_cvtps_pd(v.into())))

@@ -1,4 +1,4 @@
-//! AVX-512 on eight lanes, with masks in registers of their own, and on sixteen.
+//! AVX-512 on eight lanes, with masks in mask registers, and on sixteen lanes.
 
 use super::avx2::{Four, arithmetic_of_eight, doubles, operations, order_of_eight, proven};
 use super::operations::{Kernel, Lanes, Numbers, WIDE, Wide};
@@ -6,7 +6,7 @@ use super::stack::Stack;
 use crate::node::WIDTH;
 use std::arch::x86_64::*;
 
-/// Proof that the processor has AVX-512 F, VL and DQ beside what AVX2's level asks for.
+/// Proof that the processor supports AVX-512 F, VL, and DQ, in addition to the AVX2 level.
 #[derive(Clone, Copy)]
 pub struct Avx512(());
 
@@ -19,7 +19,7 @@ pub fn is_available() -> bool {
 
 /// # Safety
 ///
-/// [`is_available`] must have said so.
+/// [`is_available`] must have returned true.
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 pub unsafe fn run<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(Avx512(()))
@@ -86,7 +86,7 @@ impl Lanes for Avx512 {
     }
 }
 
-/// Eight `f64`; the same proof.
+/// Eight `f64`. A value also proves that the processor supports AVX-512.
 #[derive(Clone, Copy)]
 pub struct Eight(__m512d);
 
@@ -100,7 +100,7 @@ doubles! { Eight:
     [sqrt = _mm512_sqrt_pd; copysign = _mm512_set1_pd, _mm512_and_pd, _mm512_andnot_pd, _mm512_or_pd]
 }
 
-/// One vector of sixteen lanes; the same proof.
+/// One vector of sixteen lanes. A value also proves that the processor supports AVX-512.
 #[derive(Clone, Copy)]
 pub struct Sixteen(());
 

@@ -1,26 +1,26 @@
-//! Which instructions are used: chosen once, by what the processor has and `DURER_SIMD`.
+//! Selection of the SIMD level, once, by the processor and `DURER_SIMD`.
 
 use super::operations::{Kernel, Lanes};
 use super::scalar;
 use std::fmt;
 use std::sync::OnceLock;
 
-/// A set of instructions for eight lanes. All give the same hits, bit for bit.
+/// An instruction set for eight lanes. All levels give the same hits, bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SimdLevel {
     /// Plain code, for any processor.
     Scalar,
     /// AVX2 and FMA, on x86-64.
     Avx2,
-    /// AVX-512 F, VL and DQ beside them, on x86-64.
+    /// AVX-512 F, VL, and DQ in addition to AVX2 and FMA, on x86-64.
     Avx512,
     /// NEON, on 64-bit ARM.
     Neon,
-    /// WebAssembly's 128-bit SIMD, where the crate is compiled with `-C target-feature=+simd128`.
+    /// WebAssembly's 128-bit SIMD, if the crate is compiled with `-C target-feature=+simd128`.
     Simd128,
 }
 
-/// `DURER_SIMD` says something that this processor cannot do.
+/// Error for a value of `DURER_SIMD` that this processor does not support.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownSimdLevel {
     word: String,
@@ -44,21 +44,22 @@ impl SimdLevel {
         (SimdLevel::Avx512, "avx512"),
     ];
 
-    /// The levels that this processor has, the plain one first and the best last.
+    /// Levels that this processor supports, scalar first and best last.
     pub fn available() -> impl Iterator<Item = SimdLevel> {
         Self::ALL.into_iter().map(|(level, _)| level).filter(|level| level.is_available())
     }
 
-    /// Its name, as `DURER_SIMD` takes it.
+    /// Name of the level, as `DURER_SIMD` accepts it.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(level, _)| *level == self).map_or("", |(_, name)| name)
     }
 
-    /// The level that the variable `DURER_SIMD` names, or the best one where it is not set.
+    /// Returns the level named by the environment variable `DURER_SIMD`, or the best one if it is
+    /// not set.
     ///
     /// # Errors
     ///
-    /// If the variable names no level that this processor has.
+    /// If the variable does not name a level that this processor supports.
     pub fn from_environment() -> Result<SimdLevel, UnknownSimdLevel> {
         let word = std::env::var("DURER_SIMD").unwrap_or_default();
         if word.is_empty() {
@@ -68,8 +69,8 @@ impl SimdLevel {
         Self::available().find(|level| level.name() == word).ok_or_else(|| UnknownSimdLevel { word, known: known() })
     }
 
-    /// As [`SimdLevel::from_environment`], looked up once; the best one where the variable is
-    /// wrong.
+    /// Returns [`SimdLevel::from_environment`], read once; the best level if the variable is
+    /// invalid.
     pub fn chosen() -> SimdLevel {
         static CHOSEN: OnceLock<SimdLevel> = OnceLock::new();
         *CHOSEN.get_or_init(|| Self::from_environment().unwrap_or_else(|_| Self::best()))
@@ -96,18 +97,18 @@ impl SimdLevel {
     }
 }
 
-/// Loops over arrays in plain code, to be compiled for each level: with the instructions of a
-/// level, compilers make them as wide as it is. They fuse and reorder nothing by themselves, so all
-/// levels give the same bits. What `run` calls should be inlined into it.
+/// Loops over arrays in plain code that are compiled for each level, so that compilers vectorise
+/// them to its width. Compilers do not fuse or reorder operations on their own, so all levels give
+/// the same bits. Functions that `run` calls should be inlined into it.
 pub trait PlainKernel {
-    /// What comes of it.
+    /// Result of the kernel.
     type Output;
 
-    /// The work, to be marked `#[inline(always)]`.
+    /// Runs the kernel. Mark it `#[inline(always)]`.
     fn run(self) -> Self::Output;
 }
 
-/// Runs plain code at the level that was chosen.
+/// Runs plain code at the selected level.
 #[inline(always)]
 pub fn run_plain<K: PlainKernel>(kernel: K) -> K::Output {
     Available::chosen().run_plain(kernel)
@@ -124,7 +125,7 @@ impl<K: PlainKernel> Kernel for Plain<K> {
     }
 }
 
-/// A level that the processor was found to have.
+/// A level that the processor is known to support.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Available(SimdLevel);
 
@@ -133,7 +134,7 @@ impl Available {
         Available(SimdLevel::chosen())
     }
 
-    /// The level; the plain one where the processor has not got it.
+    /// Wraps `level`, or the scalar level if the processor does not support it.
     pub fn or_scalar(level: SimdLevel) -> Self {
         Available(if level.is_available() { level } else { SimdLevel::Scalar })
     }
@@ -148,10 +149,10 @@ impl Available {
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self.0 {
-            // SAFETY: the processor has it, or there would be no such value.
+            // SAFETY: such a value exists only if the processor supports the level.
             #[cfg(target_arch = "x86_64")]
             SimdLevel::Avx512 => unsafe { super::avx512::run(kernel) },
-            // SAFETY: as above.
+            // SAFETY: see above.
             #[cfg(target_arch = "x86_64")]
             SimdLevel::Avx2 => unsafe { super::avx2::run(kernel) },
             #[cfg(target_arch = "aarch64")]
@@ -163,7 +164,8 @@ impl Available {
     }
 }
 
-/// Apart from its callers, whose stacks would be as high as this needs.
+/// Runs the scalar level. Not inlined, since its stack frame would enlarge the frames of its
+/// callers.
 #[inline(never)]
 fn plain<K: Kernel>(kernel: K) -> K::Output {
     kernel.run(scalar::Scalar)

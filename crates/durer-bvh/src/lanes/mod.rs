@@ -1,10 +1,10 @@
-//! Eight numbers side by side, on whatever the processor offers: all the unsafe code of the
-//! library.
+//! SIMD operations on eight lanes, with all unsafe code of the library.
 //!
-//! [`Lanes`] is what the walk through a tree needs. Each level implements it once, and
-//! [`SimdLevel::run`] calls a [`Kernel`] with the one that was chosen. What decides a hit is add,
-//! subtract, multiply and compare only, never fused, so every level gives the same bits;
-//! [`Numbers::mul_add`] may be fused or not, and belongs to tests of boxes, which allow for either.
+//! [`Lanes`] lists the operations that traversal needs. Each level implements it once, and
+//! [`SimdLevel::run`] calls a [`Kernel`] with the selected level. Hits depend only on addition,
+//! subtraction, multiplication, and comparison, which are never fused, so every level gives the
+//! same bits. [`Numbers::mul_add`] may be fused or not; only box tests use it, which allow for
+//! either.
 #![allow(unsafe_code)]
 
 #[cfg(target_arch = "x86_64")]

@@ -11,19 +11,19 @@ use std::arch::aarch64::*;
 #[derive(Clone, Copy)]
 pub struct Neon;
 
-/// Two vectors.
+/// Eight `f32` in two vectors.
 #[derive(Clone, Copy)]
 pub struct Pair(float32x4_t, float32x4_t);
 
-/// What an operation's safety rests on, said once.
+/// Wraps unsafe instructions that share one safety argument.
 macro_rules! proven {
     ($($code:tt)*) => {
-        // SAFETY: NEON belongs to the target; references are valid.
+        // SAFETY: NEON is part of the target, and references are valid.
         unsafe { $($code)* }
     };
 }
 
-/// Two `f64`.
+/// Two `f64` in one vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(float64x2_t);
 
@@ -65,7 +65,7 @@ impl Doubles for TwoDoubles {
 #[inline(always)]
 unsafe fn bits(a: uint32x4_t, b: uint32x4_t) -> u32 {
     const WEIGHTS: [u32; 4] = [1, 2, 4, 8];
-    // SAFETY: as the caller's.
+    // SAFETY: the caller's.
     proven! {
         let weights = vld1q_u32(WEIGHTS.as_ptr());
         vaddvq_u32(vandq_u32(a, weights)) | vaddvq_u32(vandq_u32(b, weights)) << 4

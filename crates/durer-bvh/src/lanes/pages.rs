@@ -1,16 +1,16 @@
-//! Memory: large pages, and what is brought near.
+//! Large pages and prefetching.
 
 use crate::parallel;
 
-/// An empty list with room for so many things, on large pages.
+/// Creates an empty list with capacity for `count` items, on large pages.
 pub fn room<T>(count: usize) -> Vec<T> {
     let room = Vec::with_capacity(count);
     large_pages(room.as_ptr(), count);
     room
 }
 
-/// A list of what belongs to 0, 1, 2, ..., on large pages, with room for so many more. All threads
-/// write it: to touch memory for the first time takes longer than to write to it.
+/// Creates a list of `of(0)`, `of(1)`, ... on large pages, with capacity for `more` further items.
+/// All threads write it, because the first access to memory takes longer than the writes.
 pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
     const AT_ONCE: usize = 4096;
     let mut all = room(count + more);
@@ -18,16 +18,15 @@ pub fn listed<T: Send>(count: usize, more: usize, of: impl Fn(usize) -> T + Sync
     all
 }
 
-/// Has something that lies far away in memory brought near, where the processor can do that while
-/// it goes on.
+/// Prefetches a value into the cache, if the processor can do so without waiting.
 #[inline]
 pub fn bring_near<T>(thing: &T) {
     #[cfg(target_arch = "x86_64")]
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
-        // It may begin in the middle of a line.
+        // The value may begin in the middle of a cache line.
         for byte in (0..size_of::<T>()).step_by(64).chain([size_of::<T>().saturating_sub(1)]) {
-            // SAFETY: the instruction takes any address, and every processor has it.
+            // SAFETY: the instruction accepts any address, and every x86-64 processor has it.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(std::ptr::from_ref(thing).cast::<i8>().wrapping_add(byte)) };
         }
     }
@@ -35,24 +34,24 @@ pub fn bring_near<T>(thing: &T) {
     let _ = thing;
 }
 
-/// Asks the system to put room for so many things, in which nothing has been written yet, on large
-/// pages where it is large enough: a processor knows the places of only so many pages by heart.
+/// Asks the system to place uninitialised memory for `count` items on large pages, if it is large
+/// enough. The processor caches the addresses of only a limited number of pages.
 fn large_pages<T>(room: *const T, count: usize) {
     #[cfg(target_os = "linux")]
     {
         use std::ffi::{c_int, c_void};
         unsafe extern "C" {
-            /// Of the C library that `std` is linked with.
+            /// From the C library that `std` is linked with.
             fn madvise(from: *mut c_void, bytes: usize, advice: c_int) -> c_int;
         }
-        /// `MADV_HUGEPAGE` of Linux.
+        /// Linux's `MADV_HUGEPAGE`.
         const USE_LARGE_PAGES: c_int = 14;
         const LARGE: usize = 2 << 20;
         let start = room.addr().next_multiple_of(LARGE);
         let end = (room.addr() + count * size_of::<T>()) / LARGE * LARGE;
         if start < end {
-            // It is no loss if there are none to be had.
-            // SAFETY: this advice changes nothing in what memory holds, whoever's it is.
+            // Failure is harmless: memory then stays on small pages.
+            // SAFETY: this advice does not change the contents of memory.
             let _ = unsafe { madvise(room.with_addr(start).cast_mut().cast(), end - start, USE_LARGE_PAGES) };
         }
     }

@@ -1,4 +1,4 @@
-//! Plain code.
+//! Scalar code for any processor.
 
 use super::operations::{Lanes, Numbers};
 use super::stack::Stack;

@@ -1,4 +1,4 @@
-//! All levels give the same bits, whatever the numbers.
+//! Tests that all levels give the same bits for any numbers.
 
 use super::*;
 use crate::math::random::{Random, rounds};
@@ -7,7 +7,7 @@ use crate::watertight::AxisOrder;
 use crate::watertight::turned_axes;
 use glam::Vec3A;
 
-/// Numbers on which arithmetic may stumble.
+/// Numbers that are difficult for arithmetic.
 const SPECIAL: [f32; 14] = [
     0.0,
     -0.0,
@@ -28,8 +28,8 @@ const SPECIAL: [f32; 14] = [
 fn number(random: &mut Random) -> f32 {
     match random.below(4) {
         0 => SPECIAL[random.below(SPECIAL.len())],
-        // No NaN is signaling: on ARM the compiler makes one instruction of `if a > b { a } else {
-        // b }`, which lets those pass.
+        // No signaling NaN: on ARM the compiler turns `if a > b { a } else { b }` into one
+        // instruction that passes them through.
         1 => match f32::from_bits(random.bits() as u32) {
             x if x.is_nan() => f32::NAN,
             x => x,
@@ -38,7 +38,7 @@ fn number(random: &mut Random) -> f32 {
     }
 }
 
-/// Numbers for all lanes, and what is needed beside them.
+/// Random values for all operations.
 struct Input {
     floats: [[f32; WIDTH]; 3],
     rows: Rows,
@@ -61,11 +61,12 @@ impl Input {
     }
 }
 
-/// Everything that lanes do but [`Numbers::mul_add`], as bits; all that are no number as the same.
+/// Results of all lane operations except [`Numbers::mul_add`], as bits. Every NaN has the same
+/// bits.
 struct Everything<'a>(&'a Input);
 
-/// Vectors that are looked at for each input: of arithmetic, in double precision, two halves
-/// joined, of comparison, a stack before and after, nine rows, and columns; and twice as wide ones.
+/// Number of vectors computed for each input: arithmetic, double precision, two joined halves,
+/// comparisons, a stack before and after, nine rows, columns, and wide vectors.
 const OPERATIONS: usize = 12 + 3 * 9 + 2 + 9 + 5 + 2 + 9 + WIDTH + 2 * 11;
 
 impl Kernel for Everything<'_> {
@@ -77,7 +78,7 @@ impl Kernel for Everything<'_> {
         let [a, b, c] = [lanes.load(&floats[0]), lanes.load(&floats[1]), lanes.load(&floats[2])];
         let mut found = Vec::with_capacity(WIDTH * OPERATIONS + 16);
         let number = |x: f32| if x.is_nan() { f32::NAN.to_bits() } else { x.to_bits() };
-        // Vectors come out through the stack.
+        // Vectors are read through the stack.
         let mut tell = |v: L::Floats, count: usize| {
             let mut room = StackStorage::new();
             let mut stack = Stack::new(&mut room);
@@ -105,7 +106,7 @@ impl Kernel for Everything<'_> {
         found.extend(wide(lanes.wide(), floats, *mask).map(number));
         let (p, q) = (lanes.doubles(a), lanes.doubles(c).mul(lanes.splat_double(0.1)));
         let bits = |x: f64| if x.is_nan() { [0; 2] } else { [x.to_bits() as u32, (x.to_bits() >> 32) as u32] };
-        // The sign of what is no number is not told by the language.
+        // The language does not specify the sign of a NaN.
         let signed = q.max(lanes.splat_double(f64::MIN));
         let of_one = [p, p.sqrt(), p.copysign(signed)];
         for doubles in of_one.into_iter().chain([p.add(q), p.sub(q), p.mul(q), p.div(q), p.min(q), p.max(q)]) {
@@ -125,7 +126,7 @@ impl Kernel for Everything<'_> {
         let turned = lanes.turn(Vec3A::from_slice(&floats[0]), turn);
         found.extend(turned.to_array().map(number));
         found.extend([lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)]);
-        // Which lane it is if none is met, nobody asks.
+        // The lane is arbitrary if none is hit.
         let (enter, leave) = (lanes.later(a, lanes.splat(0.0)), b);
         let before = lanes.before(enter, leave);
         let (met, nearest) = (lanes.signs(before), lanes.nearest(enter, before, &[10, 250, 12, 30, 14, 15, 201, 17]));
@@ -141,7 +142,7 @@ impl Kernel for Everything<'_> {
     }
 }
 
-/// Everything that sixteen lanes do.
+/// Results of all operations on sixteen lanes.
 #[inline(always)]
 fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 * WIDE + 6] {
     let join =
@@ -157,11 +158,11 @@ fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 
         lanes.max(a, b),
         lanes.select(mask | !mask << WIDTH, a, b),
     ];
-    // Where it is no number, the second is taken.
+    // `max` replaces NaN by its second operand.
     let ordered = lanes.max(a, lanes.splat(f32::MIN));
     let masks = [lanes.le(a, b), lanes.lt(a, b), lanes.le(b, a), lanes.lt(b, a)].map(|mask| mask as f32);
     let [p, q, r, s] = masks;
-    // Zeroes of either sign are as great.
+    // Zeros of either sign compare equal.
     let others = [lanes.least(ordered) + 0.0, lanes.greatest(ordered) + 0.0, p, q, r, s];
     let mut found = [0.0; 8 * WIDE + 6];
     let all = vectors.into_iter().flat_map(|v| lanes.store(v)).chain(others);
@@ -169,7 +170,7 @@ fn wide<W: Wide>(lanes: W, [a, b, c]: &[[f32; WIDTH]; 3], mask: u32) -> [f32; 8 
     found
 }
 
-/// 10^6 lanes; in the long run 10^9.
+/// Tests 10^6 lanes; 10^9 in the long run.
 #[test]
 fn every_level_gives_the_same_bits() {
     let mut random = Random(31);
@@ -184,7 +185,7 @@ fn every_level_gives_the_same_bits() {
     println!("{} lanes at {} levels", inputs * WIDTH * OPERATIONS, SimdLevel::available().count());
 }
 
-/// What might be fused, or taken in another order.
+/// Sums that a compiler might fuse or reorder.
 struct Sums([[f32; 24]; 3]);
 
 impl PlainKernel for Sums {

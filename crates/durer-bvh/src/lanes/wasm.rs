@@ -1,8 +1,8 @@
 //! WebAssembly's `simd128`: eight lanes as two vectors of four.
 //!
-//! A module either has these instructions or has not: there is no test at run time. The compiler
-//! option `-C target-feature=+simd128` chooses this level. Relaxed SIMD is not used, because its
-//! results may differ between machines.
+//! A module either contains these instructions or not, so nothing is tested at run time. The
+//! compiler option `-C target-feature=+simd128` selects this level. Relaxed SIMD is not used,
+//! because its results may differ between machines.
 
 use super::operations::{Columns, Lanes, Numbers, Rows};
 use super::stack::Stack;
@@ -11,31 +11,31 @@ use crate::math::Doubles;
 use crate::node::WIDTH;
 use std::arch::wasm32::*;
 
-/// The target has `simd128` wherever this type exists.
+/// Proof that the target has `simd128`: the type exists only there.
 #[derive(Clone, Copy)]
 pub struct Simd128;
 
-/// Eight `f32`.
+/// Eight `f32` in two vectors.
 #[derive(Clone, Copy)]
 pub struct Pair(v128, v128);
 
-/// A vector read from an array, from a place in it on. It needs no alignment.
+/// Loads a vector from an array, beginning at an index. Alignment is not required.
 macro_rules! load {
     ($from:expr, $at:expr) => {
-        // SAFETY: callers name a place from which the array has sixteen bytes or more.
+        // SAFETY: callers pass an index from which the array has at least sixteen bytes.
         unsafe { v128_load($from.as_ptr().add($at).cast()) }
     };
 }
 
-/// A vector written into an array.
+/// Stores a vector into an array, beginning at an index.
 macro_rules! store {
     ($to:expr, $at:expr, $vector:expr) => {
-        // SAFETY: as above.
+        // SAFETY: see above.
         unsafe { v128_store($to.as_mut_ptr().add($at).cast(), $vector) }
     };
 }
 
-/// Two `f64`.
+/// Two `f64` in one vector.
 #[derive(Clone, Copy)]
 pub struct TwoDoubles(v128);
 
@@ -57,7 +57,7 @@ impl Doubles for TwoDoubles {
         TwoDoubles(f64x2_div(self.0, other.0))
     }
     // `pmin(x, y)` is `if y < x { y } else { x }`, and `pmax(x, y)` is `if x < y { y } else { x }`.
-    // With the operands exchanged they are what the trait asks for, NaN and zeros included.
+    // With swapped operands they match the trait, also for NaN and zeros.
     #[inline(always)]
     fn min(self, other: Self) -> Self {
         TwoDoubles(f64x2_pmin(other.0, self.0))
@@ -76,7 +76,7 @@ impl Doubles for TwoDoubles {
     }
 }
 
-/// Operations on both halves, one instruction each.
+/// Implements operations on both halves, one instruction each.
 macro_rules! operations {
     ($($name:ident($($x:ident),+) = $instruction:ident($($y:ident),+);)*) => {$(
         #[inline(always)]
@@ -86,7 +86,7 @@ macro_rules! operations {
     )*};
 }
 
-/// The first bit of each lane.
+/// Mask of the sign bits of all lanes.
 #[inline(always)]
 fn bits(low: v128, high: v128) -> u32 {
     u32::from(i32x4_bitmask(low)) | u32::from(i32x4_bitmask(high)) << 4
@@ -101,7 +101,7 @@ impl Numbers for Simd128 {
         mul(a, b) = f32x4_mul(a, b);
         div(a, b) = f32x4_div(a, b);
         abs(a) = f32x4_abs(a);
-        // The operands are exchanged as in `TwoDoubles`.
+        // The operands are swapped as in `TwoDoubles`.
         min(a, b) = f32x4_pmin(b, a);
         max(a, b) = f32x4_pmax(b, a);
     }
@@ -185,7 +185,7 @@ impl Lanes for Simd128 {
     }
     #[inline(always)]
     fn turn(self, v: glam::Vec3A, order: &[u32; 4]) -> glam::Vec3A {
-        // Four bytes for each component: 4k, 4k + 1, 4k + 2, 4k + 3.
+        // Byte indices of each component: 4k, 4k + 1, 4k + 2, 4k + 3.
         let first = i32x4_mul(load!(order, 0), u32x4_splat(0x0404_0404));
         u8x16_swizzle(v.into(), i32x4_add(first, u32x4_splat(0x0302_0100))).into()
     }
@@ -195,7 +195,7 @@ impl Lanes for Simd128 {
     }
     #[inline(always)]
     fn corners(self, from: &Rows, Columns { starts, corner }: Columns) -> [[Pair; 3]; 3] {
-        // By `Columns::new` each row begins in one of the first nine, so eight numbers follow.
+        // By `Columns::new`, each row begins in one of the first nine, so eight numbers follow.
         std::array::from_fn(|k| {
             starts.map(|start| Pair(load!(from, k * corner + start), load!(from, k * corner + start + 4)))
         })
@@ -232,7 +232,7 @@ impl Lanes for Simd128 {
     }
     #[inline(always)]
     fn transpose(self, [a, b, c, d, e, f, g, h]: [Pair; WIDTH]) -> [Pair; WIDTH] {
-        // Four blocks of four by four, of which two change places.
+        // Transpose four blocks of four by four, and swap two of them.
         let ([a0, b0, c0, d0], [e0, f0, g0, h0]) = (block([a.0, b.0, c.0, d.0]), block([a.1, b.1, c.1, d.1]));
         let ([a1, b1, c1, d1], [e1, f1, g1, h1]) = (block([e.0, f.0, g.0, h.0]), block([e.1, f.1, g.1, h.1]));
         [Pair(a0, a1), Pair(b0, b1), Pair(c0, c1), Pair(d0, d1), Pair(e0, e1), Pair(f0, f1), Pair(g0, g1), Pair(h0, h1)]
@@ -243,27 +243,28 @@ impl Lanes for Simd128 {
         let (to, to_near) = stack.top();
         for (i, &lane) in order.iter().enumerate().take(count as usize) {
             let lane = usize::from(lane) % WIDTH;
-            // SAFETY: `top` has room for a vector.
+            // SAFETY: `top` has space for a vector.
             unsafe {
                 to.add(i).write(children[lane]);
                 to_near.add(i).write(near[lane]);
             }
         }
-        // SAFETY: so many were written.
+        // SAFETY: `count` entries were written.
         unsafe { stack.grow(count) };
     }
     #[inline(always)]
     fn prefetch<T>(self, _: *const T) {}
 }
 
-/// Eight bytes, each as sixteen bits.
+/// Extends eight bytes to sixteen bits each.
 #[inline(always)]
 fn u16x8_load_extend(from: &[u8; WIDTH]) -> v128 {
-    // SAFETY: a reference is valid for its eight bytes, and the instruction needs no alignment.
+    // SAFETY: the reference is valid for eight bytes, and the instruction does not require
+    // alignment.
     unsafe { u16x8_load_extend_u8x8(from.as_ptr()) }
 }
 
-/// Rows to columns, four by four.
+/// Transposes four by four.
 #[inline(always)]
 fn block([a, b, c, d]: [v128; 4]) -> [v128; 4] {
     let (ab, cd) = (i32x4_shuffle::<0, 4, 1, 5>(a, b), i32x4_shuffle::<0, 4, 1, 5>(c, d));

@@ -1,5 +1,4 @@
-//! Sixteen numbers side by side, for rays that go together: one vector of AVX-512, or two of eight
-//! lanes.
+//! Sixteen lanes for ray packets: one AVX-512 vector, or two vectors of eight lanes.
 
 use super::operations::{Lanes, Numbers, WIDE, Wide};
 use crate::node::WIDTH;

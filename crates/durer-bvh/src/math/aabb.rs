@@ -3,46 +3,46 @@ use glam::Vec3;
 /// An axis-aligned box. Empty when `min` exceeds `max` in any axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Aabb {
-    /// Least corner.
+    /// Minimum corner.
     pub min: Vec3,
-    /// Greatest corner.
+    /// Maximum corner.
     pub max: Vec3,
 }
 
 impl Aabb {
-    /// The box that contains nothing.
+    /// Box that contains no point.
     pub const EMPTY: Aabb = Aabb { min: Vec3::INFINITY, max: Vec3::NEG_INFINITY };
 
-    /// The least box around some points.
+    /// Smallest box around some points.
     pub fn around(points: impl IntoIterator<Item = Vec3>) -> Self {
         points.into_iter().fold(Aabb::EMPTY, Aabb::with)
     }
 
-    /// The least box around this one and a point.
+    /// Smallest box around this one and a point.
     #[inline]
     pub fn with(self, point: Vec3) -> Self {
         Aabb { min: self.min.min(point), max: self.max.max(point) }
     }
 
-    /// The least box around both.
+    /// Smallest box around both.
     #[inline]
     pub fn union(self, other: Aabb) -> Self {
         Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
-    /// The greatest coordinate of its corners, without signs.
+    /// Largest absolute value among the coordinates of the corners.
     #[inline]
     pub fn reach(&self) -> f32 {
         self.min.abs().max(self.max.abs()).max_element()
     }
 
-    /// Whether a point lies in it or on its border.
+    /// Returns true if the point lies in the box or on its boundary.
     #[inline]
     pub fn holds(&self, point: Vec3) -> bool {
         point.cmpge(self.min).all() && point.cmple(self.max).all()
     }
 
-    /// Whether the box contains no point.
+    /// Returns true if the box contains no point.
     #[inline]
     pub fn is_empty(&self) -> bool {
         !self.min.cmple(self.max).all()
@@ -54,20 +54,20 @@ impl Aabb {
         (self.max - self.min).max(Vec3::ZERO)
     }
 
-    /// The middle.
+    /// Centre of the box.
     #[inline]
     pub fn center(&self) -> Vec3 {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Whether it lies so far from the origin for its size that single precision is coarse on it:
-    /// by 256 times its size.
+    /// Returns true if the centre is farther from the origin than 256 times the size, in the
+    /// maximum norm. Single precision is coarse on such a box.
     #[inline]
     pub fn is_far(self) -> bool {
         self.center().abs().max_element() > 256.0 * self.size().max_element()
     }
 
-    /// Half the surface area: what the surface area heuristic compares.
+    /// Half the surface area, as compared by the surface area heuristic.
     #[inline]
     pub fn half_area(&self) -> f32 {
         let d = self.size();
@@ -82,10 +82,10 @@ impl Aabb {
         })
     }
 
-    /// The interval of `t` for which `origin + t * dir` lies in the closed box, if any.
+    /// Interval of `t` in which `origin + t * dir` lies in the closed box, if any.
     ///
-    /// Slabs are chosen by the sign of the direction; a ray that lies in a face of the box is
-    /// inside.
+    /// The sign of the direction selects the near plane of each slab. A ray that lies in a face of
+    /// the box is inside.
     pub fn clip(&self, origin: Vec3, dir: Vec3) -> Option<(f32, f32)> {
         let (mut enter, mut leave) = (f32::NEG_INFINITY, f32::INFINITY);
         for axis in 0..3 {

@@ -5,8 +5,8 @@ use glam::{DAffine3, DVec3, Vec3};
 
 /// An invertible affine map between two spaces, with its inverse.
 ///
-/// Kept and applied in double precision, and rounded once: what is far away keeps its digits on the
-/// way back.
+/// The matrices are double precision, and results are rounded once, so that distant points keep
+/// their digits on the way back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Affine {
     forward: DAffine3,
@@ -14,15 +14,16 @@ pub struct Affine {
 }
 
 impl Affine {
-    /// The map that leaves everything where it is.
+    /// Identity map.
     pub const IDENTITY: Affine = Affine { forward: DAffine3::IDENTITY, inverse: DAffine3::IDENTITY };
 
-    /// From a matrix; `None` where it is singular, or leaves the range of single precision.
+    /// Creates a map from a matrix; `None` if it is singular or out of the range of single
+    /// precision.
     pub fn new(forward: DAffine3) -> Option<Self> {
         let m = forward.matrix3;
         let inverse = forward.inverse();
         let scale = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-        // A determinant lost in rounding means that space is flattened.
+        // If the determinant is lost in rounding, the map flattens space.
         let regular = m.determinant().abs() > 1e-14 * scale && scale > 0.0;
         let in_range = |map: DAffine3| {
             let linear = [map.matrix3.x_axis, map.matrix3.y_axis, map.matrix3.z_axis];
@@ -31,19 +32,19 @@ impl Affine {
         (regular && in_range(forward) && in_range(inverse)).then_some(Affine { forward, inverse })
     }
 
-    /// Whether this map moves nothing.
+    /// Returns true if this is the identity map.
     #[inline]
     pub fn is_identity(&self) -> bool {
         *self == Affine::IDENTITY
     }
 
-    /// Whether it makes left of right.
+    /// Returns true if the map reverses handedness.
     #[inline]
     pub fn mirrors(&self) -> bool {
         self.forward.matrix3.determinant() < 0.0
     }
 
-    /// The matrix of the map.
+    /// Matrix of the forward map.
     #[inline]
     pub fn forward(&self) -> DAffine3 {
         self.forward
@@ -55,7 +56,7 @@ impl Affine {
         self.point64(p).as_vec3()
     }
 
-    /// Maps a point forward, without rounding the image to single precision.
+    /// Maps a point forward, without rounding the result to single precision.
     #[inline]
     pub fn point64(&self, p: Vec3) -> DVec3 {
         self.forward.transform_point3(p.as_dvec3())
@@ -67,32 +68,32 @@ impl Affine {
         self.inverse.transform_point3(p.as_dvec3()).as_vec3()
     }
 
-    /// Maps a vector forward: moving changes nothing.
+    /// Maps a vector forward; translation has no effect.
     #[inline]
     pub fn vector(&self, v: Vec3) -> Vec3 {
         self.forward.transform_vector3(v.as_dvec3()).as_vec3()
     }
 
-    /// Maps a unit normal forward, by the inverse transpose; of unit length again.
+    /// Maps a unit normal forward by the inverse transpose. The result has unit length.
     #[inline]
     pub fn normal(&self, n: Vec3) -> Vec3 {
         let image = self.inverse.matrix3.transpose() * n.as_dvec3();
         image.normalize_or(n.as_dvec3()).as_vec3()
     }
 
-    /// The unit normal whose image by [`Affine::normal`] is this one.
+    /// Maps a unit normal backward: the inverse of [`Affine::normal`].
     #[inline]
     pub fn local_normal(&self, n: Vec3) -> Vec3 {
         (self.forward.matrix3.transpose() * n.as_dvec3()).normalize_or(n.as_dvec3()).as_vec3()
     }
 
-    /// Maps a normal forward as [`Affine::normal`], but leaves it the length that comes of it.
+    /// Maps a normal forward as [`Affine::normal`] does, without normalising the result.
     #[inline]
     pub fn long_normal(&self, n: Vec3) -> Vec3 {
         (self.inverse.matrix3.transpose() * n.as_dvec3()).as_vec3()
     }
 
-    /// Maps a ray backward, into the space that this map leads out of. `t` keeps its meaning.
+    /// Maps a ray backward, into the source space of this map. `t` keeps its meaning.
     #[inline]
     pub fn inverse_ray(&self, ray: impl Into<Ray64>) -> Ray {
         let ray = ray.into();
@@ -108,30 +109,29 @@ impl Affine {
         Line { origin: self.inverse.transform_point3(origin), dir: self.inverse.transform_vector3(dir) }
     }
 
-    /// Bound on the absolute error of `point64(p)` when `p` itself is known to within `error`.
+    /// Bound on the absolute error of `point64(p)` if `p` is known to within `error`.
     ///
-    /// The roundings on the way forward and on a later way back are covered: of double precision in
-    /// world space, where 2^-40 leaves room for ill-conditioned maps, and of single precision in
-    /// object space.
+    /// Covers rounding on the way forward and on a later way back: double precision in world space,
+    /// where 2^-40 leaves room for ill-conditioned maps, and single precision in object space.
     pub fn point_error(&self, p: Vec3, error: Vec3) -> Vec3 {
         const DOUBLE: f32 = 1.0 / (1u64 << 40) as f32;
         let far = self.forward.translation.abs().as_vec3() + self.spread(p.abs());
         DOUBLE * far + self.spread(error + gamma(2) * p.abs())
     }
 
-    /// Bounds on the components of the image of a vector that is known by such bounds.
+    /// Component-wise bound on the image of a vector with component-wise bound `bound`.
     #[inline]
     pub fn spread(&self, bound: Vec3) -> Vec3 {
         (self.forward.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
-    /// As [`Affine::spread`], the other way.
+    /// Component-wise bound for the inverse map; see [`Affine::spread`].
     #[inline]
     pub fn inverse_spread(&self, bound: Vec3) -> Vec3 {
         (self.inverse.matrix3.abs() * bound.as_dvec3()).as_vec3()
     }
 
-    /// The least box around the image of a box, enlarged by the rounding of its corners.
+    /// Smallest box around the image of a box, enlarged by the rounding error of its corners.
     pub fn bounds(&self, b: Aabb) -> Aabb {
         let image = Aabb::around(b.corners().map(|c| self.point(c)));
         let largest = b.min.abs().max(b.max.abs());

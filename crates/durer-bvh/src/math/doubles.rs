@@ -1,29 +1,29 @@
-//! Arithmetic in double precision, for one number or for several side by side.
+//! Double-precision arithmetic on one number or on several lanes.
 
-/// An `f64`, or several that are computed with alike.
+/// An `f64`, or several in lanes.
 pub(crate) trait Doubles: Copy {
     fn add(self, other: Self) -> Self;
     fn sub(self, other: Self) -> Self;
     fn mul(self, other: Self) -> Self;
     fn div(self, other: Self) -> Self;
-    /// This where it is less than the other, else that: also where either is no number.
+    /// Returns `self` if it is less than `other`, else `other`, also if either is NaN.
     fn min(self, other: Self) -> Self;
-    /// This where it is greater than the other, else that: also where either is no number.
+    /// Returns `self` if it is greater than `other`, else `other`, also if either is NaN.
     fn max(self, other: Self) -> Self;
     fn sqrt(self) -> Self;
-    /// As great as this, with the other's sign.
+    /// Magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
 }
 
-/// Three components: of one vector, or of several side by side.
+/// Three components of one vector, or of several vectors in lanes.
 pub(crate) trait Triple: Doubles {
-    /// What a component is.
+    /// Type of a component.
     type Component: Doubles;
 
     fn z(self) -> Self::Component;
-    /// x + y, and then z.
+    /// Sum of the components, in the order (x + y) + z.
     fn sum(self) -> Self::Component;
-    /// (y, z, x).
+    /// Components rotated to (y, z, x).
     fn turned(self) -> Self;
 
     #[inline(always)]
@@ -81,7 +81,7 @@ macro_rules! both {
     )*};
 }
 
-/// Those of both, side by side.
+/// Component-wise arithmetic on two values.
 impl<D: Doubles> Doubles for (D, D) {
     both! { add sub mul div min max copysign }
 

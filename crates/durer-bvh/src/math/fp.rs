@@ -1,8 +1,8 @@
-//! Pinned transcendental functions.
+//! Transcendental functions with the same bits on every platform.
 //!
-//! The platform's libm rounds differently from system to system. All functions here are computed by
-//! the pure-Rust `libm`, so that a picture has the same bits everywhere. `clippy.toml` forbids the
-//! others.
+//! The platform's libm rounds differently from system to system. These functions use the pure-Rust
+//! `libm` or plain arithmetic, so that a picture has the same bits everywhere. `clippy.toml`
+//! forbids the others.
 
 use std::hint::select_unpredictable;
 
@@ -33,21 +33,22 @@ pub fn sin_cos_degrees(degrees: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine of an angle in turns below 2^20, to a rounding; exact at multiples of a quarter.
+/// Sine and cosine of an angle in turns below 2^20, accurate to one rounding; exact at multiples of
+/// a quarter turn.
 ///
-/// The nearest quarter is taken off; the rest is below an eighth, where the series are short.
+/// Subtracts the nearest quarter turn. The rest is below an eighth, where short series suffice.
 #[inline]
 pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     const SINE: [f64; 5] = [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5_040.0, 1.0 / 362_880.0];
     const COSINE: [f64; 6] = [1.0, -0.5, 1.0 / 24.0, -1.0 / 720.0, 1.0 / 40_320.0, -1.0 / 3_628_800.0];
-    // Adding this leaves no bits for a fraction, and the last two count the quarters.
+    // The sum has no bits for a fraction, and its last two bits count the quarters.
     const WHOLE: f32 = 1.5 * (1_u32 << 23) as f32;
     let quarters = 4.0 * turn + WHOLE;
     let x = std::f64::consts::TAU * (f64::from(turn) - 0.25 * f64::from(quarters - WHOLE));
     let x2 = x * x;
     let (sin, cos) = ((x * polynomial(x2, &SINE)) as f32, polynomial(x2, &COSINE) as f32);
-    // Without branches, for any quarter is as likely as another: each has its own signs, and every
-    // other one changes places.
+    // Branchless, since all quarters are equally likely. Each quarter has its own signs, and odd
+    // quarters swap sine and cosine.
     let quarter = quarters.to_bits();
     let signed = |x: f32, minus: u32| f32::from_bits(x.to_bits() ^ (minus & 2) << 30);
     let odd = quarter & 1 != 0;
@@ -55,16 +56,18 @@ pub fn sin_cos_turn(turn: f32) -> (f32, f32) {
     (signed(first, quarter), signed(second, quarter.wrapping_add(1)))
 }
 
-/// The angle of the point (x, y), both finite, in turns from -1/2 to 1/2; 0 for the origin.
+/// Angle of the point (x, y) in turns, from -1/2 to 1/2; 0 for the origin. Both coordinates must be
+/// finite.
 #[inline]
 pub fn atan2_turn(y: f32, x: f32) -> f32 {
     atan2_turn_f64(y.into(), x.into()) as f32
 }
 
-/// The same in double precision, to 2e-8 of it and to 2e-9 turns.
+/// Double-precision [`atan2_turn`]: relative error at most 2e-8, absolute error at most 2e-9 turns.
 #[inline]
 pub fn atan2_turn_f64(y: f64, x: f64) -> f64 {
-    /// Of atan(t) / (2 pi t) in t^2 from 0 to 1: interpolated where Chebyshev says, to 2e-9 turns.
+    /// Coefficients of atan(t) / (2 pi t) in t^2 on [0, 1], interpolated at Chebyshev nodes; error
+    /// at most 2e-9 turns.
     const ARC: [f64; 9] = [
         0.159154940584033,
         -0.05305122346559173,
@@ -127,30 +130,30 @@ pub fn atan2(y: f32, x: f32) -> f32 {
     libm::atan2f(y, x)
 }
 
-/// `base` to the power of `exponent`.
+/// Raises `base` to the power of `exponent`.
 ///
-/// Where both are usual numbers it is 2^(exponent log2 base) in double precision, whose error is so
-/// far below a rounding of the result that only ties may go the other way; else what libm says.
+/// For ordinary numbers the result is 2^(exponent log2 base) in double precision, whose error is so
+/// far below a rounding of the result that only ties may round the other way. Other cases use libm.
 #[inline]
 pub fn pow(base: f32, exponent: f32) -> f32 {
     let usual = usual_pow(base, exponent);
     if usual.is_nan() { libm::powf(base, exponent) } else { usual }
 }
 
-/// The same where both are usual numbers, else not a number: without a branch, so that compilers
-/// work out several side by side.
+/// Computes [`pow`] for ordinary numbers, and NaN for all others. Branchless, so that compilers can
+/// vectorise it.
 #[inline(always)]
 pub fn usual_pow(base: f32, exponent: f32) -> f32 {
     let power = f64::from(exponent) * log2(base);
-    // What single precision cannot hold is rounded to what it can; not a number is nothing here.
+    // The cast rounds results outside the range of single precision; NaN fails both tests.
     let is_usual = (base == base.clamp(f32::MIN_POSITIVE, f32::MAX)) & (power.abs() < 1000.0);
     if is_usual { exp2(power) as f32 } else { f32::NAN }
 }
 
 /// Base-2 logarithm of a positive normal number, to 2 roundings of double precision.
 ///
-/// log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1), by its series; m is between the roots of
-/// 1/2 and 2, so s^2 < 0.0295.
+/// Uses the series of log2 m = 2 artanh(s) / ln 2 with s = (m - 1) / (m + 1). m lies between the
+/// square roots of 1/2 and 2, so s^2 < 0.0295.
 #[inline(always)]
 fn log2(x: f32) -> f64 {
     /// 2 / (ln 2 (2 k + 1)).
@@ -173,8 +176,8 @@ fn log2(x: f32) -> f64 {
     f64::from(exponent) + s * polynomial(s * s, &SERIES)
 }
 
-/// 2 to the power of a number between -1022 and 1022, to 2 roundings of double precision: the
-/// series of e^(f ln 2) for |f| <= 1/2.
+/// Computes 2^x for x between -1022 and 1022, to 2 roundings of double precision, by the series of
+/// e^(f ln 2) for |f| <= 1/2.
 #[inline(always)]
 fn exp2(x: f64) -> f64 {
     /// (ln 2)^k / k!.
@@ -193,15 +196,15 @@ fn exp2(x: f64) -> f64 {
         4.4455382718708116e-10,
         2.5678435993488206e-11,
     ];
-    // Adding this leaves no bits for a fraction.
+    // The sum has no bits for a fraction.
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let shifted = x + WHOLE;
-    // The bits count on from those of what was added by one for each whole number.
+    // The bits of the sum are the bits of `WHOLE` plus the integer part.
     let whole = shifted.to_bits().wrapping_sub(WHOLE.to_bits());
     f64::from_bits(whole.wrapping_add(1023) << 52) * polynomial(x - (shifted - WHOLE), &SERIES)
 }
 
-/// c0 + c1 x + c2 x^2 + ..., of neighbours first (Estrin's scheme), so that few products wait for
+/// Evaluates c0 + c1 x + c2 x^2 + ... in pairs (Estrin's scheme), so that few products wait for
 /// each other.
 #[inline(always)]
 fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
@@ -219,7 +222,7 @@ fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
     sum
 }
 
-/// e to the power of `x`.
+/// Computes e^x.
 #[inline]
 pub fn exp(x: f32) -> f32 {
     libm::expf(x)
@@ -306,7 +309,7 @@ mod tests {
         for base in numbers {
             for exponent in numbers {
                 let (found, wanted) = (pow(base, exponent), libm::powf(base, exponent));
-                // libm's own is off by a rounding in places.
+                // libm itself is off by one rounding in places.
                 let near = (found - wanted).abs() <= f32::EPSILON * wanted.abs();
                 assert!(
                     found == wanted || near || found.is_nan() && wanted.is_nan(),

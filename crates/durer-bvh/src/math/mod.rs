@@ -16,10 +16,10 @@ pub use glam::{Vec2, Vec3};
 pub use ray::{Line, Ray, Ray64, Side};
 pub use rounding::{UNIT_ROUNDOFF, gamma};
 
-/// The unit normal (b - a) x (c - a) of a triangle; zero if it has no area.
+/// Unit normal (b - a) x (c - a) of a triangle; zero if the triangle has no area.
 #[inline]
 pub fn triangle_normal([a, b, c]: [Vec3; 3]) -> Vec3 {
-    // In double precision, where differences and products of single ones do not vanish.
+    // In double precision, differences and products of single-precision numbers do not vanish.
     let [a, b, c] = [a, b, c].map(Vec3::as_dvec3);
     (b - a).cross(c - a).normalize_or_zero().as_vec3()
 }

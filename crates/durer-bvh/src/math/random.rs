@@ -1,17 +1,17 @@
-//! Random numbers for tests: the same in every run.
+//! Reproducible random numbers for tests.
 
 use glam::{DAffine3, DMat3, DQuat, Vec3};
 
-/// How often a test does something: as often as usual, times `DURER_ROUNDS` in the long runs of
-/// `cargo xtask long`; a five-hundredth of that under Miri, which is far slower.
+/// Number of rounds of a test: `usual`, times `DURER_ROUNDS` in the long runs of `cargo xtask
+/// long`; a five-hundredth of it under Miri, which is far slower.
 pub fn rounds(usual: usize) -> usize {
     let usual = if cfg!(miri) { usual.div_ceil(500) } else { usual };
     let times = std::env::var("DURER_ROUNDS").ok();
     usual * times.map_or(1, |times| times.parse::<usize>().expect("DURER_ROUNDS is a whole number"))
 }
 
-/// A generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number Generators*,
-/// OOPSLA 2014.
+/// A SplitMix64 generator. Source: Steele, Lea, Flood, *Fast Splittable Pseudorandom Number
+/// Generators*, OOPSLA 2014.
 pub struct Random(pub u64);
 
 impl Random {
@@ -23,27 +23,27 @@ impl Random {
         z ^ z >> 31
     }
 
-    /// Between 0 and 1.
+    /// Uniform number in [0, 1).
     pub fn unit(&mut self) -> f32 {
         (self.bits() >> 40) as f32 / (1u64 << 24) as f32
     }
 
-    /// Between two numbers.
+    /// Uniform number between `low` and `high`.
     pub fn between(&mut self, low: f32, high: f32) -> f32 {
         low + (high - low) * self.unit()
     }
 
-    /// A whole number below another.
+    /// Integer below `count`.
     pub fn below(&mut self, count: usize) -> usize {
         (self.bits() % count as u64) as usize
     }
 
-    /// A point of the cube from -1 to 1.
+    /// Uniform point in the cube [-1, 1]^3.
     pub fn point(&mut self) -> Vec3 {
         Vec3::new(self.between(-1.0, 1.0), self.between(-1.0, 1.0), self.between(-1.0, 1.0))
     }
 
-    /// A direction, evenly over the sphere.
+    /// Uniform direction on the sphere.
     pub fn direction(&mut self) -> Vec3 {
         loop {
             let p = self.point();
@@ -53,14 +53,14 @@ impl Random {
         }
     }
 
-    /// A rotation.
+    /// Rotation about a random axis.
     pub fn rotation(&mut self) -> DMat3 {
         let axis = self.direction().as_dvec3().normalize();
         DMat3::from_quat(DQuat::from_axis_angle(axis, f64::from(self.between(-3.1, 3.1))))
     }
 
-    /// A stretch along turned axes, by factors from 1/`stretch` to `stretch`, sometimes mirrored;
-    /// then a move within a cube of this half size.
+    /// Scaling along rotated axes by factors from 1/`stretch` to `stretch`, sometimes mirrored,
+    /// followed by a translation within a cube of half size `distance`.
     pub fn affine(&mut self, stretch: f32, distance: f32) -> DAffine3 {
         let mut factor = || {
             let sign = if self.bits() & 1 == 0 { 1.0 } else { -1.0 };

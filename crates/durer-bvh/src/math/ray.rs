@@ -3,41 +3,41 @@ use glam::{DVec3, Vec3};
 /// A ray: the points `origin + t * dir` for `t` in the open interval (`t_min`, `t_max`).
 ///
 /// `dir` is not normalised, so that `t` means the same in world and in object space: a transform
-/// moves origin and direction and leaves `t` alone. `t_min` may be minus infinity.
+/// maps origin and direction, and leaves `t` unchanged. `t_min` may be minus infinity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-// The kernel reads rays as eight numbers in this order.
+// The kernel loads a ray as eight numbers in this order.
 #[repr(C)]
 pub struct Ray {
-    /// Where `t` is 0.
+    /// Origin: the point at `t` = 0.
     pub origin: Vec3,
     /// Direction; its length is one unit of `t`.
     pub dir: Vec3,
-    /// Hits must lie beyond this.
+    /// Lower end of the open interval of `t`.
     pub t_min: f32,
-    /// Hits must lie before this.
+    /// Upper end of the open interval of `t`.
     pub t_max: f32,
 }
 
 impl Ray {
-    /// The half-line from `origin` along `dir`.
+    /// Creates the half-line from `origin` along `dir`.
     #[inline]
     pub const fn new(origin: Vec3, dir: Vec3) -> Self {
         Ray { origin, dir, t_min: 0.0, t_max: f32::INFINITY }
     }
 
-    /// The point at `t`.
+    /// Point at `t`.
     #[inline]
     pub fn at(&self, t: f32) -> Vec3 {
         self.origin + t * self.dir
     }
 
-    /// Whether `t` lies in the open interval of this ray. False for NaN.
+    /// Returns true if `t` lies in the open interval of this ray. False for NaN.
     #[inline]
     pub fn contains(&self, t: f32) -> bool {
         t > self.t_min && t < self.t_max
     }
 
-    /// The whole line through it, in double precision.
+    /// Infinite line through the ray, in double precision.
     #[inline]
     pub fn line(&self) -> Line {
         Line { origin: self.origin.as_dvec3(), dir: self.dir.as_dvec3() }
@@ -46,35 +46,36 @@ impl Ray {
 
 /// A ray whose origin is known in double precision.
 ///
-/// What the world is asked with: far from the origin of coordinates, single precision would move a
-/// secondary ray off the surface that it starts from, and through the wall beside it.
+/// Queries of a whole scene take such rays: far from the coordinate origin, single precision would
+/// move a secondary ray off the surface that it starts from, and through the wall beside it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ray64 {
     /// The ray with its origin rounded to single precision.
     pub rounded: Ray,
-    /// What rounding left of the origin.
+    /// Part of the origin that rounding removed.
     pub rest: Vec3,
-    /// What it leaves, and on which side of that it starts.
+    /// Primitive that the ray leaves, and the side on which the ray starts.
     pub side: Side,
 }
 
-/// The thing that a ray leaves, and whether it starts inside of it: where the origin is nearer to
-/// an edge than it is known, coordinates do not tell.
+/// A primitive that a ray leaves, and whether the ray starts inside it. Near an edge, the
+/// coordinates of the origin are too inexact to decide this.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-// Nothing, or one more than twice the number, and one more inside.
+// 0 if unknown, else 2 * number + 1, plus 1 if inside.
 pub struct Side(u32);
 
 impl Side {
-    /// Of a ray that leaves nothing, or of which nobody knows.
+    /// Side of a ray that leaves no primitive or an unknown one.
     pub const ANY: Side = Side(0);
 
-    /// Inside or outside of a thing, by the caller's number for it; beyond 2^31 - 2 none is known.
+    /// Inside or outside of a primitive, numbered by the caller. Numbers above 2^31 - 2 give
+    /// [`Side::ANY`].
     #[inline]
     pub fn of(thing: u32, inside: bool) -> Side {
         if thing < (1 << 31) - 1 { Side(2 * thing + 1 + u32::from(inside)) } else { Side::ANY }
     }
 
-    /// Whether a ray starts inside a thing; `None` of other things than the one that it leaves.
+    /// Returns true if the ray starts inside the primitive; `None` if it leaves a different one.
     #[inline]
     pub fn inside(self, thing: u32) -> Option<bool> {
         (self != Side::ANY && (self.0 - 1) / 2 == thing).then_some(self.0.is_multiple_of(2))
@@ -82,7 +83,7 @@ impl Side {
 }
 
 impl Ray64 {
-    /// The ray from `origin` along `dir` in an open interval of `t`.
+    /// Creates the ray from `origin` along `dir` in an open interval of `t`.
     #[inline]
     pub fn new(origin: DVec3, dir: Vec3, t_min: f32, t_max: f32) -> Self {
         let near = origin.as_vec3();
@@ -90,13 +91,13 @@ impl Ray64 {
         Ray64 { rounded: Ray { origin: near, dir, t_min, t_max }, rest, side: Side::ANY }
     }
 
-    /// The same ray, which leaves a thing.
+    /// Sets the primitive and side that the ray leaves.
     #[inline]
     pub fn on_side(self, side: Side) -> Self {
         Ray64 { side, ..self }
     }
 
-    /// Where `t` is 0.
+    /// Origin: the point at `t` = 0.
     #[inline]
     pub fn origin(&self) -> DVec3 {
         self.rounded.origin.as_dvec3() + self.rest.as_dvec3()
@@ -108,7 +109,7 @@ impl Ray64 {
         self.rounded.dir
     }
 
-    /// The whole line through it.
+    /// Infinite line through the ray.
     #[inline]
     pub fn line(&self) -> Line {
         Line { origin: self.origin(), dir: self.rounded.dir.as_dvec3() }
@@ -136,29 +137,29 @@ impl From<&Ray64> for Ray64 {
     }
 }
 
-/// The points `origin + t * dir` for all `t`, in double precision.
+/// An infinite line: the points `origin + t * dir` for all `t`, in double precision.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Line {
-    /// Where `t` is 0.
+    /// Origin: the point at `t` = 0.
     pub origin: DVec3,
     /// Direction; its length is one unit of `t`.
     pub dir: DVec3,
 }
 
 impl Line {
-    /// The point at `t`.
+    /// Point at `t`.
     #[inline]
     pub fn at(&self, t: f64) -> DVec3 {
         self.origin + t * self.dir
     }
 
-    /// The `t` at which the line is nearest to a point.
+    /// Parameter `t` of the point on the line nearest to `point`.
     #[inline]
     pub fn nearest(&self, point: DVec3) -> f64 {
         (point - self.origin).dot(self.dir) / self.dir.dot(self.dir)
     }
 
-    /// Whether it can meet anything: all finite, with a direction.
+    /// Returns true if the line can hit anything: it is finite, and its direction is not zero.
     #[inline]
     pub fn is_sound(&self) -> bool {
         self.origin.is_finite() && self.dir.is_finite() && self.dir != DVec3::ZERO

@@ -1,4 +1,4 @@
-//! Bounds on the rounding of single precision.
+//! Bounds on rounding errors of single precision.
 
 /// Half the distance from 1 to the next `f32`: the relative error of one rounding.
 pub const UNIT_ROUNDOFF: f32 = f32::EPSILON * 0.5;

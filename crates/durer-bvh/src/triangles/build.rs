@@ -1,4 +1,4 @@
-//! Making a tree of triangles, and making it fit again when vertices have moved.
+//! Building a tree of triangles, and refitting it to moved vertices.
 
 use super::rows::{number, put};
 use super::tree::TriangleBvh;
@@ -9,33 +9,33 @@ use crate::math::{Aabb, Vec3};
 use crate::{node, parallel};
 use std::mem::MaybeUninit;
 
-/// Rows of about so many triangles are written at once.
+/// Number of triangles whose rows one task writes, roughly.
 const AT_ONCE: usize = 1024;
 
 impl TriangleBvh {
-    /// Builds over triangles given as three indices each. Those with a corner that is no finite
-    /// point are never hit.
+    /// Builds a tree over triangles given as three vertex indices each. Triangles with a corner
+    /// that is not finite are never hit.
     ///
-    /// The result is a function of the arguments alone. It takes about 50 bytes a triangle, up to
-    /// 100 where they overlap much, and while it is built up to 140 more, with
-    /// [`BuildQuality::Best`] 340; the depth is bounded, whatever the triangles.
+    /// The result depends on the arguments alone. It takes about 50 bytes per triangle, up to 100
+    /// if triangles overlap much, and up to 140 more during the build (340 with
+    /// [`BuildQuality::Best`]). The depth is bounded for any input.
     ///
     /// # Panics
     ///
-    /// Where [`TriangleBvh::try_build`] fails.
+    /// If [`TriangleBvh::try_build`] fails.
     pub fn build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Self {
         Self::try_build(vertices, triangles, quality).unwrap_or_else(|error| panic!("{error}"))
     }
 
-    /// As [`TriangleBvh::build`].
+    /// Builds a tree as [`TriangleBvh::build`] does, and returns an error for invalid input.
     ///
     /// # Errors
     ///
-    /// If an index names no vertex, or there are 2^28 triangles or more.
+    /// If an index is out of range, or there are 2^28 triangles or more.
     ///
     /// # Panics
     ///
-    /// If the tree has more than 2^26 nodes. Of usual triangles there are 25 for a node.
+    /// If the tree has more than 2^26 nodes. Ordinary meshes have 25 triangles per node.
     pub fn try_build(vertices: &[Vec3], triangles: &[[u32; 3]], quality: BuildQuality) -> Result<Self, BuildError> {
         if triangles.len() > node::MAX_ITEMS {
             return Err(BuildError::TooManyTriangles { triangles: triangles.len() });
@@ -47,12 +47,12 @@ impl TriangleBvh {
         })
     }
 
-    /// As [`TriangleBvh::try_build`], from flat lists: x, y and z of each vertex, and three
-    /// indices of each triangle.
+    /// Builds a tree from flat lists: x, y, and z of each vertex, and three indices of each
+    /// triangle.
     ///
     /// # Errors
     ///
-    /// As there, and if a list's length is no multiple of three.
+    /// As [`TriangleBvh::try_build`], and if a list's length is not a multiple of three.
     ///
     /// ```
     /// use durer_bvh::{BuildError, BuildQuality, TriangleBvh};
@@ -87,21 +87,22 @@ impl TriangleBvh {
         bvh
     }
 
-    /// Makes the tree fit the same triangles with vertices that have moved. Much faster than
-    /// building; but the farther they move, the slower rays become.
+    /// Fits the tree to moved vertices of the same triangles. Refitting is much faster than
+    /// building, but the farther the vertices move, the slower rays become.
     ///
     /// # Panics
     ///
-    /// Where [`TriangleBvh::try_refit`] fails.
+    /// If [`TriangleBvh::try_refit`] fails.
     pub fn refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         self.try_refit(vertices, triangles).unwrap_or_else(|error| panic!("{error}"));
     }
 
-    /// As [`TriangleBvh::refit`]. If it fails, the tree stays as it was.
+    /// Refits the tree as [`TriangleBvh::refit`] does, and returns an error for invalid input. The
+    /// tree is then unchanged.
     ///
     /// # Errors
     ///
-    /// If an index names no vertex, or there are not as many triangles as the tree was built over.
+    /// If an index is out of range, or the number of triangles differs from that at build time.
     pub fn try_refit(&mut self, vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
         if triangles.len() != self.count {
             return Err(BuildError::OtherTriangles { built: self.count, given: triangles.len() });
@@ -125,20 +126,21 @@ impl TriangleBvh {
         Ok(())
     }
 
-    /// How many triangles it was built over.
+    /// Number of triangles that the tree was built over.
     pub fn triangle_count(&self) -> usize {
         self.count
     }
 
-    /// How many triangles all leaves have together: more than there are where some were cut.
+    /// Number of triangles in all leaves: more than [`TriangleBvh::triangle_count`] if some were
+    /// split.
     pub(super) fn items(&self) -> usize {
         (self.leaves.len() - ROOM_OF_ROWS) / ROWS
     }
 
-    /// Writes all leaves, with numbers in the order of items, or again with those that they have.
+    /// Writes all leaves, with numbers in the given order or, if `None`, with those that they have.
     fn pack(&mut self, order: Option<&[u32]>, vertices: &[Vec3], triangles: &[[u32; 3]]) {
         let items = self.items();
-        // The count of each leaf, where its items begin.
+        // The count of each leaf, at the position of its first item.
         let mut counts = vec![0u8; items];
         for (_, _, child) in self.nodes.iter().flat_map(|node| node.children()) {
             if child & node::LEAF != 0 {
@@ -146,7 +148,7 @@ impl TriangleBvh {
                 counts[first] = count as u8;
             }
         }
-        // Leaves that follow each other have rows that do.
+        // Consecutive leaves have consecutive rows.
         let (mut rest, mut first, mut parts) = (&mut self.leaves[..], 0, Vec::with_capacity(items / AT_ONCE + 1));
         while first < items {
             let mut last = first + AT_ONCE;
@@ -163,7 +165,7 @@ impl TriangleBvh {
                 Some(order) => order[first..first + counts.len()].to_vec(),
                 None => numbers(counts, part),
             };
-            // Memory is waited for less where all are asked for at once.
+            // Reading all indices at once overlaps the cache misses.
             let mut indices = numbers.iter().map(|&number| triangles[number as usize]).collect::<Vec<_>>().into_iter();
             let mut numbers = numbers.into_iter();
             while let Some(&count) = counts.first() {
@@ -181,7 +183,7 @@ impl TriangleBvh {
 
 fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildError> {
     let is_wrong = |triangle: &[u32; 3]| triangle.iter().any(|i| *i as usize >= vertices.len());
-    // Nearly always all are right, so the first that is not is sought only if there is one.
+    // Indices are nearly always valid, so search for the first invalid one only if there is one.
     if !parallel::any(triangles, 1 << 16, is_wrong) {
         return Ok(());
     }
@@ -192,7 +194,7 @@ fn check_indices(vertices: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), BuildE
     wrong.map_or(Ok(()), Err)
 }
 
-/// The numbers of all triangles of some leaves, by the rows and counts of these.
+/// Numbers of the triangles of some leaves, from their rows and counts.
 fn numbers(counts: &[u8], mut rows: &[f32]) -> Vec<u32> {
     let mut numbers = Vec::with_capacity(counts.len());
     while numbers.len() < counts.len() {

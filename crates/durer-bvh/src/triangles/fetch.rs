@@ -1,16 +1,16 @@
-//! Bringing nodes and leaves near before a ray comes to them.
+//! Prefetching of nodes and leaves.
 
 use super::tree::TriangleBvh;
 use crate::lanes::{Lanes, ROWS};
 use crate::node;
 
-/// So many lines of memory are a child: a node has four and a leaf up to six.
+/// Cache lines of a child: a node has four, and a leaf up to six.
 pub const ITSELF: usize = 6;
-/// What lies behind it is its siblings, which are likely to be visited too where nothing else is on
-/// its way. How many lines pay was found by measurement.
+/// Cache lines to prefetch if siblings will probably be visited too, since they follow the child in
+/// memory. Tuned by measurement.
 pub const AND_SIBLINGS: usize = 12;
 
-/// Where nodes and leaves are in memory.
+/// Locations of nodes and leaves in memory.
 #[derive(Clone, Copy)]
 pub(super) struct Places {
     nodes_and_leaves: [*const u8; 2],
@@ -22,12 +22,12 @@ impl Places {
         Places { nodes_and_leaves: [bvh.nodes.as_ptr().cast(), bvh.leaves.as_ptr().cast()] }
     }
 
-    /// Has so many lines of a child brought near.
+    /// Prefetches `LINES` cache lines of a child.
     #[inline(always)]
     pub fn fetch<L: Lanes, const LINES: usize>(&self, lanes: L, child: u32) {
         const SIZES: [usize; 2] = [node::UNIT, ROWS * size_of::<f32>()];
-        // A node's address has more digits. Behind the first 2 GiB of nodes what is fetched is of
-        // no use, and does no harm.
+        // `items` drops the highest bits of a node's offset. Beyond the first 2 GiB of nodes, the
+        // prefetch is useless but harmless.
         let (kind, at) = ((child >> 31) as usize, node::items(child).0);
         let from = self.nodes_and_leaves[kind].wrapping_add(SIZES[kind].wrapping_mul(at));
         for line in 0..LINES {

@@ -1,4 +1,4 @@
-//! Heights over a grid: a landscape whose triangles need not be in memory.
+//! Height grids: terrain whose triangles need not be in memory.
 
 use super::rows::TAG;
 use crate::BuildError;
@@ -6,15 +6,15 @@ use crate::lanes::{ROWS, Rows};
 use crate::math::{Aabb, Vec3};
 use crate::node::{self, LEAF_SIZE};
 
-/// So many cells a block has along either axis, at most.
+/// Maximum number of cells of a block along either axis.
 const SIDE: usize = 2;
 const _: () = assert!(2 * SIDE * SIDE == LEAF_SIZE);
 
-/// A landscape: heights y over the crossings of lines of constant x and lines of constant z.
+/// Terrain: heights y over the crossings of lines of constant x and lines of constant z.
 ///
-/// Crossings are numbered along x first. Between four neighbours lies a cell, of two triangles: of
-/// the corners a at the lesser numbers of both lines, b at the next z, c at the next x, and d at
-/// both, the triangles are (a, b, d) and (a, d, c), with the numbers 2 i and 2 i + 1 in cell i.
+/// Crossings are numbered along x first. Four neighbours enclose a cell of two triangles. With
+/// corner a at the lower x and z, b at the next z, c at the next x, and d at both, cell i has the
+/// triangles (a, b, d) with number 2 i and (a, d, c) with number 2 i + 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeightGrid {
     xs: Vec<f32>,
@@ -23,12 +23,12 @@ pub struct HeightGrid {
 }
 
 impl HeightGrid {
-    /// Lines at these x and z, and the heights of their crossings.
+    /// Creates a grid from the x and z of its lines, and the heights of their crossings.
     ///
     /// # Errors
     ///
-    /// If there are fewer than two lines either way, or not as many heights as crossings, or
-    /// numbers that are not finite, or 2^28 triangles or more.
+    /// If there are fewer than two lines in a direction, the number of heights differs from the
+    /// number of crossings, a number is not finite, or there are 2^28 triangles or more.
     pub fn new(xs: Vec<f32>, zs: Vec<f32>, heights: Vec<f32>) -> Result<Self, BuildError> {
         let (columns, rows) = (xs.len(), zs.len());
         if columns < 2 || rows < 2 || columns.checked_mul(rows) != Some(heights.len()) {
@@ -44,33 +44,33 @@ impl HeightGrid {
         }
     }
 
-    /// The x of the lines that go along z.
+    /// x of the lines along z.
     pub fn xs(&self) -> &[f32] {
         &self.xs
     }
 
-    /// The z of the lines that go along x.
+    /// z of the lines along x.
     pub fn zs(&self) -> &[f32] {
         &self.zs
     }
 
-    /// The heights of all crossings.
+    /// Heights of the crossings, along x first.
     pub fn heights(&self) -> &[f32] {
         &self.heights
     }
 
-    /// The same with other coordinates: what is given makes one of each, by axis.
+    /// Maps all coordinates: `coordinate` takes an axis and a coordinate.
     pub fn map(&self, mut coordinate: impl FnMut(usize, f32) -> f32) -> Self {
         let mut along = |axis: usize, list: &[f32]| list.iter().map(|x| coordinate(axis, *x)).collect();
         HeightGrid { xs: along(0, &self.xs), zs: along(2, &self.zs), heights: along(1, &self.heights) }
     }
 
-    /// How many triangles lie between the crossings.
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         2 * (self.xs.len() - 1) * (self.zs.len() - 1)
     }
 
-    /// A crossing.
+    /// Position of a crossing.
     #[inline]
     pub fn point(&self, crossing: usize) -> Vec3 {
         let (number, columns) = (crossing as u32, self.xs.len() as u32);
@@ -78,7 +78,7 @@ impl HeightGrid {
         Vec3::new(self.xs[(number - row * columns) as usize], self.heights[crossing], self.zs[row as usize])
     }
 
-    /// The crossings at the corners of a triangle.
+    /// Crossings at the corners of a triangle.
     #[inline]
     pub fn triangle(&self, number: usize) -> [u32; 3] {
         let [column, row] = self.cell(number);
@@ -88,7 +88,7 @@ impl HeightGrid {
         if number.is_multiple_of(2) { [a, b, b + 1] } else { [a, b + 1, a + 1] }
     }
 
-    /// The corners of a triangle.
+    /// Corners of a triangle.
     #[inline]
     pub fn corners(&self, number: usize) -> [Vec3; 3] {
         let ([column, row], columns) = (self.cell(number).map(|line| line as usize), self.xs.len());
@@ -101,16 +101,16 @@ impl HeightGrid {
         }
     }
 
-    /// The column and the row of a triangle's cell.
+    /// Column and row of a triangle's cell.
     #[inline]
     fn cell(&self, triangle: usize) -> [u32; 2] {
-        // Division of short numbers takes less time.
+        // 32-bit division is faster.
         let (cell, wide) = ((triangle / 2) as u32, (self.xs.len() - 1) as u32);
         let row = cell / wide;
         [cell - row * wide, row]
     }
 
-    /// The box around all crossings.
+    /// Bounding box of the crossings.
     pub fn bounds(&self) -> Aabb {
         let ends =
             |list: &[f32]| list.iter().fold([f32::INFINITY, f32::NEG_INFINITY], |[a, b], x| [a.min(*x), b.max(*x)]);
@@ -118,17 +118,17 @@ impl HeightGrid {
         Aabb { min: Vec3::new(x, y, z), max: Vec3::new(x1, y1, z1) }
     }
 
-    /// Bytes in memory.
+    /// Size of the lists in bytes.
     pub fn memory_usage(&self) -> usize {
         size_of_val(&*self.xs) + size_of_val(&*self.zs) + size_of_val(&*self.heights)
     }
 
-    /// How many blocks lie beside each other, and how many behind.
+    /// Numbers of blocks along x and z.
     pub(super) fn blocks(&self) -> [usize; 2] {
         [&self.xs, &self.zs].map(|lines| (lines.len() - 1).div_ceil(SIDE))
     }
 
-    /// The first column and row of a block, and how many cells it has along x and along z.
+    /// First column and row of a block, and its numbers of cells along x and z.
     pub(super) fn cells(&self, block: usize) -> [[usize; 2]; 2] {
         let beside = self.blocks()[0];
         let first = [SIDE * (block % beside), SIDE * (block / beside)];
@@ -141,11 +141,11 @@ impl HeightGrid {
         Aabb::around(crossings.map(|(row, column)| self.point(row * self.xs.len() + column)))
     }
 
-    /// Writes the rows of a block as those of any leaf.
+    /// Writes the rows of a block in the layout of any leaf.
     pub(super) fn write_rows(&self, block: usize, rows: &mut Rows) {
         let [first, cells] = self.cells(block);
         match cells {
-            // Known when this is compiled, so that there are no loops.
+            // Sizes known at compile time remove the loops.
             [SIDE, SIDE] => self.write_cells(first, [SIDE, SIDE], rows),
             _ => self.write_cells(first, cells, rows),
         }

@@ -1,7 +1,7 @@
-//! Trees over a landscape of heights.
+//! Trees over height grids.
 //!
 //! The leaves are blocks of two by two cells of a [`HeightGrid`]. Their rows are written when a ray
-//! comes to them; everything else is as with any triangles.
+//! visits them; everything else is as for other triangles.
 
 use super::height_grid::HeightGrid;
 use super::rows::put;
@@ -14,13 +14,12 @@ use crate::{BuildError, parallel};
 use std::sync::{Arc, OnceLock};
 
 impl TriangleBvh {
-    /// Builds over a landscape, and over other triangles, say walls around it, whose numbers follow
-    /// those of the landscape. Eight of these at a time share a leaf, in the order given, so
-    /// neighbours should follow each other.
+    /// Builds a tree over a height grid and other triangles, such as walls around it, which are
+    /// numbered after those of the grid. Each leaf holds eight of the other triangles in the given
+    /// order, so neighbours should be consecutive.
     ///
-    /// Rays meet what they would in a tree over the same triangles, bit for bit. It takes about 5
-    /// bytes for each triangle of the landscape beside its heights, and while it is built up to 20
-    /// more.
+    /// Rays hit the same triangles as in a tree over all of them, bit for bit. The tree takes about
+    /// 5 bytes per triangle of the grid besides the heights, and up to 20 more during the build.
     ///
     /// # Errors
     ///
@@ -32,7 +31,8 @@ impl TriangleBvh {
     /// use std::sync::Arc;
     ///
     /// // A slope of two cells: y = x.
-    /// let grid = HeightGrid::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0], vec![0.0, 1.0, 2.0, 0.0, 1.0, 2.0])?;
+    /// let heights = vec![0.0, 1.0, 2.0, 0.0, 1.0, 2.0];
+    /// let grid = HeightGrid::new(vec![0.0, 1.0, 2.0], vec![0.0, 1.0], heights)?;
     /// let tree = TriangleBvh::over_heights(Arc::new(grid), &[], BuildQuality::default())?;
     /// let hit = tree.closest(&Ray::new(Vec3::new(1.5, 5.0, 0.25), Vec3::NEG_Y)).unwrap();
     /// assert_eq!((hit.t, hit.triangle), (3.5, 3));
@@ -82,7 +82,7 @@ impl TriangleBvh {
         TriangleBvh { heights: Some(grid), ..bvh }
     }
 
-    /// The item of the first block: one behind all that have rows in memory.
+    /// Item of the first block, which follows all items with rows in memory.
     pub(super) fn first_block(&self) -> usize {
         self.items() + 1
     }
@@ -96,7 +96,7 @@ impl TriangleBvh {
         }
     }
 
-    /// The same with the rows of all leaves in memory.
+    /// Returns a copy with the rows of all leaves in memory.
     pub(super) fn expanded(&self) -> Self {
         let Some(grid) = &self.heights else { return self.clone() };
         let (first_block, mut items) = (self.first_block(), self.items());

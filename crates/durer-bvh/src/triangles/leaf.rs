@@ -1,14 +1,14 @@
-//! Triangles and rays side by side: several triangles and a ray, or a triangle and several rays.
+//! Triangle tests in lanes: several triangles and one ray, or one triangle and several rays.
 //!
-//! The test is that of [`WatertightRay`](crate::watertight::WatertightRay), with the same
-//! roundings. Edge functions in single precision have the right signs wherever they are not zero,
-//! so nearly all triangles are refused or accepted by plain vector arithmetic; what is left is for
-//! the scalar test, which is exact. Where any triangle will do, it is enough that t lies between
-//! two bounds; where the nearest is wanted, double precision says where each is that is crossed.
+//! The test equals that of [`WatertightRay`](crate::watertight::WatertightRay), with the same
+//! roundings. Edge functions in single precision have the correct sign unless they are zero, so
+//! vector arithmetic rejects or accepts nearly all triangles. The exact scalar test decides the
+//! others. Any-hit rays only need t between two bounds; for the closest hit, double precision
+//! computes the distance of every crossed triangle.
 
 use crate::lanes::Numbers;
 
-/// By corner and axis, as a macro makes each. (No closure would do: what is not inlined into a
+/// Calls a macro for each corner and axis. (Not a closure: a function that is not inlined into a
 /// level's entry is compiled without its instructions.)
 macro_rules! by_corner {
     ($make:ident) => {
@@ -21,35 +21,36 @@ macro_rules! by_corner {
 }
 pub(super) use by_corner;
 
-/// Triangles in the planes across rays: several and one ray, or one and several rays.
+/// Triangles projected onto the planes across rays: several triangles and one ray, or one triangle
+/// and several rays.
 pub struct Flat<N: Numbers> {
-    /// By corner: where it lies across the ray, and its height along the third axis.
+    /// By corner: position across the ray, and height along the third axis.
     corners: [[N::Floats; 3]; 3],
-    /// The edge functions of the edges opposite to the corners.
+    /// Edge functions of the edges opposite to the corners.
     edges: [N::Floats; 3],
-    /// The product of the least and the greatest of them: positive where all are of one sign,
-    /// negative where they are not, and zero where nothing is sure.
+    /// Product of the least and the greatest edge function: positive if all have the same sign,
+    /// negative if not, and zero if the result is uncertain.
     sign: N::Floats,
 }
 
-/// Bounds of the t at which triangles are crossed; NaN where nothing is known.
+/// Bounds on the t at which triangles are crossed; NaN if unknown.
 pub struct Span<N: Numbers> {
     pub near: N::Floats,
     pub far: N::Floats,
 }
 
 impl<N: Numbers> Flat<N> {
-    /// From corners and origins that are turned as
-    /// [`WatertightRay`](crate::watertight::WatertightRay) turns them.
+    /// Projects corners. Corners and origins have permuted axes, as in
+    /// [`WatertightRay`](crate::watertight::WatertightRay).
     ///
-    /// Roundings are the same as there, so signs of edge functions are exact where they are not
-    /// zero.
+    /// Roundings are the same as in the scalar test, so the signs of edge functions are exact
+    /// unless they are zero.
     #[inline(always)]
     pub fn new(numbers: N, corners: [[N::Floats; 3]; 3], origin: [N::Floats; 3], shear: [N::Floats; 2]) -> Self {
         Flat::seen(numbers, from_origin(numbers, corners, origin), shear)
     }
 
-    /// As [`Flat::new`], from corners [as seen from the origin](from_origin).
+    /// Projects corners [relative to the origin](from_origin); see [`Flat::new`].
     #[inline(always)]
     pub fn seen(numbers: N, corners: [[N::Floats; 3]; 3], shear: [N::Floats; 2]) -> Self {
         let corners @ [a, b, c] = [
@@ -62,37 +63,38 @@ impl<N: Numbers> Flat<N> {
         Flat { corners, edges, sign }
     }
 
-    /// The signs of the edge functions say for sure that the line of the ray does not cross the
-    /// triangle.
+    /// Mask of the triangles that the ray's line certainly misses.
     #[inline(always)]
     pub fn missed(&self, numbers: N) -> u32 {
         numbers.lt(self.sign, numbers.splat(0.0))
     }
 
-    /// They say for sure that it does.
+    /// Mask of the triangles that the ray's line certainly crosses.
     #[inline(always)]
     pub fn crossed(&self, numbers: N) -> u32 {
         numbers.lt(numbers.splat(0.0), self.sign)
     }
 
-    /// The heights of the lowest and of the highest corner.
+    /// Heights of the lowest and the highest corner.
     #[inline(always)]
     pub fn heights(&self, numbers: N) -> [N::Floats; 2] {
         let [a, b, c] = self.corners;
         ends(numbers, [a[2], b[2], c[2]])
     }
 
-    /// Where those that are crossed for sure are.
+    /// Bounds on t for triangles that are certainly crossed.
     ///
-    /// The height z of the crossing is the mean of the corners' heights by the edge functions. Let
-    /// R bound how far corners lie across, Z their heights, and H how far those lie apart. With e =
-    /// 2^-23 a coordinate across is wrong by at most e (R + 2 Z), so an edge function by at most e
-    /// (6 R^2 + 8 R Z). Errors of weights move the mean by their sum times H over the sum of
-    /// weights, and twice that is a bound also where the sum of weights is uncertain itself, for
-    /// then it exceeds H, and both the mean and the `t` of [`WatertightRay`] lie between the
-    /// heights of corners. What else is rounded adds less than 6 e Z, and a few of the least
-    /// numbers. `1 / dz` is `inverse_z`; the longest component dz of the direction must lie between
-    /// 10^-15 and 10^15, and coordinates below 10^15.
+    /// The height z of the crossing is the mean of the corners' heights, weighted by the edge
+    /// functions. Let R bound the corners' coordinates across the ray, Z their heights, and H the
+    /// difference of the heights. With e = 2^-23, a coordinate across is off by at most e (R + 2
+    /// Z), so an edge function is off by at most e (6 R^2 + 8 R Z). Errors of the weights move the
+    /// mean by at most their sum times H over the sum of the weights. Twice that is a bound even if
+    /// the sum of the weights is uncertain itself: it then exceeds H, and both the mean and the `t`
+    /// of [`WatertightRay`] lie between the heights of the corners. Other roundings add less than 6
+    /// e Z, and a few of the smallest numbers.
+    ///
+    /// `inverse_z` is `1 / dz`. The longest component dz of the direction must lie between 10^-15
+    /// and 10^15, and coordinates must be below 10^15.
     #[inline(always)]
     pub fn span(&self, numbers: N, inverse_z: f32) -> Span<N> {
         const E: f32 = f32::EPSILON;
@@ -113,13 +115,13 @@ impl<N: Numbers> Flat<N> {
     }
 }
 
-/// The least and the greatest of three numbers.
+/// Minimum and maximum of three numbers.
 #[inline(always)]
 pub fn ends<N: Numbers>(numbers: N, [a, b, c]: [N::Floats; 3]) -> [N::Floats; 2] {
     [numbers.min(a, numbers.min(b, c)), numbers.max(a, numbers.max(b, c))]
 }
 
-/// Corners as seen from an origin.
+/// Corners relative to an origin.
 #[inline(always)]
 pub fn from_origin<N: Numbers>(
     numbers: N,
@@ -134,14 +136,14 @@ pub fn from_origin<N: Numbers>(
     by_corner!(seen)
 }
 
-/// Where a point that is seen from the origin lies in the plane across the ray, and its height
-/// along the third axis.
+/// Projects a point, given relative to the origin, onto the plane across the ray. The third
+/// component is the height along the third axis.
 #[inline(always)]
 pub fn across<N: Numbers>(numbers: N, [x, y, z]: [N::Floats; 3], shear: [N::Floats; 2]) -> [N::Floats; 3] {
     [numbers.sub(x, numbers.mul(shear[0], z)), numbers.sub(y, numbers.mul(shear[1], z)), z]
 }
 
-/// The edge function of the edge from `p` to `q` about the origin.
+/// Edge function of the edge from `p` to `q` at the origin.
 #[inline(always)]
 fn edge<N: Numbers>(numbers: N, p: [N::Floats; 3], q: [N::Floats; 3]) -> N::Floats {
     numbers.sub(numbers.mul(q[0], p[1]), numbers.mul(q[1], p[0]))

@@ -1,5 +1,5 @@
-//! A tree over the triangles of a mesh, with the triangles themselves: the kernel that rays spend
-//! their time in.
+//! A tree over the triangles of a mesh, including the triangles themselves: the kernel in which
+//! rays spend their time.
 
 mod build;
 mod fetch;
@@ -27,7 +27,7 @@ use std::cell::Cell;
 use std::mem::MaybeUninit;
 pub use tree::{Facing, TriangleBvh, TriangleHit};
 
-/// Asks with or without counting nodes and tests, as the counter wants it.
+/// Runs a query with or without counters, as the counter requires.
 #[inline(always)]
 fn counting<T: TraversalCounter, A>(
     counter: &mut T,
@@ -43,7 +43,7 @@ fn counting<T: TraversalCounter, A>(
     answer
 }
 
-/// Hits by `t`, then by number of the triangle; each once, for a triangle that was cut is found in
+/// Sorts hits by `t`, then by triangle number, and removes duplicates: a split triangle is found in
 /// several leaves.
 fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
     all.sort_unstable_by(|a, b| a.t.total_cmp(&b.t).then(a.triangle.cmp(&b.triangle)));
@@ -52,51 +52,50 @@ fn in_order(mut all: Vec<TriangleHit>) -> Vec<TriangleHit> {
 }
 
 impl TriangleBvh {
-    /// The same tree with tests at another SIMD level; at the plain one where the processor has not
-    /// got it.
+    /// Sets the SIMD level, or the scalar level if the processor does not support it.
     pub fn at_level(self, level: SimdLevel) -> Self {
         TriangleBvh { level: Available::or_scalar(level), ..self }
     }
 
-    /// The same, blind to triangles for which |(b - a) x (c - a) · d| is less than this.
-    /// Zero is blind to none.
+    /// Sets the least |(b - a) x (c - a) · d| of a triangle that rays can hit. With zero, all
+    /// triangles can be hit.
     pub fn least_volume(self, least_volume: f64) -> Self {
         TriangleBvh { least_volume, culls_slivers: least_volume != 0.0, ..self }
     }
 
-    /// A ray prepared for single triangles, with the same blindness as the tree.
+    /// Prepares a ray for tests of single triangles, with the least volume of the tree.
     #[inline]
     pub fn watertight_ray(&self, ray: &Ray) -> WatertightRay {
         WatertightRay::new(ray).least_volume(self.least_volume)
     }
 
-    /// The first hit in the ray's open interval (`t_min`, `t_max`).
+    /// Closest hit in the ray's open interval (`t_min`, `t_max`).
     pub fn closest(&self, ray: &Ray) -> Option<TriangleHit> {
         self.query::<_, Nearest>(ray, ())
     }
 
-    /// As [`TriangleBvh::closest`], counting nodes and tests.
+    /// Finds the [closest](TriangleBvh::closest) hit and counts nodes and tests.
     #[inline]
     pub fn closest_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Option<TriangleHit> {
         counting(counter, || self.closest(ray), |counts| self.closest_counted(ray, counts))
     }
 
-    /// Whether anything is hit in the ray's open interval.
+    /// Returns true if the ray hits anything in its open interval.
     pub fn occluded(&self, ray: &Ray) -> bool {
         self.query::<_, Any>(ray, ())
     }
 
-    /// As [`TriangleBvh::occluded`], counting nodes and tests.
+    /// Tests [occlusion](TriangleBvh::occluded) and counts nodes and tests.
     #[inline]
     pub fn occluded_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> bool {
         counting(counter, || self.occluded(ray), |counts| self.occluded_counted(ray, counts))
     }
 
-    /// As [`TriangleBvh::closest`], of the hits that a filter lets pass: for textures with holes,
-    /// sides that are not seen, or triangles that are left out.
+    /// Finds the closest hit that passes `filter`, for example for textures with holes, culled
+    /// sides, or excluded triangles.
     ///
-    /// The filter may be asked several times about a triangle, and about hits that are not the
-    /// first, in any order; so it should depend on its arguments alone.
+    /// The filter may be called several times for a triangle, in any order, and for hits that are
+    /// not the closest. Its result should depend on its arguments alone.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -106,7 +105,7 @@ impl TriangleBvh {
     /// let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
     /// let bvh = TriangleBvh::build(&vertices, &triangles, BuildQuality::default());
     /// let ray = Ray::new(Vec3::new(0.2, 0.2, -1.0), Vec3::Z);
-    /// // The way out, for fronts are culled.
+    /// // The exit, since fronts are culled.
     /// let hit = bvh.closest_where(&ray, |_, facing| facing == Facing::Back).unwrap();
     /// assert_eq!(hit.triangle, 3);
     /// ```
@@ -118,24 +117,23 @@ impl TriangleBvh {
         self.closest_filtered(ray, &mut filter)
     }
 
-    /// As [`TriangleBvh::occluded`], by the hits that a filter lets pass: see
-    /// [`TriangleBvh::closest_where`].
+    /// Returns true if any hit passes `filter`; see [`TriangleBvh::closest_where`].
     pub fn occluded_where(&self, ray: &Ray, mut filter: impl FnMut(&TriangleHit, Facing) -> bool) -> bool {
         self.occluded_filtered(ray, &mut filter)
     }
 
-    /// All hits in the ray's open interval, by `t` and then by number of the triangle.
+    /// Hits in the ray's open interval, sorted by `t`, then by triangle number.
     pub fn all_hits(&self, ray: &Ray) -> Vec<TriangleHit> {
         in_order(self.query::<_, All>(ray, ()))
     }
 
-    /// As [`TriangleBvh::all_hits`], counting nodes and tests.
+    /// Finds all [hits](TriangleBvh::all_hits) and counts nodes and tests.
     #[inline]
     pub fn all_hits_counting<T: TraversalCounter>(&self, ray: &Ray, counter: &mut T) -> Vec<TriangleHit> {
         counting(counter, || self.all_hits(ray), |counts| self.all_hits_counted(ray, counts))
     }
 
-    // Not generic, so that they are compiled here, once, and not for each counter of each caller.
+    // Not generic, so that they are compiled once, here, and not for each caller's counter.
 
     pub(crate) fn closest_filtered(&self, ray: &Ray, filter: Filter) -> Option<TriangleHit> {
         self.query_with(ray, (), Filtered { inner: Nearest::default(), filter })
@@ -157,21 +155,22 @@ impl TriangleBvh {
         in_order(self.query::<_, All>(ray, counts))
     }
 
-    /// How many triangles the ray crosses in its open interval: odd from inside a closed mesh, even
-    /// from outside.
+    /// Number of triangles that the ray crosses in its open interval: odd from inside a closed
+    /// mesh, even from outside.
     pub fn hit_count(&self, ray: &Ray) -> usize {
         self.all_hits(ray).len()
     }
 
-    /// The first hit of each ray, in order: as [`TriangleBvh::closest`] gives it, bit for bit, but
-    /// faster. Of 64 rays in a row those that go nearly the same way share their way through the
-    /// tree, so neighbours should be neighbours in space, as the pixels of a tile are; after rays
-    /// that do not, up to 960 are not asked whether they do. In a large tree several of the others
-    /// are on their way at once, so that none waits for memory.
+    /// Finds the closest hit of each ray, in order. The hits equal those of
+    /// [`TriangleBvh::closest`], bit for bit, but the batch is faster. Of 64 consecutive rays,
+    /// those with similar origins and directions traverse the tree as packets, so neighbours in the
+    /// list should be neighbours in space, like the pixels of a tile. After incoherent rays, up to
+    /// 960 rays skip this test. In a large tree, several of the remaining rays are traced
+    /// alternately, so that none waits for memory.
     ///
     /// # Panics
     ///
-    /// If there are not as many places for hits as rays.
+    /// If `rays` and `hits` have different lengths.
     pub fn closest_batch(&self, rays: &[Ray], hits: &mut [Option<TriangleHit>]) {
         assert_eq!(rays.len(), hits.len(), "a place for each hit");
         let hits = Cell::from_mut(hits).as_slice_of_cells();
@@ -182,12 +181,11 @@ impl TriangleBvh {
         );
     }
 
-    /// For each ray, in order, whether anything is hit: as [`TriangleBvh::closest_batch`] goes
-    /// about it.
+    /// Tests occlusion of each ray, in order, in the way of [`TriangleBvh::closest_batch`].
     ///
     /// # Panics
     ///
-    /// If there are not as many places for answers as rays.
+    /// If `rays` and `answers` have different lengths.
     pub fn occluded_batch(&self, rays: &[Ray], answers: &mut [bool]) {
         assert_eq!(rays.len(), answers.len(), "a place for each answer");
         let answers = Cell::from_mut(answers).as_slice_of_cells();
@@ -198,18 +196,18 @@ impl TriangleBvh {
         );
     }
 
-    /// How many triangles each ray crosses, in order: see [`TriangleBvh::hit_count`].
+    /// Counts the triangles that each ray crosses, in order; see [`TriangleBvh::hit_count`].
     ///
     /// # Panics
     ///
-    /// If there are not as many places for counts as rays.
+    /// If `rays` and `counts` have different lengths.
     pub fn hit_count_batch(&self, rays: &[Ray], counts: &mut [u32]) {
         assert_eq!(rays.len(), counts.len(), "a place for each count");
         rays.iter().zip(counts).for_each(|(ray, count)| *count = self.hit_count(ray) as u32);
     }
 
-    /// All hits of each ray, in order: `take` gets the ray's place in the batch, and its hits as
-    /// [`TriangleBvh::all_hits`] gives them.
+    /// Finds the hits of each ray, in order: `take` gets the index of the ray in the batch and its
+    /// hits, sorted as by [`TriangleBvh::all_hits`].
     pub fn all_hits_batch(&self, rays: &[Ray], mut take: impl FnMut(usize, &[TriangleHit])) {
         rays.iter().enumerate().for_each(|(i, ray)| take(i, &self.all_hits(ray)));
     }
@@ -227,10 +225,10 @@ impl TriangleBvh {
         }
     }
 
-    /// The corners of a triangle; `None` if there is no such triangle, or it has a corner that is
-    /// no finite point.
+    /// Corners of a triangle; `None` if the triangle does not exist or has a corner that is not
+    /// finite.
     ///
-    /// The first call notes where each triangle lies, in four bytes for each.
+    /// The first call builds an index with four bytes per triangle.
     #[inline]
     pub fn corners(&self, triangle: u32) -> Option<[Vec3; 3]> {
         let grid = self.heights.as_ref().filter(|grid| (triangle as usize) < grid.triangle_count());
@@ -238,7 +236,7 @@ impl TriangleBvh {
             return Some(grid.corners(triangle as usize));
         }
         let leaf_of = self.leaf_of.get_or_init(|| self.note_leaves());
-        // A triangle that is in no leaf has 0, which is none.
+        // 0 stands for no leaf.
         let leaf = *leaf_of.get(triangle as usize).filter(|leaf| **leaf != 0)?;
         let mut room = MaybeUninit::uninit();
         let (rows, count) = self.rows(leaf, &mut room);
@@ -261,7 +259,7 @@ impl TriangleBvh {
         leaf_of
     }
 
-    /// The unit normal (b - a) x (c - a) of the triangle that was hit; zero if it has no area.
+    /// Unit normal (b - a) x (c - a) of the hit triangle; zero if the triangle has no area.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -277,20 +275,20 @@ impl TriangleBvh {
         self.corners(hit.triangle).map_or(Vec3::ZERO, math::triangle_normal)
     }
 
-    /// Bytes in memory.
+    /// Size in bytes.
     pub fn memory_usage(&self) -> usize {
         let leaf_of = self.leaf_of.get().map_or(0, |leaf_of| size_of_val(&**leaf_of));
         let heights = self.heights.as_ref().map_or(0, |grid| grid.memory_usage());
         size_of_val(&*self.nodes) + size_of_val(&*self.leaves) + leaf_of + heights
     }
 
-    /// Cost of a random ray through the bounds by the surface area heuristic, in tests of a node,
-    /// where a leaf costs as much. Not a number where the bounds have no area.
+    /// Expected cost of a random ray through the bounds by the surface area heuristic, in node
+    /// tests; a leaf costs as much as a node. NaN if the bounds have no area.
     pub fn sah_cost(&self) -> f64 {
         node::cost(&self.nodes, self.bounds)
     }
 
-    /// The box around everything.
+    /// Bounding box of all triangles.
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }

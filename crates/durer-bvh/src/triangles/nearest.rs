@@ -1,4 +1,4 @@
-//! The point of a mesh that is nearest to another point.
+//! Closest-point queries on a mesh.
 
 use super::rows::number;
 use super::tree::TriangleBvh;
@@ -8,27 +8,27 @@ use crate::node::{self, LEAF, WideNode};
 use glam::DVec3;
 use std::mem::MaybeUninit;
 
-/// A point of a mesh, the nearest to another one.
+/// Point of a mesh that is nearest to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestPoint {
-    /// How far it is.
+    /// Distance from the query point.
     pub distance: f64,
-    /// Where it is.
+    /// Position of the point.
     pub point: DVec3,
-    /// Its second and third barycentric coordinate: it is (1 - u - v) a + u b + v c.
+    /// Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     pub uv: [f64; 2],
     /// Number of the triangle.
     pub triangle: u32,
 }
 
-/// Boxes count as nearer by this share, which is far more than rounding: so all trees find the same
-/// triangle.
+/// Factor on distances to boxes. It reduces them by far more than rounding, so that all trees find
+/// the same triangle.
 const SLACK: f64 = 1.0 - 1e-12;
 
 impl TriangleBvh {
-    /// The point of all triangles that is nearest to another, if there is one no further away than
-    /// `within`. Of triangles that are equally near the one of least number counts. Computed in
-    /// double precision; the answer is the same, bit for bit, for all qualities.
+    /// Finds the point on the triangles that is nearest to `point`, if its distance is at most
+    /// `within`. Of triangles at the same distance, the one with the least number is chosen.
+    /// Computed in double precision; the result is the same, bit for bit, for all build qualities.
     ///
     /// ```
     /// use durer_bvh::{BuildQuality, TriangleBvh};
@@ -57,7 +57,7 @@ impl TriangleBvh {
                 let (squares, first) = (squares(node, point), stack.len());
                 let near = (0..WIDTH).filter(|&i| squares[i] <= best.squared && squares[i] < f64::INFINITY);
                 stack.extend(near.map(|i| (squares[i], node.children[i])));
-                // The nearest is next.
+                // The nearest child is next.
                 stack[first..].sort_unstable_by(|a, b| b.0.total_cmp(&a.0));
             } else {
                 let mut room = MaybeUninit::uninit();
@@ -69,7 +69,7 @@ impl TriangleBvh {
     }
 }
 
-/// The squares of the distances of a node's boxes, rather too small; infinite where there is none.
+/// Squared distances to a node's boxes, slightly too small; infinite for unused slots.
 fn squares(node: &WideNode, point: DVec3) -> [f64; WIDTH] {
     let mut squares = [0.0; WIDTH];
     for (axis, [lower, upper]) in node.planes.iter().enumerate() {
@@ -87,7 +87,7 @@ fn corners(rows: &Rows, count: usize, lane: usize) -> [DVec3; 3] {
     [0, 3, 6].map(|row| DVec3::new(at(row), at(row + 1), at(row + 2)))
 }
 
-/// What was found so far.
+/// Best point so far.
 struct Best {
     squared: f64,
     found: Option<(DVec3, [f64; 2], u32)>,
@@ -96,7 +96,7 @@ struct Best {
 impl Best {
     fn offer(&mut self, point: DVec3, corners: [DVec3; 3], triangle: u32) {
         let (squared, nearest, uv) = nearest_of(point, corners);
-        // Corners that are no numbers make a distance that is none.
+        // NaN corners give a NaN distance, which never compares less.
         let is_first = self.found.is_none_or(|(.., known)| triangle < known);
         if squared < self.squared || squared == self.squared && is_first {
             *self = Best { squared, found: Some((nearest, uv, triangle)) };
@@ -104,11 +104,11 @@ impl Best {
     }
 }
 
-/// The nearest point of a triangle: the square of its distance, the point, and its second and third
-/// barycentric coordinate.
+/// Nearest point of a triangle: squared distance, position, and second and third barycentric
+/// coordinates.
 ///
-/// The foot of the perpendicular, if it lies in the triangle, else the nearest point of an edge; so
-/// triangles without area are no exception.
+/// It is the foot of the perpendicular, if that lies in the triangle, else the nearest point on an
+/// edge. Triangles without area need no special case.
 fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     let (ab, ac, from) = (b - a, c - a, point - a);
     let at = |[u, v]: [f64; 2]| {
@@ -121,7 +121,7 @@ fn nearest_of(point: DVec3, [a, b, c]: [DVec3; 3]) -> (f64, DVec3, [f64; 2]) {
     if area > 0.0 && u >= 0.0 && v >= 0.0 && u + v <= area {
         return at([u / area, v / area]);
     }
-    // How far along an edge its nearest point is.
+    // Parameter of the nearest point on an edge, in [0, 1].
     let along = |from: DVec3, edge: DVec3| match edge.length_squared() {
         0.0 => 0.0,
         square => (from.dot(edge) / square).clamp(0.0, 1.0),
@@ -176,7 +176,7 @@ mod tests {
             let around = DVec3::new(p.x, p.z, 0.0).length() - 0.7;
             let exact = (DVec3::new(around, p.y, 0.0).length() - 0.3).abs();
             let near = tree.nearest_point(p.as_vec3(), f64::INFINITY).unwrap();
-            // The mesh lies within the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
+            // The mesh lies inside the torus by the sagitta of its edges: 1 - cos(pi / 100) of 0.3,
             // and 1 - cos(pi / 200) of 1.
             assert!((near.distance - exact).abs() < 3e-4, "{p}: {} {exact}", near.distance);
             assert!((near.point.distance(p) - near.distance).abs() < 1e-6);

@@ -1,4 +1,4 @@
-//! What a ray asks of a tree of triangles.
+//! Queries of a ray on a tree of triangles.
 
 use super::fetch::{AND_SIBLINGS, Places};
 use super::leaf::Flat;
@@ -12,7 +12,7 @@ use crate::watertight::{Exact, Plane, WatertightRay, turn};
 use glam::Vec3A;
 use std::mem::MaybeUninit;
 
-/// A question, whose answer is an `F`.
+/// A query whose hits are collected in an `F`.
 pub struct Query<'a, T, F> {
     pub bvh: &'a TriangleBvh,
     pub ray: &'a Ray,
@@ -20,31 +20,31 @@ pub struct Query<'a, T, F> {
     pub found: F,
 }
 
-/// A ray among triangles.
+/// A ray prepared for the triangles of a tree.
 pub struct RayInTree<'a> {
     bvh: &'a TriangleBvh,
     ray: &'a Ray,
     sheared: WatertightRay,
 }
 
-/// An answer in the making.
+/// Collector of the hits of a query.
 pub trait HitCollector {
     type Answer: Default;
 
-    /// Whether it is enough to know that something is hit.
+    /// True if the existence of a hit suffices.
     const ANY: bool;
 
-    /// Takes note of a hit, not after `t_max`; gives the new one. `facing` is asked for only by
-    /// those that want to know.
+    /// Records a hit at or before `t_max`. Returns the new `t_max`. `facing` computes the side of
+    /// the triangle when called.
     fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32;
 
-    /// When the search has ended, and whether it was enough that something was hit.
+    /// Returns the result at the end of the traversal. `any` is true if it stopped at a hit.
     fn answer(&mut self, any: bool) -> Self::Answer;
 }
 
-/// The first hit.
+/// Collector of the closest hit.
 pub struct Nearest {
-    /// One of the number [`NONE`] before there is any.
+    /// Best hit so far; its triangle is [`NONE`] before the first.
     best: TriangleHit,
 }
 
@@ -64,7 +64,7 @@ impl HitCollector for Nearest {
 
     #[inline(always)]
     fn met(&mut self, hit: TriangleHit, t_max: f32, _: impl FnOnce() -> Facing) -> f32 {
-        // What is the best before there is any has the greatest number.
+        // The initial best hit has the greatest number.
         if hit.t < t_max || hit.triangle < self.best.triangle {
             self.best = hit;
         }
@@ -77,7 +77,7 @@ impl HitCollector for Nearest {
     }
 }
 
-/// Whether there is a hit.
+/// Collector for occlusion queries.
 #[derive(Default)]
 pub struct Any;
 
@@ -97,7 +97,7 @@ impl HitCollector for Any {
     }
 }
 
-/// Every hit, some of them several times.
+/// Collector of all hits, including duplicates.
 #[derive(Default)]
 pub struct All(Vec<TriangleHit>);
 
@@ -116,10 +116,11 @@ impl HitCollector for All {
     }
 }
 
-/// Says whether a hit counts. It may be asked several times, and of hits that are not the first.
+/// Predicate that accepts hits. It may be called several times for a hit, and for hits that are not
+/// the closest.
 pub type Filter<'a> = &'a mut dyn FnMut(&TriangleHit, Facing) -> bool;
 
-/// Hits that a filter lets pass.
+/// Collector of the hits that pass a filter.
 pub struct Filtered<'a, F> {
     pub inner: F,
     pub filter: Filter<'a>,
@@ -128,7 +129,7 @@ pub struct Filtered<'a, F> {
 impl<F: HitCollector> HitCollector for Filtered<'_, F> {
     type Answer = F::Answer;
 
-    // Not even where any hit will do is it enough to know that something is hit.
+    // Even any-hit queries must pass each hit to the filter.
     const ANY: bool = false;
 
     fn met(&mut self, hit: TriangleHit, t_max: f32, facing: impl FnOnce() -> Facing) -> f32 {
@@ -145,7 +146,7 @@ impl<F: HitCollector> HitCollector for Filtered<'_, F> {
 }
 
 impl RayInTree<'_> {
-    /// The corners of a triangle, turned as the ray is, and its number.
+    /// Corners of a triangle with permuted axes, and its number.
     #[inline(always)]
     fn triangle(&self, (rows, count): (&Rows, usize), lane: usize) -> ([Vec3A; 3], u32) {
         (Columns::new(self.sheared.axes(), count).triangle(rows, lane), number(rows, count, lane))
@@ -182,13 +183,13 @@ impl<T: TraversalCounter, F: HitCollector> Query<'_, T, F> {
     }
 }
 
-/// A ray among the triangles of leaves.
+/// Leaf tests of a query.
 pub struct Leaves<'a, T, F> {
     ray_in_tree: RayInTree<'a>,
     places: Places,
     counter: T,
     found: F,
-    /// Whether signs found side by side are within the range of numbers.
+    /// True if vector arithmetic on the signs of edge functions cannot overflow.
     side_by_side: bool,
 }
 
@@ -214,7 +215,7 @@ impl<'a, T, F: HitCollector> Leaves<'a, T, F> {
         }
     }
 
-    /// What was found, when the search has ended.
+    /// Returns the result at the end of the traversal.
     #[inline(always)]
     pub fn answer(&mut self, t_max: f32) -> F::Answer {
         self.found.answer(t_max == f32::NEG_INFINITY)
@@ -264,14 +265,14 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
         if F::ANY {
             let (start, end) = (lanes.splat(self.ray_in_tree.ray.t_min), lanes.splat(self.ray_in_tree.ray.t_max));
             let span = flat.span(lanes, 1.0 / sheared.ray().1.z);
-            // So asked, what is no number is unsure.
+            // Written so that NaN counts as uncertain.
             if crossed & lanes.lt(start, span.near) & lanes.lt(span.far, end) != 0 {
                 return f32::NEG_INFINITY;
             }
             unsure |= crossed & !(lanes.le(span.far, start) | lanes.le(end, span.near));
         } else {
-            // Hidden, or the compiler would prepare this for every ray, before it is known whether
-            // it comes to a leaf.
+            // Without `black_box`, the compiler would prepare this for every ray, even if it never
+            // reaches a leaf.
             let sheared = std::hint::black_box(sheared);
             let (origin, dir) = sheared.ray();
             let line = Exact::new(lanes.triple(origin), lanes.triple(dir));
@@ -296,7 +297,7 @@ impl<T: TraversalCounter, F: HitCollector> Visitor for Leaves<'_, T, F> {
 }
 
 impl<T: TraversalCounter, F: HitCollector> Leaves<'_, T, F> {
-    /// Triangles in full.
+    /// Tests triangles with the exact scalar test.
     #[cold]
     fn one_by_one(&mut self, leaf: u32, which: u32, mut t_max: f32) -> f32 {
         let sheared = self.ray_in_tree.sheared.least_volume(self.ray_in_tree.bvh.least_volume);

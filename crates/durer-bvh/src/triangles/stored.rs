@@ -1,9 +1,9 @@
-//! Trees as bytes, to be kept in files.
+//! Trees as bytes, to be stored in files.
 //!
-//! All numbers are little-endian. A head: eight bytes of name, the version, and as `u64` how many
-//! triangles, nodes and items there are, then the least volume; the nodes, field by field; the
-//! rows of leaves; and a checksum of all that. Whoever reads trusts nothing: a tree that is
-//! accepted leads no ray out of memory, in no circle, and no deeper than a stack is high.
+//! All numbers are little-endian. The format is: a header with eight bytes of name, the version,
+//! the numbers of triangles, nodes, and items as `u64`, and the least volume; the nodes, field by
+//! field; the rows of leaves; and a checksum of all that. The reader trusts nothing: an accepted
+//! tree never leads a ray out of bounds, into a cycle, or deeper than the stack.
 
 use super::rows::TAG;
 use super::tree::TriangleBvh;
@@ -14,13 +14,13 @@ use crate::node::{self, IS_LEAF, LEAF, MAX_DEPTH, UNITS, WideNode};
 const NAME: &[u8; 8] = b"durerbvh";
 const VERSION: u32 = 1;
 const HEAD: usize = 8 + 4 + 3 * 8 + 8;
-/// Bytes of a node: planes, children, orders, first, tags.
+/// Size of a node in bytes: planes, children, orders, first, and tags.
 const NODE: usize = 4 * (6 * WIDTH + WIDTH + 2 + 1) + WIDTH;
 const CHECKSUM: usize = 8;
 
 impl TriangleBvh {
-    /// The tree as bytes, the same on every machine, from which [`TriangleBvh::from_bytes`] makes
-    /// it again. The SIMD level is not kept.
+    /// Serialises the tree. The bytes are the same on every machine, and
+    /// [`TriangleBvh::from_bytes`] reads them. The SIMD level is not stored.
     ///
     /// ```
     /// use durer_bvh::math::{Ray, Vec3};
@@ -54,14 +54,15 @@ impl TriangleBvh {
         to
     }
 
-    /// The tree that [`TriangleBvh::to_bytes`] made bytes of.
+    /// Deserialises a tree written by [`TriangleBvh::to_bytes`].
     ///
-    /// Bytes from anywhere do no harm: they are refused, or make a tree that answers, though not
-    /// rightly if somebody meant it to be wrong.
+    /// Untrusted bytes are safe: they are rejected, or give a tree that answers queries, though
+    /// with wrong results if they were forged.
     ///
     /// # Errors
     ///
-    /// If they are not such bytes, of another version, too few or too many, or damaged.
+    /// If the data is not a saved tree, has an unsupported version or a wrong length, or is
+    /// damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, LoadError> {
         let Some((head, rest)) = bytes.split_at_checked(HEAD).filter(|(head, _)| head.starts_with(NAME)) else {
             return Err(LoadError::NotATree);
@@ -76,7 +77,7 @@ impl TriangleBvh {
         if count > node::MAX_ITEMS as u64 || items > node::MAX_ITEMS as u64 || nodes > node::MAX_NODES as u64 {
             return Err(LoadError::Invalid("it is too large"));
         }
-        // In 64 bits, where `usize` may have 32: the largest counts make more bytes than those hold.
+        // Computed in 64 bits, since the largest counts overflow a 32-bit `usize`.
         let expected = (HEAD + CHECKSUM) as u64 + NODE as u64 * nodes + (4 * ROWS) as u64 * items;
         let [count, nodes, items] = [count, nodes, items].map(|count| count as usize);
         if expected != bytes.len() as u64 {
@@ -99,7 +100,7 @@ impl TriangleBvh {
     }
 }
 
-/// Takes numbers from bytes, of which there must be enough.
+/// Reads numbers from bytes, of which there must be enough.
 struct Reader<'a>(&'a [u8]);
 
 impl Reader<'_> {
@@ -128,12 +129,13 @@ impl Reader<'_> {
     }
 }
 
-/// Whether nodes are a tree whose leaves have all items, each once, and these are triangles.
+/// Checks that the nodes form a tree whose leaves hold every item once, and that the items are
+/// triangles.
 fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Result<(), &'static str> {
     if nodes.is_empty() != (items == 0) {
         return Err("nodes and leaves do not go together");
     }
-    // How deep each node is, once its parent is known; the first has none.
+    // Depth of each node, known once its parent was visited; the root has no parent.
     let mut depths = vec![None; nodes.len()];
     depths.iter_mut().take(1).for_each(|depth| *depth = Some(0));
     let mut is_taken = vec![false; items];
@@ -175,7 +177,7 @@ fn check(nodes: &[WideNode], leaves: &[f32], items: usize, count: usize) -> Resu
     if is_taken.contains(&false) { Err("triangles are in no leaf") } else { Ok(()) }
 }
 
-/// Whether the rows of a leaf are triangles of which there are so many.
+/// Checks that the rows of a leaf hold triangles with numbers below `count`.
 fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static str> {
     let (corners, numbers) = rows.split_at((ROWS - 1) * size);
     if corners.iter().any(|x| x.is_infinite()) {
@@ -187,8 +189,8 @@ fn check_leaf(rows: &[f32], size: usize, count: usize) -> Result<(), &'static st
     }
 }
 
-/// A sum against damage, not against ill will: steps as of the hash FNV-1a of Fowler, Noll and Vo,
-/// but with words of eight bytes, turned, and with the length at the end.
+/// Checksum against damage, not against forgery: FNV-1a by Fowler, Noll, and Vo, but with
+/// eight-byte words, a rotation in each step, and the length at the end.
 fn checksum(bytes: &[u8]) -> u64 {
     let step = |sum: u64, word: u64| (sum ^ word).wrapping_mul(0x0000_0100_0000_01b3).rotate_left(23);
     let (words, rest) = bytes.as_chunks::<8>();
@@ -236,7 +238,7 @@ mod tests {
         }
     }
 
-    /// Bytes with a checksum that is right again.
+    /// Replaces the checksum by a valid one.
     fn summed(mut bytes: Vec<u8>) -> Vec<u8> {
         let end = bytes.len() - CHECKSUM;
         let sum = checksum(&bytes[..end]);
@@ -253,7 +255,8 @@ mod tests {
             for _ in 0..rounds(1_500) {
                 let mut bytes = bytes.clone();
                 for _ in 0..1 + random.below(3) {
-                    // Mostly in the head and the nodes; whole words too, and words from elsewhere.
+                    // Mostly in the header and the nodes. Replaces whole words, too, and copies
+                    // words from elsewhere.
                     let end = [HEAD, HEAD + NODE, bytes.len() - CHECKSUM][random.below(3)].min(bytes.len() - CHECKSUM);
                     let at = random.below(end / 4) * 4;
                     let from = random.below((bytes.len() - CHECKSUM) / 4) * 4;
@@ -306,7 +309,7 @@ mod tests {
             assert_eq!(error(&bytes[..len]), LoadError::Length { expected, found: len });
         }
         assert!(matches!(error(&summed(with(12 + 7, 1))), LoadError::Invalid(_)));
-        // Nodes and items of too many bytes, by a multiple of 2^32.
+        // Numbers of nodes and items whose size is too large by a multiple of 2^32.
         let (nodes, items) = (1 + 10 * 4_400_582, (1 << 29) + 1 - 61 * 4_400_582);
         assert_eq!((NODE as u64 * (nodes - 1) + (4 * ROWS) as u64 * (items - 1)) % (1 << 32), 0);
         let mut wraps = bytes.clone();

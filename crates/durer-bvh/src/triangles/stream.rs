@@ -1,9 +1,9 @@
-//! Many rays through one tree, each a step at a time.
+//! Tracing of many rays through one tree, one step at a time.
 //!
-//! A ray alone waits: for a node from memory, for the result of a test, for the processor that
-//! guessed a branch wrongly. Here several are on their way, and while one waits the others go on.
-//! Rays at inner nodes and rays at leaves are on two lists, so what comes next is no branch: a step
-//! writes its ray to both lists, and one of the two gets longer.
+//! A single ray waits for a node from memory, for the result of a test, or for a mispredicted
+//! branch. Here several rays are in flight, and while one waits, the others proceed. Rays at inner
+//! nodes and rays at leaves are on two lists, so no branch decides between the two: a step writes
+//! its ray to both lists, and one of them grows.
 
 use super::fetch::{ITSELF, Places};
 use super::query::{HitCollector, Leaves};
@@ -15,18 +15,18 @@ use crate::traverse::{Slabs, TraversalRay, Visitor, end_of, intersect_node};
 use std::hint::select_unpredictable;
 use std::marker::PhantomData;
 
-/// How many rays are on their way at once.
+/// Number of rays in flight.
 const IN_FLIGHT: usize = 16;
-/// At the bottom of each stack: no leaf has this number, for its items would be beyond the most.
+/// Bottom of each stack. It differs from all leaves, since its items would be beyond the maximum.
 const END: u32 = u32::MAX;
 
-/// Of a tree of fewer bytes, most is near: there, rays are faster one by one.
+/// Size of a tree in bytes below which most of it is in the cache, so that single rays are faster.
 const MAX_CACHED_BYTES: usize = 8 << 20;
-/// Fewer rays do not wait for each other long enough to be worth a place for each.
+/// Minimum number of rays; fewer rays do not hide each other's latency.
 const FEWEST: usize = 4;
 
 impl TriangleBvh {
-    /// Answers a question for each of the rays with these numbers.
+    /// Runs a query for each of the numbered rays.
     pub(super) fn each<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
@@ -39,7 +39,7 @@ impl TriangleBvh {
         }
     }
 
-    /// As [`TriangleBvh::each`], several on their way at once.
+    /// Runs a query for each of the numbered rays, with several rays in flight.
     pub(super) fn stream<F: HitCollector + Default>(
         &self,
         rays: &[Ray],
@@ -53,13 +53,13 @@ impl TriangleBvh {
 struct Stream<'a, F, A> {
     bvh: &'a TriangleBvh,
     rays: &'a [Ray],
-    /// Of the rays that are still to be started.
+    /// Numbers of the rays that are not yet started.
     numbers: std::slice::Iter<'a, u32>,
     answer: A,
     found: PhantomData<F>,
 }
 
-/// A ray on its way.
+/// A ray in flight.
 struct InFlightRay<'a, F> {
     number: usize,
     boxes: TraversalRay,
@@ -68,7 +68,7 @@ struct InFlightRay<'a, F> {
     child: u32,
 }
 
-/// Numbers of rays.
+/// A list of ray numbers.
 struct List {
     numbers: [u8; 2 * IN_FLIGHT],
     len: usize,
@@ -77,7 +77,7 @@ struct List {
 impl List {
     const EMPTY: List = List { numbers: [0; 2 * IN_FLIGHT], len: 0 };
 
-    /// Adds a number if something is so.
+    /// Appends `number` if `wanted`, without a branch.
     #[inline(always)]
     fn add(&mut self, number: u8, wanted: bool) {
         self.numbers[self.len] = number;
@@ -86,8 +86,8 @@ impl List {
 }
 
 impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A> {
-    /// Puts the next ray in a place, if there is one. Rays that are not traced here are answered at
-    /// once.
+    /// Starts the next ray in a slot. Returns false if there is none. Rays that are not fast are
+    /// answered immediately.
     #[inline(always)]
     fn start<L: Lanes>(&mut self, lanes: L, flight: &mut InFlightRay<'a, F>, stack: &mut Stack) -> bool {
         for &number in self.numbers.by_ref() {
@@ -112,7 +112,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Stream<'a, F, A>
     }
 }
 
-/// One node of a ray's way: its child is the next node or leaf.
+/// Visits one node. The ray's child becomes the next node or leaf.
 #[inline(always)]
 fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut InFlightRay<F>, stack: &mut Stack) {
     let slabs = Slabs::new(lanes, nodes, &flight.boxes);
@@ -120,7 +120,7 @@ fn step<L: Lanes, F: HitCollector>(lanes: L, nodes: &[WideNode], flight: &mut In
     let order = met.node.order(F::ANY, flight.boxes.negative);
     let next = met.next::<true>(lanes, F::ANY, end_of(met.mask, order != 0));
     met.push(lanes, stack, next, order);
-    // If nothing was met, nothing was pushed.
+    // If nothing was hit, nothing was pushed.
     flight.child = select_unpredictable(met.mask == 0, stack.pop_if(met.mask == 0), met.child(next & PLACE));
 }
 
@@ -150,7 +150,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
             inner.add(number as u8, started);
         }
         while inner.len + leaves.len > 0 {
-            // A node for each ray that is at one.
+            // Visit a node for each ray at an inner node.
             let before = std::mem::replace(&mut inner.len, 0);
             for k in 0..before {
                 let number = inner.numbers[k];
@@ -160,7 +160,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                 inner.add(number, flight.child & LEAF == 0);
                 leaves.add(number, flight.child & LEAF != 0);
             }
-            // Leaves once there are several.
+            // Visit leaves when most rays are at one.
             if inner.len >= leaves.len {
                 continue;
             }
@@ -177,7 +177,7 @@ impl<'a, F: HitCollector + Default, A: FnMut(usize, F::Answer)> Kernel for Strea
                 if over {
                     (self.answer)(flight.number, flight.leaves.answer(flight.t_max));
                     if !self.start(lanes, flight, stack) {
-                        // Its place stays empty.
+                        // The slot stays empty.
                         continue;
                     }
                 } else {

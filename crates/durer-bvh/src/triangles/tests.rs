@@ -1,4 +1,4 @@
-//! Trees of triangles against brute force, at every SIMD level and quality.
+//! Tests of triangle trees against brute force, at every SIMD level and quality.
 
 use super::*;
 use crate::BuildQuality;
@@ -13,7 +13,7 @@ mod reference;
 
 pub type Mesh = (Vec<Vec3>, Vec<[u32; 3]>);
 
-/// A closed sheet over the grid of its corners, which meet bit for bit.
+/// A torus whose neighbouring triangles share corners bit for bit.
 pub fn torus(columns: u32, rows: u32) -> Mesh {
     let turn = |i: u32, count: u32| crate::math::fp::sin_cos_degrees(360.0 * f64::from(i) / f64::from(count));
     let mut mesh: Mesh = Default::default();
@@ -29,7 +29,7 @@ pub fn torus(columns: u32, rows: u32) -> Mesh {
     mesh
 }
 
-/// A cube of six times `cuts`^2 squares: rays along axes lie in its faces and edges.
+/// A cube of six times `cuts`^2 squares. Rays along axes lie in its faces and edges.
 fn cube(cuts: u32) -> Mesh {
     let mut mesh: Mesh = Default::default();
     for face in 0..6 {
@@ -51,7 +51,7 @@ fn cube(cuts: u32) -> Mesh {
     mesh
 }
 
-/// Triangles that have nothing to do with each other.
+/// Unrelated random triangles.
 pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
     let corners = |_| {
         let place = random.point();
@@ -61,7 +61,7 @@ pub fn soup(random: &mut Random, count: u32, size: f32) -> Mesh {
     (vertices, (0..count).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect())
 }
 
-/// Small triangles and long ones through all of them, of which some are cut.
+/// Small triangles and long ones across all of them, some of which are split.
 pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     let (mut vertices, mut triangles) = soup(random, small, 0.05);
     for i in 0..long {
@@ -73,7 +73,7 @@ pub fn bars(random: &mut Random, small: u32, long: usize) -> Mesh {
     (vertices, triangles)
 }
 
-/// Meshes that are hard on a tree, by name.
+/// Meshes that are difficult for a tree, by name.
 fn hard() -> Vec<(&'static str, Mesh)> {
     let mut random = Random(7);
     let grow = |i: u32| libm::pow(1.3, f64::from(i % 400) - 200.0) as f32;
@@ -107,8 +107,8 @@ fn scaled((vertices, triangles): &Mesh, scale: f32, offset: Vec3) -> Mesh {
     (vertices.iter().map(|v| scale * *v + offset).collect(), triangles.clone())
 }
 
-/// Rays of all kinds about a mesh: at vertices, edges and faces, along axes, short, long, and with
-/// special numbers.
+/// Rays of all kinds around a mesh: towards vertices, edges, and faces, along axes, short, long,
+/// and with special numbers.
 pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Ray {
     let mut goal = offset + scale * random.point();
     if !triangles.is_empty() {
@@ -130,7 +130,7 @@ pub fn ray((vertices, triangles): &Mesh, random: &mut Random, scale: f32, offset
     ray
 }
 
-/// Every hit, found without a tree.
+/// Finds every hit without a tree.
 pub fn brute_force((vertices, triangles): &Mesh, ray: &Ray) -> Vec<TriangleHit> {
     if !is_sound(ray) {
         return Vec::new();
@@ -191,7 +191,7 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
     let shapes = [(torus(60, 30), Vec3::new(0.7, 0.0, 0.0)), (cube(8), Vec3::ZERO)];
     for distance in [0.0, 1e3, 1e6] {
         for (mesh, inside) in &shapes {
-            // Whole numbers keep the mesh closed; its corners are rounded, all alike.
+            // Whole numbers keep the mesh closed, since shared corners are rounded alike.
             let offset = (distance * random.direction()).round();
             let scale = if distance > 1e5 { 64.0 } else { 1.0 };
             let mesh = scaled(mesh, scale, offset);
@@ -221,7 +221,7 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
         for round in 1..6 {
             let bent = |v: &Vec3| *v + 0.1 * round as f32 * Vec3::new(v.y, v.z * v.x, -v.x) + Vec3::Y * round as f32;
             let mut moved: Mesh = (mesh.0.iter().map(bent).collect(), mesh.1.clone());
-            // Now and then much is nowhere, and returns.
+            // Now and then, some vertices are not finite, and return later.
             match round {
                 2 => moved.0[50..250].fill(Vec3::NAN),
                 4 => moved.0[..100].fill(Vec3::new(0.0, f32::INFINITY, 1.0)),
@@ -239,7 +239,7 @@ fn a_refitted_tree_finds_what_brute_force_finds() {
     }
 }
 
-/// Where sums of coordinates leave the range of numbers, what is hit is still a triangle.
+/// If sums of coordinates overflow, the result of a hit is still a valid triangle.
 #[test]
 fn the_greatest_numbers_lead_to_triangles() {
     let mut random = Random(5);
@@ -255,8 +255,8 @@ fn the_greatest_numbers_lead_to_triangles() {
     }
 }
 
-/// Neighbours in a picture, through a hole or side by side: at corners, edges and faces, often
-/// across octants, with some that are odd.
+/// A bundle of neighbouring rays, through a pinhole or parallel: towards corners, edges, and faces,
+/// often across octants, some with special values.
 fn bundle(mesh: &Mesh, random: &mut Random, scale: f32, offset: Vec3) -> Vec<Ray> {
     let middle = ray(mesh, random, scale, offset);
     let count = 1 + random.below(150);
@@ -299,21 +299,20 @@ fn batches_answer_as_single_rays_do() {
                 SimdLevel::available().map(|level| tree.clone().at_level(level)).chain([culls_slivers]).collect();
             for round in 0..rounds(4) {
                 let mut rays: Vec<Ray> = (0..3).flat_map(|_| bundle(&mesh, &mut random, scale, offset)).collect();
-                // Where each meets very many, a few will do.
+                // Few rays suffice for large meshes.
                 rays.truncate(if mesh.1.len() > 5_000 { 40 } else { rays.len() });
                 if round == 0 && mesh.1.len() < 5_000 {
                     rays = (0..100).map(|_| ray(&mesh, &mut random, scale, offset)).collect();
                 }
                 let (mut hits, mut occluded) = (vec![None; rays.len()], vec![false; rays.len()]);
                 for tree in &trees {
-                    // In parts, for after rays that do not go together some are not asked whether
-                    // they do.
+                    // Also in parts: after incoherent rays, some rays skip the coherence test.
                     let part = [64, usize::MAX][round % 2];
                     rays.chunks(part).zip(hits.chunks_mut(part)).for_each(|(rays, to)| tree.closest_batch(rays, to));
                     rays.chunks(part)
                         .zip(occluded.chunks_mut(part))
                         .for_each(|(rays, to)| tree.occluded_batch(rays, to));
-                    // As in a large tree.
+                    // Streams, as in a large tree.
                     let (numbers, mut streamed) = ((0..rays.len() as u32).collect::<Vec<_>>(), hits.clone());
                     tree.stream::<Nearest>(&rays, &numbers, |i, hit| streamed[i] = hit);
                     tree.stream::<Any>(&rays, &numbers, |i, any| assert_eq!(any, occluded[i], "{name}"));
@@ -371,7 +370,7 @@ fn rays_along_an_axis_go_together_and_meet_what_is_there() {
 
 #[test]
 fn zeros_of_either_sign_are_one_point_where_rays_begin() {
-    // About the origin, so that corners have zeros too, of either sign, and rays run through edges
+    // Around the origin, so that corners also have zeros of either sign, and rays run through edges
     // and vertices.
     let mut mesh = cube(8);
     for (i, at) in mesh.0.iter_mut().flat_map(|at| at.as_mut()).enumerate() {
@@ -407,7 +406,7 @@ fn zeros_of_either_sign_are_one_point_where_rays_begin() {
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "no threads there")]
 fn a_tree_is_a_function_of_its_triangles() {
-    // So many that every step has parts that run side by side.
+    // Large enough that every step runs in parallel.
     let (soup, bars) = (soup(&mut Random(5), 40_000, 0.05), bars(&mut Random(5), 20_000, 1_000));
     for (mesh, (name, quality)) in
         [&soup, &bars].into_iter().flat_map(|mesh| BuildQuality::NAMES.map(|named| (mesh, named)))
@@ -422,7 +421,7 @@ fn a_tree_is_a_function_of_its_triangles() {
     assert!(TriangleBvh::build(&bars.0, &bars.1, BuildQuality::Best).items() > bars.1.len(), "no part of a triangle");
 }
 
-/// It arrives where the tree was asked for, whichever thread found it, and the next tree is built.
+/// The panic reaches the caller, whichever thread found the error, and the next tree can be built.
 #[test]
 #[cfg_attr(target_family = "wasm", ignore = "a panic ends the program there")]
 fn an_index_that_leads_nowhere_panics() {

@@ -1,4 +1,4 @@
-//! What a tree of triangles is, and what it answers with.
+//! The tree of triangles, and its hits.
 
 use super::height_grid::HeightGrid;
 use crate::lanes::{Available, ROOM_OF_ROWS, ROWS, Rows};
@@ -9,26 +9,26 @@ use glam::Vec3A;
 use std::mem::MaybeUninit;
 use std::sync::{Arc, OnceLock};
 
-/// Where a ray meets a mesh.
+/// Intersection of a ray with a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TriangleHit {
     /// Position along the ray, in units of the length of its direction.
     pub t: f32,
-    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    /// Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     pub uv: Vec2,
     /// Number of the triangle.
     pub triangle: u32,
 }
 
-/// A bounding volume hierarchy over triangles, for use without any scene.
+/// A bounding volume hierarchy over triangles, usable without a scene.
 ///
-/// A ray counts as moved by an infinitesimal across itself, so that it crosses exactly one of the
-/// triangles around an edge or a vertex: no ray slips through a closed mesh, and
-/// [`TriangleBvh::hit_count`] is exact. Triangles are met from both sides. Of hits at the same `t`
-/// the one of least number is the closest. All answers are the same, bit for bit, for all
-/// qualities, SIMD levels, and numbers of threads.
+/// A ray counts as moved by an infinitesimal distance sideways, so that it crosses exactly one of
+/// the triangles around an edge or a vertex: no ray slips through a closed mesh, and
+/// [`TriangleBvh::hit_count`] is exact. Triangles are hit from both sides. Of hits at the same `t`,
+/// the one with the least triangle number is the closest. All results are the same, bit for bit,
+/// for all build qualities, SIMD levels, and numbers of threads.
 ///
-/// A ray that is NaN or infinite, or without direction, hits nothing; directions need not be of
+/// A ray that is NaN or infinite, or has no direction, hits nothing. Directions need not have
 /// length 1.
 ///
 /// ```
@@ -47,43 +47,43 @@ pub struct TriangleHit {
 #[derive(Clone, Debug)]
 pub struct TriangleBvh {
     pub(super) nodes: Vec<WideNode>,
-    /// For each leaf [`ROWS`] rows, each of as many numbers as it has triangles: their corners by
-    /// axis, and their numbers, as bits. A leaf's room behind the last.
+    /// Leaves with [`ROWS`] rows each, whose length is the number of triangles: corners by axis,
+    /// then numbers as bits. Padded by the size of a leaf.
     pub(super) leaves: Vec<f32>,
     pub(super) bounds: Aabb,
-    /// The greatest coordinate, without signs.
+    /// Largest absolute coordinate.
     pub(super) reach: f32,
     pub(super) level: Available,
     pub(super) least_volume: f64,
-    /// Whether that is more than nothing.
+    /// True if `least_volume` is not zero.
     pub(super) culls_slivers: bool,
-    /// How many triangles it was built over.
+    /// Number of triangles at build time.
     pub(super) count: usize,
-    /// For each triangle a leaf that holds it, once that was asked for.
+    /// A leaf of each triangle, computed on first use.
     pub(super) leaf_of: OnceLock<Vec<u32>>,
-    /// What leaves are made of whose rows are not in memory.
+    /// Grid for leaves whose rows are not in memory.
     pub(super) heights: Option<Arc<HeightGrid>>,
 }
 
-/// The side of a triangle that a ray meets.
+/// Side of a triangle that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Facing {
-    /// The side from which its corners go counter-clockwise: (b - a) x (c - a) points towards the
-    /// ray's origin.
+    /// Side from which the corners are in counter-clockwise order: (b - a) x (c - a) points towards
+    /// the ray's origin.
     Front,
-    /// The other.
+    /// Opposite side.
     Back,
 }
 
 impl Facing {
-    /// Of a triangle that is crossed, by the exact signs that say that it is: so along a ray the
-    /// sides of a closed mesh alternate.
+    /// Side of a triangle that the ray crosses. Uses the exact signs of the crossing test, so that
+    /// the sides of a closed mesh alternate along a ray.
     #[inline]
     pub(super) fn of(ray: &WatertightRay, corners: [Vec3A; 3]) -> Self {
         if ray.is_front(corners) { Facing::Front } else { Facing::Back }
     }
 
-    /// The other side, if something is so.
+    /// Flips the side if `turned`.
     pub(crate) fn turned_if(self, turned: bool) -> Self {
         match (self, turned) {
             (side, false) => side,
@@ -94,7 +94,7 @@ impl Facing {
 }
 
 impl TriangleBvh {
-    /// Of nodes and leaves over so many triangles.
+    /// Creates a tree from nodes and leaves over `count` triangles.
     pub(super) fn of(nodes: Vec<WideNode>, leaves: Vec<f32>, bounds: Aabb, count: usize) -> Self {
         TriangleBvh {
             nodes,
@@ -110,12 +110,13 @@ impl TriangleBvh {
         }
     }
 
-    /// The rows of a leaf, and the count of its triangles. Rows that are not in memory are written
-    /// into the room.
+    /// Rows of a leaf and its number of triangles. Rows that are not in memory are written to
+    /// `room`.
     #[inline(always)]
     pub(super) fn rows<'a>(&'a self, leaf: u32, room: &'a mut MaybeUninit<Rows>) -> (&'a Rows, usize) {
         let (first, count) = node::items(leaf);
-        // Leaves have a leaf's room behind them, and blocks of heights have greater numbers.
+        // The padding makes the slice long enough for any leaf in memory; blocks of heights have
+        // greater numbers.
         let rows = match self.leaves.get(ROWS * first..) {
             Some(rest) => rest.first_chunk(),
             None => None,
@@ -126,7 +127,7 @@ impl TriangleBvh {
         }
     }
 
-    /// The rows of a block of heights.
+    /// Writes the rows of a block of heights.
     #[inline(never)]
     fn block<'a>(&self, first: usize, room: &'a mut MaybeUninit<Rows>) -> &'a Rows {
         let Some(heights) = &self.heights else { unreachable!("all leaves have rows") };

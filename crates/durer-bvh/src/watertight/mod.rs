@@ -1,17 +1,17 @@
-//! Ray against triangle, watertight: a ray never slips between two triangles that share an edge,
-//! and crosses exactly one of those around an edge or a vertex.
+//! Watertight ray-triangle intersection: a ray never slips between two triangles that share an
+//! edge, and crosses exactly one of the triangles around an edge or a vertex.
 //!
-//! The triangle is sheared so that the ray runs along one axis; what remains is whether a polygon's
-//! edges go round the origin of a plane. Corners shared by two triangles are rounded alike, and the
-//! sign of each edge function is exact, so two neighbours never disagree. Where an edge passes
+//! A shear of the triangle aligns the ray with one axis. The remaining question is whether the
+//! projected edges wind around the origin. Corners shared by two triangles are rounded alike, and
+//! the sign of each edge function is exact, so two neighbours never disagree. If an edge passes
 //! through the ray, the ray counts as moved by an infinitesimal (e, e^2) in the plane across it.
 //!
-//! Single precision says whether a triangle is crossed; where, double precision says. A ray that
-//! starts beside a triangle, off by no more than the rounding of its origin, is therefore on the
-//! right side of it.
+//! Single precision decides if a triangle is crossed; double precision computes the distance. A ray
+//! that starts beside a triangle, off by no more than the rounding of its origin, is therefore on
+//! the right side of it.
 //!
-//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013; the
-//! infinitesimal is Edelsbrunner and Mücke's *Simulation of Simplicity*, ACM TOG 9(1), 1990.
+//! Sources: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, JCGT 2(1), 2013. The
+//! infinitesimal is from Edelsbrunner and Mücke, *Simulation of Simplicity*, ACM TOG 9(1), 1990.
 
 use crate::math::{Doubles, Ray, Triple, Vec2, Vec3};
 use glam::Vec3A;
@@ -19,32 +19,32 @@ use glam::Vec3A;
 #[cfg(test)]
 mod tests;
 
-/// Where a ray crosses a triangle.
+/// Point where a ray crosses a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Crossing {
     /// Position along the ray.
     pub t: f32,
-    /// The second and third barycentric coordinate: the point is (1 - u - v) a + u b + v c.
+    /// Second and third barycentric coordinates: the point is (1 - u - v) a + u b + v c.
     pub uv: Vec2,
 }
 
-/// A ray prepared for many triangles.
+/// A ray prepared for tests of many triangles.
 ///
-/// It is turned: the longest component of its direction counts as the third axis, and the other two
-/// are in the order that keeps the sides of triangles. So are the corners that
-/// `WatertightRay::crosses` and others take.
+/// Its axes are permuted: the longest component of its direction becomes the third axis, and the
+/// order of the other two preserves the sides of triangles. `WatertightRay::crosses` and similar
+/// methods take corners in this order of axes.
 #[derive(Clone, Copy, Debug)]
 pub struct WatertightRay {
     axes: &'static AxisOrder,
     origin: Vec3A,
     dir: Vec3A,
-    /// The direction, of which the third component is 1.
+    /// Direction divided by its third component.
     shear: Vec3A,
     least_volume: f64,
 }
 
 impl WatertightRay {
-    /// Prepares a ray. One without direction, or with an infinite one, hits nothing.
+    /// Prepares a ray. A ray without a direction, or with an infinite one, hits nothing.
     #[inline(always)]
     pub fn new(ray: &Ray) -> Self {
         let axes = turn(ray.dir.into());
@@ -54,18 +54,19 @@ impl WatertightRay {
         WatertightRay { shear, ..sheared }
     }
 
-    /// A ray that has a finite direction, with its axes, by [`turn`], and turned already.
+    /// Creates a ray with a finite direction from an origin and a direction that are permuted
+    /// already, by the axes of [`turn`].
     #[inline(always)]
     pub(crate) fn turned(axes: &'static AxisOrder, origin: Vec3A, dir: Vec3A) -> Self {
         WatertightRay { axes, origin, dir, shear: dir / dir.z, least_volume: 0.0 }
     }
 
-    /// Misses triangles for which |(b - a) x (c - a) · d| is less than this.
+    /// Sets the least |(b - a) x (c - a) · d| of a triangle that the ray can hit.
     pub fn least_volume(self, least_volume: f64) -> Self {
         WatertightRay { least_volume, ..self }
     }
 
-    /// The crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
+    /// Crossing with a triangle in the open interval (`t_min`, `t_max`), from either side.
     #[inline(always)]
     pub fn intersect(&self, corners: [Vec3; 3], t_min: f32, t_max: f32) -> Option<Crossing> {
         let corners = corners.map(|corner| turned(self.axes, corner.as_ref()));
@@ -73,11 +74,12 @@ impl WatertightRay {
             return None;
         }
         let t = self.t(corners)?;
-        // Refuses also NaN.
+        // Rejects NaN, too.
         (t > t_min && t < t_max).then(|| Crossing { t, uv: self.uv(corners) })
     }
 
-    /// Whether the line of the ray crosses a triangle, and does not just see it from its side.
+    /// Returns true if the line of the ray crosses the triangle. False if the triangle is seen
+    /// edge-on.
     pub(crate) fn crosses(&self, corners: [Vec3A; 3]) -> bool {
         let flat @ [a, b, c] = self.flatten(corners);
         let front = is_front(b, c);
@@ -89,16 +91,17 @@ impl WatertightRay {
         det != 0.0 && !det.is_nan()
     }
 
-    /// Whether a triangle that is crossed is met from its front, where its corners go
-    /// counter-clockwise.
+    /// Returns true if the ray hits the front of a triangle that it crosses. From the front, the
+    /// corners are in counter-clockwise order.
     pub(crate) fn is_front(&self, corners: [Vec3A; 3]) -> bool {
         let [a, b, c] = areas(self.flatten(corners).map(doubles));
-        // Of one sign, as far as they have any; and the direction's longest component, along
+        // The three areas have the same sign, if any. The longest component of the direction, along
         // which the plane is seen, may be negative.
         a + b + c > 0.0
     }
 
-    /// The second and third barycentric coordinate of the crossing with a triangle that is crossed.
+    /// Second and third barycentric coordinates of the crossing with a triangle that the ray
+    /// crosses.
     #[inline(always)]
     pub(crate) fn uv(&self, corners: [Vec3A; 3]) -> Vec2 {
         let [u, v] = uv_across(self.flatten(corners).map(doubles));
@@ -110,7 +113,7 @@ impl WatertightRay {
         [self.flat(a), self.flat(b), self.flat(c)]
     }
 
-    /// A corner in the plane across the ray.
+    /// Projects a corner onto the plane across the ray.
     #[inline(always)]
     fn flat(&self, corner: Vec3A) -> Vec2 {
         let p = corner - self.origin;
@@ -118,8 +121,8 @@ impl WatertightRay {
         Vec2::new(flat.x, flat.y)
     }
 
-    /// Where the ray's line crosses a triangle that it crosses: within the triangle's bounds. It
-    /// may be infinite.
+    /// Computes `t` of the crossing with a triangle that the ray crosses, within the bounds of the
+    /// triangle. It may be infinite.
     #[inline(always)]
     pub(crate) fn t(&self, corners: [Vec3A; 3]) -> Option<f32> {
         let [t, volume] = Exact::single(self.origin, self.dir).t(&Plane::single(corners));
@@ -129,28 +132,28 @@ impl WatertightRay {
         Some(t as f32)
     }
 
-    /// The axes in the order of turned vectors.
+    /// Order of the axes in permuted vectors.
     pub(crate) fn axes(&self) -> &'static AxisOrder {
         self.axes
     }
 
-    /// Origin and direction, turned.
+    /// Origin and direction with permuted axes.
     pub(crate) fn ray(&self) -> (Vec3A, Vec3A) {
         (self.origin, self.dir)
     }
 
-    /// How far a corner moves across for each unit along the third axis.
+    /// Sideways displacement of a corner per unit along the third axis.
     pub(crate) fn shear(&self) -> Vec2 {
         Vec2::new(self.shear.x, self.shear.y)
     }
 }
 
-/// The plane of a turned triangle in double precision; or several side by side.
+/// Plane of a triangle with permuted axes, in double precision; one, or several in lanes.
 #[derive(Clone, Copy)]
 pub(crate) struct Plane<V: Triple> {
     pub normal: V,
     pub corner: V,
-    /// The heights of the lowest and of the highest corner along the third axis.
+    /// Coordinates of the lowest and the highest corner along the third axis.
     pub heights: [V::Component; 2],
 }
 
@@ -169,12 +172,13 @@ impl Plane<[f64; 3]> {
     }
 }
 
-/// The line of a turned ray in double precision; or several side by side. Nothing here branches.
+/// Line of a ray with permuted axes, in double precision; one, or several in lanes. Its methods are
+/// branchless.
 #[derive(Clone, Copy)]
 pub(crate) struct Exact<V: Triple> {
     origin: V,
     dir: V,
-    /// 1 over the last component of the direction.
+    /// 1 over the third component of the direction.
     inverse: V::Component,
 }
 
@@ -193,18 +197,18 @@ impl<V: Triple<Component = f64>> Exact<V> {
 }
 
 impl<V: Triple> Exact<V> {
-    /// `inverse` is 1 over the last component of the direction.
+    /// Creates the line. `inverse` is 1 over the third component of the direction.
     #[inline(always)]
     pub fn with_inverse(origin: V, dir: V, inverse: V::Component) -> Self {
         Exact { origin, dir, inverse }
     }
 
-    /// Where it crosses a turned triangle that it crosses, and the volume |(b - a) x (c - a) · d|
-    /// with its sign.
+    /// Computes `t` of the crossing with a triangle that the line crosses, and the signed volume (b
+    /// - a) x (c - a) · d.
     ///
-    /// That is where it meets the plane, but between the lowest and the highest corner: seen from
-    /// nearly its side, the triangle still bounds t, also where that is no number. Products are
-    /// rounded monotonically, so the corners' distances are between those of the lowest and of the
+    /// `t` is the intersection with the plane, clamped to the lowest and highest corner: nearly
+    /// edge-on, the triangle still bounds `t`, also if the division gives NaN. Products are rounded
+    /// monotonically, so the distances of the corners lie between those of the lowest and the
     /// highest.
     #[inline(always)]
     pub fn t(&self, plane: &Plane<V>) -> [V::Component; 2] {
@@ -217,31 +221,30 @@ impl<V: Triple> Exact<V> {
     }
 }
 
-/// The second and third barycentric coordinate of the origin, by the corners in the plane across a
-/// ray that crosses the triangle; or those of several side by side.
+/// Second and third barycentric coordinates of the origin, from the corners in the plane across a
+/// ray that crosses the triangle; one, or several in lanes.
 #[inline(always)]
 pub(crate) fn uv_across<D: Doubles>(flat: [[D; 2]; 3]) -> [D; 2] {
     let [a, b, c] = areas(flat);
-    // None of the three is of another sign than the others, so their sum is as exact as they are.
+    // The three areas do not differ in sign, so their sum is as exact as they are.
     let det = a.add(b).add(c);
     [b.div(det), c.div(det)]
 }
 
-/// Which components of a vector are the first, second, and third of a turned one; the last is there
-/// to make a vector of four.
+/// Components of a vector that become the first, second, and third after the permutation. The last
+/// entry pads the order to four.
 pub(crate) type AxisOrder = [u32; 4];
 
-/// The axes that turn a ray, by the longest component of its direction and whether that is negative
-/// (1) or not (0).
+/// Axis order of a ray, by the longest component of its direction and its sign (1 if negative).
 #[inline(always)]
 pub(crate) const fn turned_axes(longest: usize, negative: usize) -> AxisOrder {
     const AXES: [[AxisOrder; 2]; 4] =
         [[[1, 2, 0, 0], [2, 1, 0, 0]], [[2, 0, 1, 0], [0, 2, 1, 0]], [[0, 1, 2, 0], [1, 0, 2, 0]], [[0; 4]; 2]];
-    // So masked, indices need not be tested.
+    // The masks remove bounds checks.
     AXES[longest & 3][negative & 1]
 }
 
-/// The axes that turn a ray with such a direction.
+/// Axis order of a ray with direction `dir`.
 #[inline(always)]
 pub(crate) fn turn(dir: Vec3A) -> &'static AxisOrder {
     let length = dir.abs();
@@ -249,8 +252,8 @@ pub(crate) fn turn(dir: Vec3A) -> &'static AxisOrder {
     &TURNED[longest as usize & 7][dir.is_negative_bitmask() as usize & 7]
 }
 
-/// The axes that turn a ray, by which components of its direction are longest (a bit for each; the
-/// last of them counts) and which are negative.
+/// Axis orders, by a mask of the longest components of the direction (the last one counts) and a
+/// mask of the negative ones.
 static TURNED: [[AxisOrder; 8]; 8] = {
     let mut table = [[[0, 1, 2, 0]; 8]; 8];
     let mut at = 8;
@@ -267,7 +270,7 @@ fn turned([x, y, z, _]: &AxisOrder, v: &[f32; 3]) -> Vec3A {
     Vec3A::new(v[*x as usize], v[*y as usize], v[*z as usize])
 }
 
-/// A point in the plane across a ray, in double precision.
+/// Converts a point in the plane across a ray to double precision.
 fn doubles(p: Vec2) -> [f64; 2] {
     [f64::from(p.x), f64::from(p.y)]
 }
@@ -279,26 +282,27 @@ fn areas<D: Doubles>([a, b, c]: [[D; 2]; 3]) -> [D; 3] {
     [edge(b, c), edge(c, a), edge(a, b)]
 }
 
-/// The edge function of the edge from `p` to `q` about the origin: a product of two `f32` is exact.
+/// Edge function of the edge from `p` to `q` at the origin. Products of two `f32` are exact in
+/// `f64`.
 #[inline(always)]
 fn edge<D: Doubles>(p: [D; 2], q: [D; 2]) -> D {
     q[0].mul(p[1]).sub(q[1].mul(p[0]))
 }
 
-/// Whether the edge from `p` to `q` goes round the origin clockwise: the sign of the edge function,
-/// never zero.
+/// Returns true if the edge from `p` to `q` runs clockwise around the origin: the sign of the edge
+/// function, never zero.
 #[inline(always)]
 fn is_front(p: Vec2, q: Vec2) -> bool {
     let value = q.x * p.y - q.y * p.x;
-    // Rounding is monotonic: the difference of two rounded products has the sign of the true one.
+    // Rounding is monotonic: the difference of two rounded products has the sign of the exact one.
     if value.abs() > 0.0 && value.abs() < f32::INFINITY { value > 0.0 } else { is_front_exact(p, q) }
 }
 
-/// As [`is_front`], where single precision sees zero or overflows.
+/// Computes [`is_front`] if single precision gives zero or overflows.
 #[cold]
 fn is_front_exact(p: Vec2, q: Vec2) -> bool {
-    // Terms of the edge function about (e, e^2), in falling order: 1, e, e^2. Differences in double
-    // precision, for those of single precision may underflow.
+    // Terms of the edge function at (e, e^2), in falling order: 1, e, e^2. Differences are taken in
+    // double precision, since they may underflow in single precision.
     let [p, q] = [doubles(p), doubles(q)];
     [edge(p, q), q[1] - p[1], p[0] - q[0]].into_iter().find(|term| *term != 0.0).is_some_and(|term| term > 0.0)
 }

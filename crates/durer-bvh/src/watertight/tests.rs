@@ -1,12 +1,13 @@
-//! A ray through an edge or a vertex crosses exactly one of the triangles that meet there.
+//! Tests that a ray through an edge or a vertex crosses exactly one of the triangles that meet
+//! there.
 
 use super::*;
 use crate::math::random::Random;
 
 type Triangles = Vec<[Vec3; 3]>;
 
-/// A grid over [0, 1]^2 that is closed by the map of its corners: neighbours get the same corner,
-/// bit for bit.
+/// A grid over [0, 1]^2 that the map of its corners closes: neighbours get the same corner, bit for
+/// bit.
 fn sheet(columns: usize, rows: usize, point: impl Fn(usize, usize) -> Vec3) -> Triangles {
     let mut triangles = Vec::new();
     for i in 0..columns {
@@ -24,7 +25,7 @@ fn turn(i: usize, count: usize) -> (f32, f32) {
     (sin as f32, cos as f32)
 }
 
-/// Closed meshes, each with whether it is convex, and a point inside.
+/// Closed meshes, each with a flag for convex ones and a point inside.
 fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     let ball = sheet(16, 8, |i, j| {
         let ((s, c), (t, d)) = (turn(i, 16), turn(j, 16));
@@ -43,7 +44,7 @@ fn meshes() -> Vec<(Triangles, bool, Vec3)> {
     vec![(ball, true, Vec3::ZERO), (cube.collect(), true, Vec3::ZERO), (torus, false, Vec3::new(0.7, 0.0, 0.0))]
 }
 
-/// A vertex, the middle of an edge, a point of an edge, or one of a face.
+/// A vertex, the midpoint of an edge, a point of an edge, or the centre of a face.
 fn target(mesh: &Triangles, random: &mut Random) -> Vec3 {
     let [a, b, c] = mesh[random.below(mesh.len())];
     match random.below(4) {
@@ -65,15 +66,15 @@ fn a_closed_mesh_is_crossed_evenly_from_outside_and_oddly_from_inside() {
     for (mesh, convex, inside) in meshes() {
         let mut through = 0;
         for distance in [0.0, 10.0, 1e3, 1e4, 1e5] {
-            // Whole numbers keep the mesh closed; its corners are rounded, all alike.
+            // Whole numbers keep the mesh closed, since shared corners are rounded alike.
             let offset = (distance * random.direction()).round();
-            // Far away the rounded corners dent what was convex.
+            // Far away, the rounded corners dent a convex mesh.
             let convex = convex && distance <= 10.0;
             let moved: Triangles = mesh.iter().map(|corners| corners.map(|p| p + offset)).collect();
             for round in 0..1_500 {
                 let goal = target(&moved, &mut random);
                 let outside = offset + [3.0, 100.0, 1e4][round % 3] * random.direction();
-                // Along an axis every other time: such rays lie in the faces of the cube.
+                // Along an axis every other time: such rays may lie in the faces of the cube.
                 let mut dir = random.between(0.1, 10.0) * (goal - outside);
                 let mut from = outside;
                 if round % 2 == 0 {
@@ -109,7 +110,7 @@ fn one_triangle_of_a_fan_is_crossed_at_its_middle_and_at_its_spokes() {
         let fan: Triangles = (0..count).map(|i| [middle, rim[i], rim[(i + 1) % count]]).collect();
         let spoke = rim[random.below(count)];
         let goal = middle + [0.0, 0.5, random.between(0.01, 0.99)][round % 3] * (spoke - middle);
-        // From above, so that the whole fan is seen from one side.
+        // From above, so that the ray sees the whole fan from one side.
         let from = goal + Vec3::new(random.between(-1.0, 1.0), 3.0, random.between(-1.0, 1.0));
         for ray in [Ray::new(from, goal - from), Ray::new(goal + 3.0 * Vec3::Y, Vec3::NEG_Y)] {
             assert_eq!(crossed(&fan, &ray), 1, "{fan:?} {ray:?}");

@@ -1,8 +1,7 @@
 //! The command line of `durer check`.
 
 use crate::display::ExposureArgs;
-use crate::job::JobArgs;
-use crate::options::{SceneArgs, ViewArgs};
+use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use clap::Args;
 use std::path::PathBuf;
 

@@ -2,8 +2,9 @@
 
 use super::args::CheckArgs;
 use crate::failure::Failure;
-use crate::job::{accel, aspect, job};
+use crate::job::job;
 use crate::open::load_options;
+use crate::options::{accel, aspect};
 use durer::check::{Finding, Subject, check, reported};
 use durer::diag::{Diagnostics, Files};
 use durer::load_text;

@@ -3,10 +3,10 @@
 use super::args::CheckArgs;
 use super::change::Change;
 use super::checked::{Checked, look};
-use super::json::place;
 use crate::failure::Failure;
 use durer::check::{Finding, apply, rank};
 use durer::diag::{Edit, Severity};
+use durer::report::place;
 use std::sync::Arc;
 
 /// At most so many findings of a scene are mended in one go.

@@ -1,7 +1,6 @@
 //! The command line of `durer compare`.
 
-use crate::job::JobArgs;
-use crate::options::{SceneArgs, ViewArgs};
+use crate::options::{JobArgs, SceneArgs, ViewArgs};
 use crate::values::{percent, tolerance};
 use clap::Args;
 use clap::builder::PossibleValuesParser;

@@ -6,7 +6,8 @@ use super::named;
 use super::there::There;
 use crate::report::counted;
 use crate::terminal::{complain, say};
-use durer::image::compare::{Comparison, Options, Region, Verdict};
+use durer::image::compare::{Options, Region, Verdict};
+use durer::report;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -174,7 +175,9 @@ pub fn pair(compared: &Compared) -> Value {
     let more = match &compared.outcome {
         Outcome::Missing => json!({}),
         Outcome::Failed(reason) => json!({ "error": reason }),
-        Outcome::Compared(found) => numbers(found, &compared.there),
+        Outcome::Compared(found) => {
+            report::comparison(found, &compared.there.iter().map(There::json).collect::<Vec<_>>())
+        }
     };
     if let Some(diagnosis) = &compared.diagnosis {
         value["diagnosis"] = named::json(diagnosis);
@@ -183,35 +186,6 @@ pub fn pair(compared: &Compared) -> Value {
         value.extend(more);
     }
     value
-}
-
-/// What was measured, and what of the scene is at the worst regions.
-pub fn numbers(found: &Comparison, there: &[There]) -> Value {
-    let m = &found.measures;
-    json!({
-        "width": found.width,
-        "height": found.height,
-        "scale": found.scale.name(),
-        "rmse": m.rmse,
-        "psnr": m.psnr.is_finite().then_some(m.psnr),
-        "ssim": m.ssim,
-        "flip": m.flip,
-        "hdr_flip": m.hdr_flip,
-        "largest": m.largest.map(|l| json!({
-            "difference": l.difference, "x": l.x, "y": l.y,
-            "reference": l.reference.to_array(), "picture": l.test.to_array(),
-        })),
-        "over_tolerance": { "pixels": m.over_tolerance,
-            "share": m.over_tolerance as f64 / (f64::from(found.width) * f64::from(found.height)) },
-        "not_finite": { "reference": m.not_finite[0], "picture": m.not_finite[1], "first": m.first_not_finite },
-        "findings": found.findings.iter().map(|f| json!({ "kind": f.kind, "words": f.words, "explained": f.explained }))
-            .collect::<Vec<_>>(),
-        "regions": found.regions.iter().enumerate().map(|(i, r)| json!({
-            "x": r.x, "y": r.y, "width": r.width, "height": r.height, "pixels": r.pixels,
-            "mean_difference": r.mean_difference.to_array(), "share": r.share, "worst": r.worst,
-            "there": there.get(i).map(There::json),
-        })).collect::<Vec<_>>(),
-    })
 }
 
 /// Warns of what is left out.

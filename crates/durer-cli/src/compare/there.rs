@@ -1,7 +1,7 @@
 //! What of the scene is where pictures differ.
 
 use super::stage::Stage;
-use crate::explain::{deep, shown};
+use crate::explain::shown;
 use crate::failure::Failure;
 use crate::open::Opened;
 use durer::image::Transfer;
@@ -51,7 +51,7 @@ fn along(opened: &Opened, job: &Job, ray: &Ray, transfer: Transfer) -> Result<(O
         t: at.hit.t,
         normal: at.surface.n_shade.to_array(),
     });
-    let light = deep(|| explain_ray(world, job, ray, SampleId::default()))?;
+    let light = explain_ray(world, job, ray, SampleId::default());
     let lines = light.iter().flat_map(|light| ray_text(light, &names, &Telling { transfer, ..Telling::default() }));
     Ok((hit, lines.map(|line| shown(&line, false, transfer)).collect()))
 }

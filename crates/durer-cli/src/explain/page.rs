@@ -1,9 +1,9 @@
 //! The explanation as a page of its own.
 
-use super::outlines::{lights, outlines};
 use crate::failure::Failure;
 use crate::page;
 use durer::image::{Image, Layer, Transfer};
+use durer::report::{lights, outlines};
 use durer::world::World;
 use serde_json::{Value, json};
 

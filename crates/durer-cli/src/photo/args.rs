@@ -1,7 +1,6 @@
 //! The command line of `durer photo`.
 
-use crate::job::JobArgs;
-use crate::options::SceneArgs;
+use crate::options::{JobArgs, SceneArgs};
 use clap::{ArgGroup, Args, Subcommand};
 use std::path::PathBuf;
 

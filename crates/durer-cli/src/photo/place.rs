@@ -11,6 +11,7 @@ use crate::failure::failed;
 use crate::failure::{Failure, bad};
 use crate::guard::Guard;
 use crate::open::{Opened, load_options, read};
+use crate::options::accel;
 use crate::output::{encode, format, save};
 use crate::{job, progress};
 use durer::diag::{Diagnostics, Files};
@@ -40,7 +41,7 @@ pub fn run(args: &PlaceArgs) -> Result<(), Failure> {
     let [width, height] = photo.size();
     let mut options = load_options(&args.reading);
     let threads = args.threads.map(usize::from);
-    (options.accel, options.threads) = (job::accel(&args.job)?, threads);
+    (options.accel, options.threads) = (accel(&args.job)?, threads);
     let mut with = read(&args.scene, &options, args.quiet, &mut guard)?.compile(&options, &mut guard)?;
     let stand_in = stand_ins(&with, &args.stand_in)?;
     let mut job = job::job(&args.job, None, &with.loaded, false)?;

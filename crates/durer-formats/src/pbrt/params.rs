@@ -1,6 +1,5 @@
 //! Lists of parameters: `"float radius" [ 2 ]`.
 
-use super::given::spectrum_of;
 use super::language::Language;
 use super::lexer::{Found, Lexer, Token};
 use crate::model::Input;
@@ -8,7 +7,6 @@ use crate::report::counted;
 use crate::said::{Said, meant};
 use durer_diag::{Diagnostic, Span};
 use durer_scene::math::{Vec2, Vec3};
-use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::RgbSpace;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -331,7 +329,7 @@ impl<'s> Params<'s> {
     }
 
     /// The parameter of a name and one of some types, with at least one value.
-    fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
+    pub(super) fn of(&self, name: &'static str, kinds: &[Kind], wanted: &str) -> Option<&Param> {
         let found = self.get(name)?;
         if !kinds.contains(&found.kind) {
             self.said.bad(found.at, format!("`{name}` must be {wanted}"));
@@ -398,12 +396,6 @@ impl<'s> Params<'s> {
 
     pub fn triple(&self, name: &'static str) -> Option<Vec3> {
         self.triples(name).map(|all| all[0])
-    }
-
-    /// A colour or spectrum that is no texture.
-    pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
-        let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
-        spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
     }
 
     /// Takes note that parameters are known which have no counterpart here.

@@ -1,32 +1,32 @@
-//! Separable filters on bands of rows.
+//! Separable filters, applied in bands of rows.
 
 use rayon::prelude::*;
 
-/// Rows that one task filters. Those beyond its ends are filtered twice, so few rows would waste
-/// work.
+/// Number of rows that a task filters. Rows beyond the ends of a band are filtered twice, so small
+/// bands would waste work.
 const BAND: usize = 64;
 
-/// A filter along one axis that is symmetric about its middle, or antisymmetric.
+/// A symmetric or antisymmetric filter along one axis.
 #[derive(Clone, Debug)]
 pub(super) struct Kernel {
-    /// The weight in the middle and those after it.
+    /// Weights from the centre outwards.
     half: Vec<f32>,
-    /// 1, or -1 where weights before the middle have the opposite sign.
+    /// 1 if symmetric, -1 if antisymmetric.
     sign: f32,
 }
 
 impl Kernel {
-    /// The symmetric filter of weights at 0, 1, ... `radius`.
+    /// Creates a symmetric filter with weights at 0, 1, ..., `radius`.
     pub fn even(radius: usize, weight: impl Fn(f64) -> f64) -> Kernel {
         Kernel { half: (0..=radius).map(|at| weight(at as f64) as f32).collect(), sign: 1.0 }
     }
 
-    /// The antisymmetric filter of weights at 0, 1, ... `radius`.
+    /// Creates an antisymmetric filter with weights at 0, 1, ..., `radius`.
     pub fn odd(radius: usize, weight: impl Fn(f64) -> f64) -> Kernel {
         Kernel { sign: -1.0, ..Kernel::even(radius, weight) }
     }
 
-    /// A Gaussian whose weights sum to 1.
+    /// Creates a Gaussian whose weights sum to 1.
     pub fn gaussian(radius: usize, deviation: f64) -> Kernel {
         let weight = |x: f64| f64::from(durer_bvh::math::fp::exp((-0.5 * x * x / (deviation * deviation)) as f32));
         let sum: f64 = weight(0.0) + 2.0 * (1..=radius).map(|x| weight(x as f64)).sum::<f64>();
@@ -37,14 +37,14 @@ impl Kernel {
         self.half.len() - 1
     }
 
-    /// Filters a row that has `margin` values too many at each end.
+    /// Filters along a row with `margin` extra values at each end.
     fn along(&self, padded: &[f32], margin: usize, out: &mut [f32]) {
         let width = out.len();
         let from = |shift: usize| &padded[shift..shift + width];
         self.sum(out, from(margin), |k| (from(margin - k), from(margin + k)));
     }
 
-    /// Filters across rows: `row(k)` is the one `k` below the middle.
+    /// Filters across rows: `row(k)` is the row `k` below the central one.
     fn across<'r>(&self, row: impl Fn(isize) -> &'r [f32], out: &mut [f32]) {
         self.sum(out, row(0), |k| (row(-(k as isize)), row(k as isize)));
     }
@@ -62,15 +62,15 @@ impl Kernel {
     }
 }
 
-/// A filter of two axes applied to one of several planes: the plane's number, the kernels along
-/// rows and across them.
+/// A separable filter applied to a plane: index of the plane, kernel along rows, and kernel across
+/// rows.
 pub(super) type Filter<'k> = (usize, &'k Kernel, &'k Kernel);
 
-/// Filters the planes of a picture, and hands each row of the results to `finish`, which makes a
-/// row of numbers of them.
+/// Filters the planes of a picture and passes each row of results to `finish`, which computes a row
+/// of output values.
 ///
-/// `planes(y, rows)` writes row `y` of each plane. Beyond its edges a picture continues with its
-/// edge.
+/// `planes(y, rows)` writes row `y` of each plane. Beyond its edges, a picture is extended by its
+/// edge pixels.
 pub(super) fn filter_rows(
     (width, height): (usize, usize),
     plane_count: usize,
@@ -83,7 +83,7 @@ pub(super) fn filter_rows(
     out.par_chunks_mut(width * BAND).enumerate().for_each(|(band, out)| {
         let first = band * BAND;
         let (low, high) = (first.saturating_sub(radius), (first + out.len() / width + radius).min(height));
-        // Each filter's rows, filtered along.
+        // Rows of each filter, filtered along.
         let mut rows = vec![vec![0.0; width * (high - low)]; filters.len()];
         let mut source = vec![vec![0.0; width]; plane_count];
         let mut padded = vec![vec![0.0; width + 2 * radius]; plane_count];
@@ -114,7 +114,7 @@ pub(super) fn filter_rows(
     out
 }
 
-/// The mean of many numbers, in an order that does not depend on threads.
+/// Mean of many numbers, summed in an order that does not depend on threads.
 pub(super) fn mean(values: &[f32]) -> f64 {
     values.iter().map(|&value| f64::from(value)).sum::<f64>() / values.len().max(1) as f64
 }

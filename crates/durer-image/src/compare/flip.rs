@@ -1,9 +1,8 @@
-//! FLIP: how large a difference appears to someone who flips between two pictures.
+//! FLIP: the perceived difference when flipping between two pictures.
 //!
 //! Source: Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström and Fairchild, *FLIP: A Difference
-//! Evaluator for Alternating Images*, HPG 2020; for light of any range Andersson, Nilsson, Shirley
-//! and Akenine-Möller, *Visualizing Errors in Rendered High Dynamic Range Images*, Eurographics
-//! 2021.
+//! Evaluator for Alternating Images*, HPG 2020; for HDR pictures Andersson, Nilsson, Shirley and
+//! Akenine-Möller, *Visualizing Errors in Rendered High Dynamic Range Images*, Eurographics 2021.
 
 mod color;
 mod hdr;
@@ -15,27 +14,27 @@ use std::f64::consts::PI;
 
 pub(super) use hdr::hdr_flip;
 
-/// Pixels for a degree of the eye: a screen 0.7 m wide with 3840 pixels, 0.7 m away.
+/// Pixels per degree of the visual field: a screen 0.7 m wide with 3840 pixels, 0.7 m away.
 const PIXELS_PER_DEGREE: f64 = 3840.0 * PI / 180.0;
 
-/// Parameters of the contrast sensitivity functions: weight and scale of Gaussians. 2020, table 1.
+/// Parameters of the contrast sensitivity functions: weights and scales of Gaussians. 2020, table
+/// 1.
 const ACHROMATIC: f64 = 0.0047;
 const RED_GREEN: f64 = 0.0053;
 const BLUE_YELLOW: [(f64, f64); 2] = [(34.1, 0.04), (13.5, 0.025)];
 
-/// Distance between the peaks of the filter that finds edges, in degrees. 2020, section 4.2.
+/// Distance between the peaks of the edge filter, in degrees. 2020, section 4.2.
 const EDGE_WIDTH: f64 = 0.082;
 
-/// Exponents of the differences of colour and of features, and the knee of the former. 2020,
-/// sections 4.1 to 4.3.
+/// Exponent of colour differences, and the knee of their mapping. 2020, sections 4.1 to 4.3.
 const COLOR_EXPONENT: f32 = 0.7;
 const KNEE: (f32, f32) = (0.4, 0.95);
 
-/// Everything that depends on the viewer alone.
+/// Filters and constants that depend only on the viewer.
 struct Filters {
     achromatic: Kernel,
     red_green: Kernel,
-    /// Each with its weight: the sum of two Gaussians is not separable, but each of them is.
+    /// Gaussians with their weights. Their sum is not separable, but each of them is.
     blue_yellow: [(f32, Kernel); 2],
     smooth: Kernel,
     edge: Kernel,
@@ -49,7 +48,7 @@ impl Filters {
         let radius = (3.0 * (BLUE_YELLOW[0].1 / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE).ceil() as usize;
         let deviation = |b: f64| (b / (2.0 * PI * PI)).sqrt() * PIXELS_PER_DEGREE;
         let csf = |b: f64| Kernel::gaussian(radius, deviation(b));
-        // Each Gaussian's part in the sum of both, from its sum over the square of pixels.
+        // Weight of each Gaussian in the sum of both, from its sum over the square of pixels.
         let part = |(a, b): (f64, f64)| {
             let sigma = deviation(b);
             let row: f64 = (-(radius as i32)..=radius as i32).map(|x| gauss(f64::from(x), sigma)).sum();
@@ -58,8 +57,8 @@ impl Filters {
         let total: f64 = BLUE_YELLOW.iter().map(|&row| part(row)).sum();
         let blue_yellow = BLUE_YELLOW.map(|row| ((part(row) / total) as f32, csf(row.1)));
 
-        // Feature filters: first and second derivative of a Gaussian, positive weights summing to 1
-        // and negative to -1.
+        // Feature filters: first and second derivative of a Gaussian, with positive weights summing
+        // to 1 and negative ones to -1.
         let sigma = 0.5 * EDGE_WIDTH * PIXELS_PER_DEGREE;
         let radius = (3.0 * sigma).ceil() as usize;
         let first = |x: f64| x * gauss(x, sigma);
@@ -90,23 +89,23 @@ fn gauss(x: f64, deviation: f64) -> f64 {
     f64::from(fp::exp((-0.5 * x * x / (deviation * deviation)) as f32))
 }
 
-/// What is seen at each pixel of a picture's row.
+/// Perceived colour and features of a pixel.
 struct Seen {
     /// Colour in Hunt-adjusted L*a*b*.
     color: Vec3,
-    /// Strength of edges and of points.
+    /// Strengths of edges and of points.
     edge: f32,
     point: f32,
 }
 
-/// The error of each pixel, from 0 to 1, between two pictures of linear light from 0 to 1.
+/// Computes the error of each pixel, from 0 to 1, between two pictures of linear light from 0 to 1.
 ///
-/// The error map of 2020, for the usual distance of a viewer, 67 pixels a degree.
+/// This is the error map of 2020 for the usual viewing distance, 67 pixels per degree.
 pub(super) fn flip(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Vec<f32> {
     flip_of((width, height), |index| a[index], |index| b[index])
 }
 
-/// As [`flip`], of pictures whose pixels are computed where they are wanted.
+/// Computes [`flip`] of pictures whose pixels are computed on demand.
 fn flip_of(
     (width, height): (usize, usize),
     a: impl Fn(usize) -> Vec3 + Sync,
@@ -114,7 +113,7 @@ fn flip_of(
 ) -> Vec<f32> {
     let filters = Filters::new();
     let one = picture_filters(&filters);
-    // The planes of the first picture, then those of the second.
+    // The planes of the first picture, then of the second.
     let both: Vec<Filter> = one.iter().copied().chain(one.iter().map(|&(p, x, y)| (p + 3, x, y))).collect();
     let planes = |y: usize, rows: &mut [Vec<f32>]| {
         let (first, second) = rows.split_at_mut(3);
@@ -130,8 +129,8 @@ fn flip_of(
     filter_rows((width, height), 6, &both, planes, finish)
 }
 
-/// Luminance and the two differences of colour, as YCxCz has them but for its factors: filters are
-/// linear.
+/// Luminance and two colour differences, as in YCxCz but for constant factors, since the filters
+/// are linear.
 fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Vec3) {
     let [luminance, red_green, blue_yellow] = rows else { unreachable!("three planes") };
     for (x, ((l, rg), by)) in luminance.iter_mut().zip(red_green).zip(blue_yellow).enumerate() {
@@ -140,7 +139,7 @@ fn opponent_row(start: usize, rows: &mut [Vec<f32>], light: impl Fn(usize) -> Ve
     }
 }
 
-/// What is filtered of one picture: four parts of colour, two derivatives along each axis.
+/// Filters of one picture: four for colour, and two derivatives along each axis.
 fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
     let Filters { achromatic, red_green, blue_yellow: [(_, wide), (_, narrow)], smooth, edge, point, .. } = filters;
     [
@@ -159,7 +158,7 @@ fn picture_filters(filters: &Filters) -> [Filter<'_>; 8] {
 fn seen(filters: &Filters, rows: &[Vec<f32>], x: usize) -> Seen {
     let [l, rg, wide, narrow, edge_x, edge_y, point_x, point_y] = std::array::from_fn(|filter| rows[filter][x]);
     let by = filters.blue_yellow[0].0 * wide + filters.blue_yellow[1].0 * narrow;
-    // What no screen shows is not seen.
+    // Clip colours that a screen cannot show.
     let rgb = rgb_from_xyz(Vec3::new(l + rg, l, l - by) * WHITE).clamp(Vec3::ZERO, Vec3::ONE);
     Seen {
         color: hunt_lab(xyz_from_rgb(rgb) / WHITE),
@@ -174,8 +173,8 @@ fn error(filters: &Filters, a: &Seen, b: &Seen) -> f32 {
     if distance == 0.0 {
         return 0.0;
     }
-    // Small differences take nearly all of the range; the rest is for those that no common pictures
-    // have.
+    // Small differences take most of the range; the rest is for differences that do not occur in
+    // common pictures.
     let (difference, knee) = (fp::pow(distance, COLOR_EXPONENT), KNEE.0 * filters.largest);
     let color = if difference < knee {
         KNEE.1 / knee * difference

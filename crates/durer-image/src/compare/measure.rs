@@ -1,4 +1,4 @@
-//! The numbers of a comparison.
+//! Measures of a comparison.
 
 use super::filter::mean;
 use super::flip::{flip, hdr_flip};
@@ -6,55 +6,57 @@ use super::picture::{Pair, Scale, linear_to_srgb};
 use super::ssim::ssim;
 use durer_bvh::math::{Vec3, fp};
 
-/// Numbers that say how much two pictures differ.
+/// Measures of the difference between two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measures {
-    /// Root of the mean squared difference of all channels, of values from 0 to 1 or of light.
+    /// Root of the mean squared difference over all channels, in values from 0 to 1 or in linear
+    /// light.
     pub rmse: f64,
-    /// Ratio of the peak 1 to `rmse`, in decibels: infinite for equal pictures.
+    /// Ratio of the peak value 1 to `rmse`, in decibels; infinite for equal pictures.
     pub psnr: f64,
-    /// Mean structural similarity of luma as a screen shows it, at most 1; `None` for a picture
-    /// that does not exceed the window of 11 pixels.
+    /// Mean structural similarity of luma as displayed, at most 1; `None` if the picture is smaller
+    /// than the window of 11 pixels.
     pub ssim: Option<f64>,
-    /// Mean FLIP error, from 0 to 1, of the pictures as a screen shows them.
+    /// Mean FLIP error of the pictures as displayed, from 0 to 1.
     pub flip: f64,
-    /// Mean HDR-FLIP error, from 0 to 1; for light only.
+    /// Mean HDR-FLIP error, from 0 to 1; only for linear light.
     pub hdr_flip: Option<f64>,
-    /// The largest difference of a channel, and where; `None` where all finite numbers are equal.
+    /// Largest difference of a channel, and its pixel; `None` if all finite values are equal.
     pub largest: Option<Largest>,
-    /// Pixels with a channel that differs by more than the tolerance.
+    /// Number of pixels with a channel that differs by more than the tolerance.
     pub over_tolerance: usize,
-    /// Pixels with a number that is not finite, in the reference and in the other picture.
+    /// Numbers of pixels with a value that is not finite, in the reference and in the other
+    /// picture.
     pub not_finite: [usize; 2],
-    /// Column and row of the first pixel of the other picture that is not finite where the
-    /// reference is otherwise.
+    /// Column and row of the first pixel where either picture is not finite and the other one
+    /// differs.
     pub first_not_finite: Option<(u32, u32)>,
 }
 
-/// The largest difference, and where it is.
+/// Largest difference and its pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Largest {
-    /// Its amount.
+    /// Difference of the channel.
     pub difference: f32,
-    /// Column of its pixel.
+    /// Column of the pixel.
     pub x: u32,
-    /// Row of its pixel.
+    /// Row of the pixel.
     pub y: u32,
-    /// The pixel in the reference.
+    /// Pixel of the reference.
     pub reference: Vec3,
-    /// The pixel in the other picture.
+    /// Pixel of the other picture.
     pub test: Vec3,
 }
 
-/// Slack for differences that are computed from 255ths: a tolerance of 2/255 means two steps.
+/// Slack for rounding of differences between 255ths: a tolerance of 2/255 means two steps.
 const SLACK: f32 = 1e-6;
 
-/// Whether two pixels differ by more than a tolerance.
+/// Returns true if two pixels differ by more than a tolerance.
 pub(super) fn over(reference: Vec3, test: Vec3, tolerance: f32) -> bool {
     (reference - test).abs().max_element() > tolerance + SLACK
 }
 
-/// The measures, and the map of FLIP errors (of HDR-FLIP for light).
+/// Computes the measures and the map of FLIP errors (HDR-FLIP for linear light).
 pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
     let mut sum = 0.0;
     let mut over_tolerance = pair.finite_differs.len();
@@ -75,7 +77,7 @@ pub(super) fn measure(pair: &Pair, tolerance: f32) -> (Measures, Vec<f32>) {
     let rmse = (sum / (3.0 * pair.reference.len() as f64)).sqrt();
     let equal = sum == 0.0;
     let (ssim, flip_map) = if equal {
-        // Whoever compares equal pictures should not wait.
+        // Fast path for equal pictures.
         let large = pair.width.min(pair.height) >= 11;
         (large.then_some(1.0), vec![0.0; pair.reference.len()])
     } else {

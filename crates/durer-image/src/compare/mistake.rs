@@ -1,5 +1,5 @@
-//! The usual mistakes, recognised by making them: each is made in the reference, and whichever
-//! makes it most like the picture explains the difference.
+//! Detection of common mistakes: each is applied to the reference, and the one that makes it most
+//! similar to the picture explains the difference.
 
 mod flow;
 mod parts;
@@ -21,34 +21,33 @@ use sample::{Sample, View};
 /// A mistake that explains a difference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Finding {
-    /// Which one, as a keyword: `mirrored`, `shifted`, `factor` and so on, one for each kind of
+    /// Keyword of the mistake, such as `mirrored`, `shifted`, or `factor`; one for each kind of
     /// [`Finding::words`].
     pub kind: &'static str,
-    /// What it is, in words about the picture, without a full stop: "it is mirrored left to right".
+    /// Description of the mistake, without a full stop: "it is mirrored left to right".
     pub words: String,
-    /// The share of the squared difference, from 0 to 1, that it explains together with the
-    /// findings before it.
+    /// Share of the squared difference, from 0 to 1, explained by this finding and the ones before
+    /// it.
     ///
-    /// Measured on all pixels of small pictures and on 100 000 of others.
+    /// Measured on all pixels of small pictures, and on 100 000 pixels of larger ones.
     pub explained: f64,
 }
 
-/// Explained well enough to look no further.
+/// Minimum share of the difference that a mistake in a part of the picture must explain.
 const WELL: f64 = 0.9;
-/// What more of the difference is left than this nobody is told a theory of: a wrong one costs more
-/// than none.
+/// Unexplained share above which findings are dropped: a wrong explanation is worse than none.
 const MAX_LEFT: f64 = 0.05;
-/// And this, of rules with numbers that were fitted.
+/// Unexplained share above which findings are dropped if they have fitted parameters.
 const MAX_LEFT_FITTED: f64 = 0.02;
-/// So few pixels that differ are no pattern.
+/// Minimum number of differing pixels that may form a pattern.
 const FEWEST: usize = 12;
-/// Explained well enough to be said.
+/// Minimum share of the remaining difference that a finding must explain.
 const ENOUGH: f64 = 0.5;
-/// At most so many mistakes are sought behind each other.
+/// Maximum number of successive mistakes.
 const STEPS: usize = 3;
 
-/// The mistakes that explain the difference of two pictures best; none where none explains half of
-/// it.
+/// Finds the mistakes that best explain the difference of two pictures; empty if none explains half
+/// of it.
 pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     let mut reference = pair.reference.clone();
     let test = View::of(pair, &pair.test);
@@ -62,7 +61,7 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
         let view = View::of(pair, &reference);
         let samples = sample::samples(&view, &test);
         let Some((rule, rest)) = best_rule(&view, &test, &samples) else { break };
-        // What explains less than half of what is left is a guess.
+        // A rule that explains less than half of the remaining difference is a guess.
         if rest > ENOUGH * difference(&samples) {
             break;
         }
@@ -75,7 +74,7 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
         }
         reference = rule.made(&view);
     }
-    // A shift leaves what came in over the edge.
+    // A shift cannot explain the pixels that enter at the edge.
     let most = if fitted { MAX_LEFT_FITTED } else { MAX_LEFT };
     if !findings.is_empty() && (left <= most || moved && left < 0.3) {
         return findings;
@@ -91,25 +90,25 @@ pub(super) fn explain(pair: &Pair) -> Vec<Finding> {
     }
 }
 
-/// The squared difference of samples.
+/// Sum of squared differences over samples.
 fn difference(samples: &[Sample]) -> f64 {
     samples.iter().map(|s| f64::from((s.test - s.reference).length_squared())).sum()
 }
 
-/// The rule that leaves the least of the difference, and what it leaves: of nearly equal ones the
-/// simplest.
+/// Finds the rule that leaves the smallest difference, and that difference. Of nearly equal rules,
+/// the simplest one is chosen.
 fn best_rule(reference: &View, test: &View, samples: &[Sample]) -> Option<(Rule, f64)> {
     let rules = candidates(reference, test, samples);
     let left =
         |rule: &Rule| -> f64 { samples.iter().map(|s| f64::from(rule.rest(reference, s).length_squared())).sum() };
     let rests: Vec<f64> = rules.par_iter().map(left).collect();
     let least = rests.iter().copied().fold(f64::INFINITY, f64::min);
-    // Candidates come in the order of their freedom to fit anything.
+    // Candidates are sorted by increasing freedom to fit any picture.
     let near = 1.25 * least + 0.01 * difference(samples);
     rules.into_iter().zip(rests).find(|(_, rest)| *rest <= near)
 }
 
-/// All rules that could be meant, with their numbers fitted; those with fewer numbers first.
+/// Candidate rules with fitted parameters, sorted by increasing number of parameters.
 fn candidates(reference: &View, test: &View, samples: &[Sample]) -> Vec<Rule> {
     let square = reference.width == reference.height;
     let mut rules: Vec<Rule> = TURNS.iter().filter(|t| square || !t.exchanges()).map(|&t| Rule::Turned(t)).collect();
@@ -128,7 +127,7 @@ fn candidates(reference: &View, test: &View, samples: &[Sample]) -> Vec<Rule> {
     rules
 }
 
-/// What a colour is in 255ths, to say it.
+/// Rounds a colour to 255ths for messages.
 fn bytes(color: Vec3) -> [i32; 3] {
     color.to_array().map(|value| (value * 255.0).round() as i32)
 }

@@ -1,7 +1,7 @@
-//! How two pictures differ, in numbers, places and words.
+//! Comparison of pictures.
 //!
-//! [`compare()`] gives the usual measures (RMSE, PSNR, SSIM, FLIP), the regions that differ most,
-//! and which of the usual mistakes explains the difference ([`Finding`]).
+//! [`compare()`] computes the usual measures (RMSE, PSNR, SSIM, FLIP), the regions that differ
+//! most, and the common mistake that explains the difference ([`Finding`]).
 
 mod filter;
 mod flip;
@@ -25,38 +25,38 @@ pub use picture::{Picture, Scale};
 pub use picture::{linear_to_srgb, srgb_to_linear};
 pub use regions::Region;
 
-/// What counts as the same.
+/// Options of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The largest difference of a channel that does not count: of values from 0 to 1, or of light.
-    /// 0 or more.
+    /// Maximum difference of a channel that is ignored, in values from 0 to 1 or in linear light.
+    /// At least 0.
     pub tolerance: f32,
-    /// The share of pixels, from 0 to 1, that may differ by more.
+    /// Share of pixels, from 0 to 1, that may exceed the tolerance.
     pub allowed: f64,
-    /// What makes eight bits of a floating-point picture where the other picture has those.
+    /// Transfer function for a floating-point picture that is compared with an 8-bit one.
     pub transfer: Transfer,
 }
 
 impl Default for Options {
-    /// One 255th, which rounding may make, in every pixel.
+    /// Tolerance of 1/255 in every pixel, which covers rounding.
     fn default() -> Self {
         Options { tolerance: 1.0 / 255.0, allowed: 0.0, transfer: Transfer::Srgb }
     }
 }
 
-/// Whether two pictures are the same.
+/// Result of a comparison.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// Every value is equal.
+    /// The values are equal everywhere.
     Identical,
-    /// No more pixels than allowed differ by more than the tolerance.
+    /// At most the allowed share of pixels exceeds the tolerance.
     Same,
-    /// More do.
+    /// Too many pixels exceed the tolerance.
     Different,
 }
 
 impl Verdict {
-    /// Its name in reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Verdict::Identical => "identical",
@@ -66,31 +66,30 @@ impl Verdict {
     }
 }
 
-/// How a picture differs from a reference.
+/// Difference between a picture and a reference.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// What was compared: values for a screen or light.
+    /// Scale of the compared values.
     pub scale: Scale,
-    /// The numbers.
+    /// Measures of the difference.
     pub measures: Measures,
-    /// Whether they are the same.
+    /// Verdict.
     pub verdict: Verdict,
-    /// The mistakes that explain the difference, in the order in which they were made out: each is
-    /// what explains most of what those before it left. Empty where the pictures are the same,
-    /// or nothing explains the difference.
+    /// Mistakes that explain the difference, in the order of detection: each explains most of the
+    /// difference that the previous ones leave. Empty if the pictures are the same, or if no
+    /// mistake explains the difference.
     pub findings: Vec<Finding>,
-    /// Where the pictures differ by more than the tolerance, the worst first; at most
-    /// [`Region::LIMIT`].
+    /// Regions that differ by more than the tolerance, the worst first; at most [`Region::LIMIT`].
     pub regions: Vec<Region>,
-    /// The FLIP error of each pixel, from 0 to 1; of HDR-FLIP for light.
+    /// FLIP error of each pixel, from 0 to 1; HDR-FLIP for linear light.
     pub flip_map: Vec<f32>,
 }
 
-/// Why two pictures cannot be compared.
+/// Error of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum CompareError {
     /// The sizes differ.
@@ -104,7 +103,7 @@ pub enum CompareError {
         /// Width and height of the other picture.
         test: (u32, u32),
     },
-    /// A picture is not one.
+    /// A picture is invalid.
     #[error(transparent)]
     Image(#[from] ImageError),
 }
@@ -113,13 +112,13 @@ fn exchanged(a: (u32, u32), b: (u32, u32)) -> &'static str {
     if a == (b.1, b.0) { " (width and height are exchanged)" } else { "" }
 }
 
-/// Bytes of memory that reading and comparing two pictures takes.
+/// Memory in bytes that decoding and comparing two pictures takes.
 ///
 /// # Errors
-/// [`CompareError::Sizes`], which so is known before they are decoded.
+/// [`CompareError::Sizes`], before the pictures are decoded.
 pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, CompareError> {
-    // Both as they are, as they are shown, and what the measures take: 91 bytes a pixel were
-    // measured.
+    // Both pictures, their displayed versions, and the buffers of the measures; 91 bytes per pixel
+    // were measured.
     const BYTES_PER_PIXEL: u64 = 100;
     let [a, b] = [reference, test].map(|picture| picture.size());
     if a != b {
@@ -132,18 +131,18 @@ pub fn memory_needed(reference: &Encoded, test: &Encoded) -> Result<u64, Compare
 
 /// Compares a picture with a reference.
 ///
-/// Pictures of which one alone is for a screen are compared as a screen shows them. Pixels with
-/// numbers that are not finite count as over any tolerance unless both have the same ones, and are
-/// left out of the measures.
+/// If only one of the pictures is linear, both are compared as displayed. A pixel with a value that
+/// is not finite exceeds any tolerance, unless both pictures have the same values there, and is
+/// excluded from the measures.
 ///
 /// # Errors
-/// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not fit its
+/// [`CompareError::Sizes`], and [`CompareError::Image`] for a picture whose pixels do not match its
 /// size.
 pub fn compare(reference: &Picture, test: &Picture, options: &Options) -> Result<Comparison, CompareError> {
     let pair = Pair::new(reference, test, options.transfer)?;
     let equal = pair.reference == pair.test;
-    // Causes are sought while the measures are taken, for time: they are said only if the pictures
-    // turn out to differ.
+    // Search for causes in parallel with the measures, to save time. They are reported only if the
+    // pictures differ.
     let causes = || match equal {
         true => (Vec::new(), Vec::new()),
         false => (mistake::explain(&pair), regions::worst(&pair, options.tolerance)),

@@ -1,20 +1,20 @@
-//! Two pictures on one scale.
+//! Pairs of pictures on the same scale.
 
 use super::CompareError;
 use crate::{Depth, Encoded, Image, ImageError, Transfer, decode_linear, decode_srgb};
 use durer_bvh::math::{Vec3, fp};
 
-/// What the numbers of a picture are.
+/// Meaning of a picture's values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// Values for a screen, from 0 to 1, as they stand in an integer format (255ths in eight bits).
+    /// Display values from 0 to 1, as stored in integer formats (255ths for 8 bits).
     Display,
-    /// Linear light of any size, as floating-point formats hold it.
+    /// Linear light of any magnitude, as stored in floating-point formats.
     Linear,
 }
 
 impl Scale {
-    /// Its name in reports.
+    /// Name in reports.
     pub fn name(self) -> &'static str {
         match self {
             Scale::Display => "display",
@@ -22,7 +22,7 @@ impl Scale {
         }
     }
 
-    /// The linear light of a value.
+    /// Converts a value to linear light.
     pub(super) fn decode(self, value: Vec3) -> Vec3 {
         match self {
             Scale::Linear => value,
@@ -30,7 +30,7 @@ impl Scale {
         }
     }
 
-    /// The value for linear light: the inverse of [`Scale::decode`].
+    /// Converts linear light to a value: the inverse of [`Scale::decode`].
     pub(super) fn encode(self, light: Vec3) -> Vec3 {
         match self {
             Scale::Linear => light,
@@ -38,7 +38,7 @@ impl Scale {
         }
     }
 
-    /// A value as a file of this scale could hold it.
+    /// Clamps a value to the range of the scale.
     pub(super) fn clamp(self, value: Vec3) -> Vec3 {
         match self {
             Scale::Linear => value,
@@ -47,41 +47,41 @@ impl Scale {
     }
 }
 
-/// The curve of IEC 61966-2-1, from 0 to 1.
+/// Transfer function of IEC 61966-2-1, for values from 0 to 1.
 pub fn linear_to_srgb(light: f32) -> f32 {
     if light <= 0.0031308 { 12.92 * light } else { 1.055 * fp::pow(light, 1.0 / 2.4) - 0.055 }
 }
 
-/// The inverse curve of IEC 61966-2-1.
+/// Inverse transfer function of IEC 61966-2-1.
 pub fn srgb_to_linear(value: f32) -> f32 {
     if value <= 0.04045 { value / 12.92 } else { fp::pow((value + 0.055) / 1.055, 2.4) }
 }
 
-/// A picture as its file has it.
+/// A picture as stored in its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
-    /// The values, without any curve applied or undone.
+    /// Values, without any transfer function applied or undone.
     pub image: Image,
-    /// What they are.
+    /// Meaning of the values.
     pub scale: Scale,
 }
 
 impl Picture {
-    /// Reads a picture of any known format, by its content, or failing that by the extension of
+    /// Decodes a picture. The content determines the format or, failing that, the extension of
     /// `name`. Alpha is dropped.
     ///
     /// # Errors
-    /// Those of [`read`](crate::read).
+    /// Errors of [`read`](crate::read).
     pub fn read(bytes: &[u8], name: &str) -> Result<Picture, ImageError> {
         Picture::decode(&Encoded::open(bytes, name)?, u64::MAX)
     }
 
-    /// Reads one whose head was read, within so many bytes of memory.
+    /// Decodes a picture whose header was read, with at most `memory` bytes of memory.
     ///
     /// # Errors
-    /// Those of [`Encoded::read`].
+    /// Errors of [`Encoded::read`].
     pub fn decode(encoded: &Encoded, memory: u64) -> Result<Picture, ImageError> {
-        // Sixteen bits a channel of PNG and PPM are for a screen too.
+        // PNG and PPM with 16 bits per channel contain display values, too.
         let scale = if encoded.depth() == Depth::Float { Scale::Linear } else { Scale::Display };
         Ok(Picture { image: encoded.read(memory, decode_linear)?, scale })
     }
@@ -94,16 +94,16 @@ pub(super) struct Pair {
     pub scale: Scale,
     pub reference: Vec<Vec3>,
     pub test: Vec<Vec3>,
-    /// Pixels with a number that is not finite, in the reference and in the other; both are 0 there
-    /// in both pictures.
+    /// Pixels with a value that is not finite, in the reference and in the other picture. Both
+    /// pictures are set to 0 at each of these pixels.
     pub not_finite: [Vec<usize>; 2],
-    /// Pixels of which one alone is not finite, or the two are so in different ways.
+    /// Pixels where one picture is not finite and the other one differs.
     pub finite_differs: Vec<usize>,
 }
 
 impl Pair {
-    /// Brings two pictures to one scale: light is encoded to eight bits by `transfer` where the
-    /// other picture has those.
+    /// Converts two pictures to the same scale. If only one is linear, `transfer` encodes it to 8
+    /// bits.
     pub fn new(reference: &Picture, test: &Picture, transfer: Transfer) -> Result<Pair, CompareError> {
         let size = |picture: &Picture| (picture.image.width, picture.image.height);
         if size(reference) != size(test) {
@@ -153,7 +153,7 @@ impl Pair {
         }
     }
 
-    /// Linear light of both pictures, from 0 to 1, as a screen shows it.
+    /// Linear light of both pictures as displayed, from 0 to 1.
     pub fn shown(&self) -> [Vec<Vec3>; 2] {
         let table: [f32; 256] = std::array::from_fn(|value| decode_srgb(value as u8));
         // Nearly all values are 255ths.

@@ -1,38 +1,38 @@
-//! Where two pictures differ most.
+//! Regions where two pictures differ most.
 
 use super::measure::over;
 use super::picture::Pair;
 use durer_bvh::math::Vec3;
 
-/// A part of a picture that differs from the reference by more than the tolerance.
+/// A region that differs from the reference by more than the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Region {
-    /// Its leftmost column.
+    /// Leftmost column.
     pub x: u32,
-    /// Its top row.
+    /// Top row.
     pub y: u32,
-    /// Columns.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Pixels in it that differ.
+    /// Number of differing pixels in the region.
     pub pixels: usize,
-    /// Mean of (picture - reference) over those pixels, for each channel: negative where the
+    /// Mean of (picture - reference) over those pixels, for each channel; negative where the
     /// picture is darker.
     pub mean_difference: Vec3,
-    /// Its share of the squared difference of the whole picture, from 0 to 1.
+    /// Share of the picture's total squared difference, from 0 to 1.
     pub share: f64,
-    /// Column and row of the pixel that differs most: the one to ask about.
+    /// Column and row of the pixel that differs most, a good one to explain.
     pub worst: (u32, u32),
 }
 
 impl Region {
-    /// The most that are given.
+    /// Maximum number of regions.
     pub const LIMIT: usize = 10;
 }
 
-/// Cells along the longer side of a picture: pixels that differ belong together where their cells
-/// touch.
+/// Number of cells along the longer side of a picture. Differing pixels belong to the same region
+/// if their cells touch.
 const CELLS: usize = 64;
 
 #[derive(Clone, Copy)]
@@ -67,7 +67,7 @@ impl Found {
     }
 }
 
-/// The regions with the largest squared difference, the worst first.
+/// Finds the regions with the largest squared difference, the worst first.
 pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     let side = pair.width.max(pair.height).div_ceil(CELLS).max(2);
     let (columns, rows) = (pair.width.div_ceil(side), pair.height.div_ceil(side));
@@ -111,7 +111,7 @@ pub(super) fn worst(pair: &Pair, tolerance: f32) -> Vec<Region> {
     regions.into_iter().map(region).collect()
 }
 
-/// Joins cells that touch, at corners too. Takes them out.
+/// Joins cells that touch, including at corners, and clears them.
 fn joined(cells: &mut [Found], columns: usize, rows: usize) -> Vec<Found> {
     let mut regions = Vec::new();
     for start in 0..cells.len() {

@@ -7,18 +7,18 @@
 use super::filter::{Filter, Kernel, filter_rows};
 use durer_bvh::math::Vec3;
 
-/// Half the window; a picture must be larger than the window.
+/// Radius of the window. A picture must be larger than the window.
 const RADIUS: usize = 5;
 /// (0.01 L)^2 and (0.03 L)^2 for values whose range L is 1.
 const C1: f32 = 1e-4;
 const C2: f32 = 9e-4;
-/// Luma of Rec. 601, which the authors' program takes of colour pictures.
+/// Luma of Rec. 601, as the authors' program uses it for colour pictures.
 const LUMA: Vec3 = Vec3::new(0.299, 0.587, 0.114);
 
-/// The mean similarity of the luma of two pictures with values from 0 to 1, over all places where
+/// Mean similarity of the luma of two pictures with values from 0 to 1, over all positions where
 /// the window fits.
 ///
-/// From -1 to 1; 1 is for equal pictures. `None` for a picture that is smaller than the window.
+/// From -1 to 1, which means equal pictures. `None` if a picture is smaller than the window.
 pub(super) fn ssim(width: usize, height: usize, a: &[Vec3], b: &[Vec3]) -> Option<f64> {
     if width <= 2 * RADIUS || height <= 2 * RADIUS {
         return None;

@@ -1,4 +1,4 @@
-//! Closed forms, and values of the authors' own programs on pictures that are formulas.
+//! Tests with closed forms, and against the authors' programs on procedural pictures.
 
 use super::*;
 use crate::Image;
@@ -9,7 +9,7 @@ fn picture(width: u32, height: u32, scale: Scale, pixel: impl Fn(u32, u32) -> Ve
     Picture { image: Image::from_pixels(width, height, pixels).unwrap(), scale }
 }
 
-/// Two pictures of formulas: a gradient displaced in red, and a checkerboard displaced in blue.
+/// Two procedural pictures: a gradient displaced in red, and a checkerboard displaced in blue.
 fn patterns() -> [Picture; 2] {
     let pattern = |gradient: u32, shift: u32| {
         picture(64, 48, Scale::Display, move |x, y| {
@@ -41,7 +41,7 @@ fn near(value: f64, wanted: f64, within: f64) {
     assert!((value - wanted).abs() < within, "{value} is not {wanted}");
 }
 
-/// `flip_evaluator` 1.7, the authors' own package, gives these for the same pictures.
+/// Values computed by `flip_evaluator` 1.7, the authors' package, for the same pictures.
 #[test]
 fn flip_is_that_of_its_authors() {
     let [a, b] = patterns();
@@ -61,7 +61,7 @@ fn flip_is_that_of_its_authors() {
     near(compare(&a, &b, &Options::default()).unwrap().measures.hdr_flip.unwrap(), 0.158_005_94, 2e-5);
 }
 
-/// `structural_similarity` of scikit-image 0.26 with `gaussian_weights=True, sigma=1.5,
+/// Value of scikit-image 0.26: `structural_similarity` with `gaussian_weights=True, sigma=1.5,
 /// use_sample_covariance=False`.
 #[test]
 fn ssim_is_that_of_others() {
@@ -73,7 +73,7 @@ fn grey(width: u32, height: u32, value: f32) -> Picture {
     picture(width, height, Scale::Display, |_, _| Vec3::splat(value))
 }
 
-/// For constant pictures every measure is a formula.
+/// Measures of constant pictures are closed forms.
 #[test]
 fn constant_pictures() {
     let found = compare(&grey(20, 13, 0.4), &grey(20, 13, 0.5), &Options::default()).unwrap();
@@ -82,13 +82,13 @@ fn constant_pictures() {
     near(found.measures.ssim.unwrap(), (2.0 * 0.4 * 0.5 + 1e-4) / (0.16 + 0.25 + 1e-4), 1e-5);
     assert_eq!(found.measures.over_tolerance, 20 * 13);
     let found = compare(&grey(20, 13, 0.0), &grey(20, 13, 1.0), &Options::default()).unwrap();
-    // Black and white: a lightness of 100, by equations 6 and 7 of 2020, where green and blue are
-    // 203.3 apart; 100^0.7 and 203.3^0.7:
+    // Black and white differ in lightness by 100, and green and blue are 203.3 apart by equations 6
+    // and 7 of 2020; these are 100^0.7 and 203.3^0.7.
     let (distance, largest) = (25.119, 41.27);
     let color = 0.95 + (distance - 0.4 * largest) / (0.6 * largest) * 0.05;
     near(found.measures.flip, color, 1e-3);
     near(found.measures.psnr, 0.0, 1e-6);
-    // Too small for the window.
+    // Smaller than the window.
     assert_eq!(compare(&grey(10, 30, 0.0), &grey(10, 30, 1.0), &Options::default()).unwrap().measures.ssim, None);
 }
 
@@ -150,7 +150,7 @@ fn sizes_that_differ_are_an_error() {
     assert!(error.contains("3 x 4 and 4 x 3") && error.contains("exchanged"), "{error}");
 }
 
-/// Two patches that differ are two regions, with what is in them.
+/// Two differing patches are two regions, with correct properties.
 #[test]
 fn regions_are_found() {
     let a = grey(200, 100, 0.5);
@@ -169,8 +169,8 @@ fn regions_are_found() {
     near(regions[0].share, 150.0 / 154.0, 1e-6);
 }
 
-/// Bands of rows leave no trace: a picture taller than a band is filtered as the same picture on
-/// its side.
+/// Bands of rows leave no trace: a picture taller than a band gives the same result as its
+/// transpose.
 #[test]
 fn rows_and_columns_are_filtered_alike() {
     let tall = |change: f32| {

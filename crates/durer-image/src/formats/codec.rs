@@ -1,4 +1,4 @@
-//! Decoders and encoders of the `image` crate, with our limits and errors.
+//! Decoders and encoders of the `image` crate, with the limits and errors of this crate.
 
 use super::limits::room_for;
 use super::{Head, Image, Image8, ImageError, Raster};
@@ -6,8 +6,8 @@ use ::image::{ColorType, ExtendedColorType, ImageDecoder, ImageEncoder, ImageFor
 use durer_bvh::math::Vec3;
 use std::io::Cursor;
 
-/// The decoder of a format that the crate knows. It reads the head alone, so it needs no limits of
-/// its own.
+/// Creates a decoder for a format of the `image` crate. Reads only the header, so limits are not
+/// needed.
 pub fn decoder<'a>(
     name: &'static str,
     format: ImageFormat,
@@ -18,7 +18,7 @@ pub fn decoder<'a>(
     reader.into_decoder().map_err(|error| ImageError::malformed(name, error))
 }
 
-/// What a decoder knows before it decodes.
+/// Header as reported by a decoder.
 pub fn head(decoder: &impl ImageDecoder) -> Head {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let stored: u64 = color.bytes_per_pixel().into();
@@ -36,8 +36,8 @@ pub fn head(decoder: &impl ImageDecoder) -> Head {
     }
 }
 
-/// Decodes the pixels: grey becomes three equal channels, alpha is kept apart, sixteen bits become
-/// 0 to 1.
+/// Decodes the pixels. Grey becomes three equal channels, alpha is stored separately, and 16-bit
+/// values are scaled to [0, 1].
 pub fn raster(name: &'static str, decoder: impl ImageDecoder) -> Result<Raster, ImageError> {
     let ((width, height), color) = (decoder.dimensions(), decoder.color_type());
     let count = width as usize * height as usize;
@@ -87,7 +87,7 @@ fn filled<T>(count: usize, items: impl Iterator<Item = T>) -> Result<Vec<T>, Ima
     Ok(all)
 }
 
-/// Encodes eight-bit red, green and blue, or those and alpha.
+/// Encodes 8-bit RGB or RGBA.
 pub fn encode(
     name: &'static str,
     encoder: impl ImageEncoder,

@@ -1,8 +1,9 @@
-//! OpenEXR: 32-bit floats, packed without loss, any number of layers; by rows not packed, and one.
+//! OpenEXR: 32-bit floats, losslessly compressed, with any number of layers; row by row
+//! uncompressed, with a single layer.
 //!
-//! Layers share one part. The first colour layer has the plain channels R, G and B, which every
-//! viewer shows; those of the others bear the layer's name: `normals.R`. Where the camera does not
-//! see everything there is A as well, with the colours multiplied by it, as the format has it.
+//! Layers share one part. The first colour layer has the plain channels R, G, and B, which every
+//! viewer shows. The channels of the others begin with the layer's name: `normals.R`. A layer with
+//! coverage also has a channel A, and its colours are premultiplied, as the format requires.
 
 use super::limits::{pixel_limit, room_for};
 use super::{Depth, Format, Head, Image, ImageError, Layer, LayerKind, Raster, RowFormat, Strip, WriteOptions};
@@ -34,24 +35,25 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Rows one by one, not packed: so it is known where each begins before the first is there.
+/// Single rows, uncompressed, so that the offsets of all rows are known before the first is
+/// written.
 static ROWS: RowFormat = RowFormat { bottom_up: false, head: head_of_rows, row, png: false };
 
-/// The channels of a picture alone, in the order in which a row has them.
+/// Channels of a single layer, in the order of a row.
 fn letters(alpha: bool) -> &'static [&'static str] {
     if alpha { &["A", "B", "G", "R"] } else { &["B", "G", "R"] }
 }
 
-/// Bytes of the numbers of a row.
+/// Size of a row's values in bytes.
 fn row_bytes(strip: &Strip) -> u64 {
     4 * letters(strip.alpha).len() as u64 * u64::from(strip.width)
 }
 
-/// Magic number, version, attributes, and where each row begins.
+/// Magic number, version, attributes, and offsets of the rows.
 ///
 /// Source: *OpenEXR File Layout*, openexr.com.
 fn head_of_rows(strip: &Strip) -> Result<Vec<u8>, ImageError> {
-    // Before its numbers a row has its own and how many bytes there are.
+    // A row begins with its number and its size.
     let row = 8 + row_bytes(strip);
     if row > i32::MAX as u64 {
         return Err(ImageError::unsupported(NAME, "rows of more than 2 GiB"));
@@ -78,7 +80,7 @@ fn row(strip: &Strip, y: u32, pixels: &[Vec3], coverage: &[f32], out: &mut Vec<u
     (0..3).rev().for_each(|axis| out.extend(pixels.iter().flat_map(|pixel| pixel[axis].to_le_bytes())));
 }
 
-/// Blocks of 16 rows, deflated: without loss, and read by everything.
+/// Blocks of 16 rows with Deflate: lossless, and supported by all readers.
 const ENCODING: Encoding =
     Encoding { compression: Compression::ZIP16, blocks: Blocks::ScanLines, line_order: LineOrder::Increasing };
 
@@ -105,7 +107,7 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     let size = layers.first().map(|layer| (layer.image.width as usize, layer.image.height as usize));
     let mut picture = ExrImage::from_encoded_channels(size.unwrap_or_default(), ENCODING, AnyChannels::sort(list));
     for (name, text) in options.attributes {
-        // A text in this format is one of Latin-1; ours are ASCII.
+        // Texts are Latin-1 in this format; the attributes are ASCII.
         let (name, text) = (Text::new_or_none(format!("durer:{name}")), Text::new_or_none(text));
         if let (Some(name), Some(text)) = (name, text) {
             picture.layer_data.attributes.other.insert(name, AttributeValue::Text(text));
@@ -118,13 +120,13 @@ fn encode(layers: &[Layer], options: &WriteOptions, out: &mut Vec<u8>) -> Result
     Ok(())
 }
 
-/// Sorts the attributes in the head of a file of one part by their names.
+/// Sorts the attributes in the header of a single-part file by name.
 ///
-/// They are written in the order of a hash map, which is another one each time; but the same
-/// picture should be the same bytes. An attribute is its name, its type (both end with a zero), the
-/// length of its value, and the value; a zero ends the head.
+/// The encoder writes them in the order of a hash map, which varies, but equal pictures should have
+/// equal bytes. An attribute consists of its name and its type (both end with a zero), the length
+/// of its value, and the value. A zero ends the header.
 fn sort_attributes(file: &mut [u8]) {
-    // Behind the magic number and the version.
+    // Offset after the magic number and the version.
     const START: usize = 8;
     let mut attributes = Vec::new();
     let mut at = START;
@@ -142,8 +144,8 @@ fn sort_attributes(file: &mut [u8]) {
     file[START..at].copy_from_slice(&attributes.concat());
 }
 
-/// The part that is read, and its channels of red, green and blue: the first part with R, G and B;
-/// failing that, with Y; failing that, with a single channel, as grey.
+/// Selects the part to read and its channels for red, green, and blue: the first part with R, G,
+/// and B; failing that, one with Y; failing that, one with a single channel, as grey.
 fn chosen(meta: &MetaData) -> Result<(&Header, [Text; 3]), ImageError> {
     let flat = || meta.headers.iter().filter(|header| !header.deep);
     let has = |header: &Header, name: &str| header.channels.list.iter().any(|channel| channel.name.eq(name));
@@ -169,8 +171,8 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
         return Err(ImageError::unsupported(NAME, "channels of lower resolution"));
     }
     let Vec2(width, height) = header.layer_size;
-    // A block is decoded with all its channels, wanted or not: packed, unpacked, and sorted by
-    // rows.
+    // A block is decoded with all its channels, even unused ones: compressed, uncompressed, and
+    // sorted by rows.
     let Vec2(across, down) = header.max_block_pixel_size();
     let block = (across.min(width) as u64).saturating_mul(down.min(height) as u64);
     if block.saturating_mul(header.channels.bytes_per_pixel as u64) > pixel_limit(bytes.len()).saturating_mul(16) {
@@ -189,7 +191,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let meta = MetaData::read_from_buffered(bytes, false).map_err(malformed)?;
     let (header, [red, green, blue]) = chosen(&meta)?;
     let Vec2(width, height) = header.layer_size;
-    // Asked for at once, so that a lack of memory is an error.
+    // Allocated at once, so that lack of memory is an error.
     let room = RefCell::new(room_for(width * height, Vec3::ZERO)?);
     let is_grey = red == green;
     let channels = read().no_deep_data().largest_resolution_level().specific_channels();

@@ -1,4 +1,4 @@
-//! Radiance HDR: three mantissas of eight bits and one exponent, runs of equal bytes packed.
+//! Radiance HDR: three 8-bit mantissas and a shared exponent, run-length encoded.
 //!
 //! Source: Ward, *Real Pixels*, Graphics Gems II, and Radiance's `color.c`.
 
@@ -21,16 +21,16 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Rows of these lengths are packed; others are written pixel by pixel.
+/// Widths for which rows are compressed; others are written pixel by pixel.
 const PACKED_WIDTHS: std::ops::Range<u32> = 8..0x8000;
-/// The longest run, and the longest stretch without one.
+/// Maximum length of a run, and of a sequence of literals.
 const RUN_LIMIT: usize = 127;
 const LITERAL_LIMIT: usize = 128;
-/// A shorter run costs more than it saves.
+/// Minimum length of a run that saves space.
 const MIN_RUN: usize = 4;
 
 fn decoder(bytes: &[u8]) -> Result<HdrDecoder<&[u8]>, ImageError> {
-    // The strict decoder knows only one of the two marks; ours was checked before.
+    // The strict decoder accepts only one of the two signatures; both were checked before.
     HdrDecoder::new_nonstrict(bytes).map_err(|error| ImageError::malformed(NAME, error))
 }
 
@@ -54,16 +54,16 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), the greatest mantissa at
-/// least 128.
+/// Shared-exponent form: channel = mantissa / 256 * 2^(exponent - 128), with the greatest mantissa
+/// at least 128.
 ///
-/// Negative values and NaN become 0; what is too large, infinity too, becomes the greatest value
-/// there is.
+/// Negative values and NaN become 0. Too large values, including infinity, become the greatest
+/// representable value.
 fn rgbe(pixel: Vec3) -> [u8; 4] {
     let channels = pixel.to_array().map(|value| f64::from(value.clamp(0.0, f32::MAX).max(0.0)));
     let greatest = channels.into_iter().fold(0.0, f64::max);
-    // greatest = fraction * 2^exponent, the fraction in 0.5..1: from the bits of an f64, in which
-    // no f32 is subnormal.
+    // greatest = fraction * 2^exponent with the fraction in 0.5..1, from the bits of an `f64`, in
+    // which no `f32` is subnormal.
     let mut exponent = (greatest.to_bits() >> 52) as i32 - 1022;
     if greatest == 0.0 || exponent < -126 {
         return [0; 4];
@@ -72,7 +72,7 @@ fn rgbe(pixel: Vec3) -> [u8; 4] {
         let scale = f64::from_bits(((8 - exponent + 1023) as u64) << 52);
         channels.map(|value| (value * scale).round())
     };
-    // A mantissa that is rounded up to 256 belongs to the next exponent.
+    // A mantissa that rounds up to 256 belongs to the next exponent.
     if mantissas(exponent).contains(&256.0) {
         exponent += 1;
     }
@@ -80,8 +80,8 @@ fn rgbe(pixel: Vec3) -> [u8; 4] {
     [r, g, b, (exponent.min(127) + 128) as u8]
 }
 
-/// Appends bytes with runs packed: a length above 128 precedes one byte to repeat, another as many
-/// bytes to take.
+/// Appends run-length encoded bytes: a length above 128 precedes one byte to repeat; other lengths
+/// precede that many literal bytes.
 fn pack(bytes: &[u8], out: &mut Vec<u8>) {
     let run_at = |at: usize| bytes[at..].iter().take(RUN_LIMIT).take_while(|&&byte| byte == bytes[at]).count();
     let mut at = 0;
@@ -92,7 +92,7 @@ fn pack(bytes: &[u8], out: &mut Vec<u8>) {
             at += run;
             continue;
         }
-        // Up to where the next run begins.
+        // Literals end where the next run begins.
         let limit = bytes.len().min(at + LITERAL_LIMIT);
         let end = (at + 1..limit).find(|&next| run_at(next) >= MIN_RUN).unwrap_or(limit);
         out.push((end - at) as u8);

@@ -1,5 +1,4 @@
-//! JPEG: eight bits a channel, as photographs and textures are; read only, for it loses what a
-//! renderer knows.
+//! JPEG: 8 bits per channel, for photographs and textures. Read only, since it is lossy.
 
 use super::{Depth, Format, Head, ImageError, codec};
 use ::image::ImageFormat;
@@ -15,8 +14,8 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(b"\xff\xd8\xff"),
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Jpeg, bytes)?);
-        // A progressive picture is kept as coefficients of 16 bits for three channels until its
-        // last scan.
+        // The decoder of a progressive picture keeps 16-bit coefficients of three channels until
+        // the last scan.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 6, spare: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Jpeg, bytes)?),

@@ -1,5 +1,5 @@
-//! Khronos texture containers (KTX 2.0), uncompressed or packed by zlib: read only, and of their
-//! levels the largest.
+//! Khronos texture containers (KTX 2.0), uncompressed or compressed by zlib. Read only, and only
+//! the largest mip level.
 //!
 //! Source: *KTX File Format Specification*, version 2.0, Khronos Group.
 
@@ -23,16 +23,16 @@ pub const FORMAT: Format = Format {
     rows: None,
 };
 
-/// What a channel is.
+/// Type of a channel.
 #[derive(Clone, Copy, PartialEq)]
 enum Number {
-    /// 0 to 255.
+    /// Unsigned 8-bit, 0 to 255.
     Eight,
-    /// 0 to 65535.
+    /// Unsigned 16-bit, 0 to 65535.
     Sixteen,
-    /// Half precision.
+    /// Half-precision float.
     Half,
-    /// Single precision.
+    /// Single-precision float.
     Single,
 }
 
@@ -46,7 +46,7 @@ impl Number {
     }
 }
 
-/// Formats by their numbers in Vulkan: channels, numbers, and whether blue comes first.
+/// Supported Vulkan formats by number: channels, channel type, and true if blue comes first.
 const KINDS: [(u32, usize, Number, bool); 22] = [
     (9, 1, Number::Eight, false),
     (15, 1, Number::Eight, false),
@@ -72,19 +72,19 @@ const KINDS: [(u32, usize, Number, bool); 22] = [
     (109, 4, Number::Single, false),
 ];
 
-/// What the head tells.
+/// Header and data of a texture.
 struct Texture<'a> {
     width: u64,
     height: u64,
     channels: usize,
     number: Number,
     blue_first: bool,
-    /// The bytes of the largest level, and whether zlib packed them.
+    /// Data of the largest mip level, and true if compressed by zlib.
     level: &'a [u8],
     packed: bool,
-    /// What is taken for red, green, blue and opacity: `r`, `g`, `b`, `a`, `0` or `1`.
+    /// Source of red, green, blue, and opacity: `r`, `g`, `b`, `a`, `0` or `1`.
     swizzle: [u8; 4],
-    /// Whether the lowest row comes first.
+    /// True if the bottom row comes first.
     bottom_up: bool,
 }
 
@@ -107,7 +107,7 @@ fn long(bytes: &[u8], at: usize) -> Result<u64, ImageError> {
     Ok(word(bytes, at + 4)? << 32 | word(bytes, at)?)
 }
 
-/// A part of the file.
+/// Slice of the file.
 fn part(bytes: &[u8], start: u64, length: u64) -> Result<&[u8], ImageError> {
     let end = start.checked_add(length).filter(|&end| end <= bytes.len() as u64);
     let end = end.ok_or_else(|| malformed("it is cut off"))?;
@@ -160,7 +160,7 @@ fn open(bytes: &[u8]) -> Result<Texture<'_>, ImageError> {
     })
 }
 
-/// The value of a key: entries are the length, the key, a 0 and the value, filled up to four bytes.
+/// Value of a key. Entries consist of a length, the key, a 0, and the value, padded to four bytes.
 fn value<'a>(mut entries: &'a [u8], key: &[u8]) -> Option<&'a [u8]> {
     loop {
         let length = word(entries, 0).ok()? as usize;
@@ -190,7 +190,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
         false => texture.level,
         true => {
             let mut all = Vec::new();
-            // A bomb is not unpacked beyond what the picture takes.
+            // Decompression stops at the size of the picture, as a guard against decompression
+            // bombs.
             let mut decoder = flate2::read::ZlibDecoder::new(texture.level).take((count * size) as u64);
             decoder.read_to_end(&mut all).map_err(|error| ImageError::malformed(NAME, error))?;
             unpacked = all;
@@ -235,7 +236,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
 }
 
 impl Texture<'_> {
-    /// Red, green, blue and opacity of a pixel.
+    /// Red, green, blue, and opacity of a pixel.
     fn swizzled<N: Copy>(&self, pixel: &[u8], number: impl Fn(&[u8]) -> N, zero: N, one: N) -> [N; 4] {
         let channel = |i: usize| {
             let i = if self.blue_first && i < 3 { 2 - i } else { i };
@@ -252,11 +253,11 @@ impl Texture<'_> {
     }
 }
 
-/// A number of half precision: a sign, five bits of exponent, ten of mantissa.
+/// Converts a half-precision number: a sign, five bits of exponent, and ten of mantissa.
 fn half(bits: u16) -> f32 {
     let (sign, exponent, mantissa) = (u32::from(bits >> 15) << 31, u32::from(bits >> 10 & 31), u32::from(bits & 1023));
     let size = match exponent {
-        // Below the least exponent they are multiples of 2^-24.
+        // Subnormal numbers are multiples of 2^-24.
         0 => mantissa as f32 * f32::from_bits((127 - 24) << 23),
         31 => f32::from_bits(0xff << 23 | mantissa << 13),
         _ => f32::from_bits((exponent + 112) << 23 | mantissa << 13),
@@ -270,7 +271,7 @@ mod tests {
     use crate::{Encoded, read, read8};
     use std::io::Write;
 
-    /// A file of one level with these values of keys.
+    /// A file with one mip level and some key-value entries.
     fn file(kind: u32, size: [u32; 2], scheme: u32, entries: &[(&str, &str)], pixels: &[u8]) -> Vec<u8> {
         let mut values = Vec::new();
         for (key, value) in entries {
@@ -300,7 +301,7 @@ mod tests {
     fn every_kind_of_pixel_is_read() {
         let white = 0x3c00u16.to_le_bytes();
         for &(kind, channels, number, blue_first) in &KINDS {
-            // Red and blue differ; channels beyond are left out.
+            // Red and blue differ. Channels beyond the third are ignored.
             let one: Vec<u8> = match number {
                 Number::Eight => vec![255],
                 Number::Sixteen => vec![255, 255],
@@ -332,7 +333,7 @@ mod tests {
 
     #[test]
     fn halves_are_exact() {
-        /// 2 to the power of -24.
+        /// 2^-24.
         const LEAST: f32 = 1.0 / 16_777_216.0;
         for (bits, value) in
             [(0x3c00, 1.0), (0xc000, -2.0), (0x0001, LEAST), (0x7bff, 65504.0), (0x03ff, 1023.0 * LEAST)]

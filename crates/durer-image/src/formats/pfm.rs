@@ -1,4 +1,4 @@
-//! Portable float map: red, green and blue as 32-bit floats, little endian, bottom row first.
+//! Portable float map: red, green, and blue as 32-bit floats, little-endian, bottom row first.
 
 use super::limits::room_for;
 use super::{Depth, Format, Head, Image, ImageError, Raster, RowFormat, rows};
@@ -26,7 +26,7 @@ static ROWS: RowFormat = RowFormat {
     png: false,
 };
 
-/// What the head says, and the bytes behind it.
+/// Parsed header and sample data.
 struct Opened<'a> {
     width: u32,
     height: u32,
@@ -57,7 +57,7 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
 
 fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     let Opened { width, height, channels, little_endian, samples } = open(bytes)?;
-    // The size is believed only if all its samples are there.
+    // The declared size is accepted only if all samples are present.
     let count = width as usize * height as usize;
     let (samples, _) = samples.as_chunks::<4>();
     let samples =
@@ -74,8 +74,8 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     Ok(Raster::Float(Image { width, height, pixels }, Vec::new()))
 }
 
-/// The next word of the header; exactly one white space after it is skipped, for then the samples
-/// may begin.
+/// Next word of the header. Skips exactly one whitespace character after it, since samples may
+/// follow.
 fn next_word<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
     let text = rest.trim_ascii_start();
     let end = text.iter().position(u8::is_ascii_whitespace)?;
@@ -104,7 +104,7 @@ mod tests {
 
     #[test]
     fn big_endian_grey_is_read() {
-        // The first byte of the samples looks like white space, and still is one.
+        // The first byte of the samples looks like whitespace, but is part of a sample.
         let mut bytes = b"Pf 2 1 1.0\n".to_vec();
         let first = f32::from_be_bytes([0x0a, 0x20, 0, 0]);
         bytes.extend(first.to_be_bytes());

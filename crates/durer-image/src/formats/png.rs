@@ -1,5 +1,4 @@
-//! Portable Network Graphics: eight bits a channel, lossless; with alpha where the camera does not
-//! see everything.
+//! Portable Network Graphics: 8 bits per channel, lossless, with alpha for layers with coverage.
 
 use super::{Depth, Format, Head, ImageError, Raster, RowFormat, RowWriter, Strip, codec, rows};
 use ::image::ImageFormat;
@@ -23,7 +22,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Writes rows, compressed as they come.
+/// Writes rows and compresses them as they arrive.
 pub(super) fn packed<T, E: From<io::Error>>(
     format: &'static RowFormat,
     strip: Strip,
@@ -43,14 +42,13 @@ pub(super) fn packed<T, E: From<io::Error>>(
     Ok(made)
 }
 
-/// The size and kind of pixels, from the first chunk. What is wrong with the rest is found when it
-/// is decoded.
+/// Size and pixel type, from the first chunk. Errors in the rest are found by the decoder.
 fn head(bytes: &[u8]) -> Result<Head, ImageError> {
     let first = chunks(bytes).next().filter(|chunk| chunk[4..8] == *b"IHDR").and_then(|chunk| chunk.get(8..18));
     let Some([w @ .., depth, color]) = first else { return Err(ImageError::malformed(NAME, "its head is missing")) };
     let side = |four: &[u8]| four.iter().fold(0, |side, &byte| side << 8 | u64::from(byte));
     let (width, height) = (side(&w[..4]), side(&w[4..]));
-    // Grey, true colour, a palette of colours, grey with alpha, colour with alpha.
+    // Channels of grey, true colour, palette, grey with alpha, and colour with alpha.
     let channels = [1, 3, 3, 3, 2, 3, 4][usize::from(*color).min(6)];
     let transparent = chunks(bytes).any(|chunk| chunk[4..8] == *b"tRNS");
     let (stored, eight) = (channels + u64::from(transparent), *depth != 16);
@@ -58,7 +56,7 @@ fn head(bytes: &[u8]) -> Result<Head, ImageError> {
         (true, 3) => 3,
         (true, 2 | 4) => stored + 4,
         (true, _) => stored + 3,
-        // The pixels and their opacity, of four bytes a number.
+        // The pixels and their opacity, with four bytes per value.
         (false, _) => 2 * stored + 16,
     };
     Ok(Head { width, height, eight, bytes_per_pixel, spare: bytes.len() as u64 })
@@ -68,7 +66,7 @@ fn decode(bytes: &[u8]) -> Result<Raster, ImageError> {
     codec::raster(NAME, codec::decoder(NAME, ImageFormat::Png, &essence(bytes))?)
 }
 
-/// The chunks of a file: each is the length of its content, four letters, the content, and a
+/// Chunks of a file. Each consists of the length of its content, four letters, the content, and a
 /// checksum of four bytes.
 fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes.get(MARK.len()..).unwrap_or_default();
@@ -80,8 +78,8 @@ fn chunks(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     })
 }
 
-/// A file without all that says nothing of its pixels: profiles and texts, of which a few bytes may
-/// become gigabytes, animations, dates. What must be understood begins with an upper case letter.
+/// Removes the chunks that do not affect the pixels: animations, dates, and profiles and texts, of
+/// which a few bytes may decompress to gigabytes. Critical chunks begin with an upper-case letter.
 /// Source: PNG specification, third edition, 5.3 and 5.4.
 fn essence(bytes: &[u8]) -> Cow<'_, [u8]> {
     let needed = |chunk: &&[u8]| chunk[4].is_ascii_uppercase() || chunk[4..8] == *b"tRNS";

@@ -12,8 +12,8 @@ pub const FORMAT: Format = Format {
     layers: false,
     most_side: u32::MAX,
     begins: |bytes| matches!(bytes, [b'P', b'1'..=b'7', b' ' | b'\t'..=b'\r' | b'#', ..]),
-    // Samples are scaled from the file's value of white to 255, or to 65535 if that is greater than
-    // 255.
+    // The decoder scales samples from the file's maximum value to 255, or to 65535 if the maximum
+    // exceeds 255.
     head: |bytes| Ok(codec::head(&codec::decoder(NAME, ImageFormat::Pnm, bytes)?)),
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Pnm, bytes)?),
     encode: |layers, options, out| rows::encode(&ROWS, layers, options, out),
@@ -24,7 +24,7 @@ static ROWS: RowFormat = RowFormat {
     bottom_up: false,
     head: |strip| Ok(format!("P6\n{} {}\n255\n", strip.width, strip.height).into_bytes()),
     row: |strip, _, pixels, coverage, out| {
-        // There is no place for alpha.
+        // The format has no alpha.
         Strip { alpha: false, ..*strip }.eight_bit(pixels, coverage, |[r, g, b, _]| out.extend([r, g, b]));
     },
     png: false,

@@ -1,51 +1,50 @@
-//! Formats that are written row by row, so that no picture is too large for them.
+//! Row-by-row writing, for pictures of any size.
 
 use super::{Display, Format, Image, ImageError, Layer, WriteOptions};
 use durer_bvh::math::Vec3;
 use rayon::prelude::*;
 use std::io::{self, Write};
 
-/// Rows that are made side by side, and then written.
+/// Number of rows that are encoded in parallel and then written.
 const AT_ONCE: usize = 32;
 
-/// How a format writes rows.
+/// Row-by-row writer of a format.
 #[derive(Debug)]
 pub struct RowFormat {
-    /// Whether the lowest row comes first.
+    /// True if the bottom row comes first.
     pub bottom_up: bool,
-    /// What stands before the rows.
+    /// Creates the header of the file.
     pub(super) head: fn(&Strip) -> Result<Vec<u8>, ImageError>,
-    /// Appends the bytes of a row, whose number in the file is given.
+    /// Appends the bytes of a row, given its number in the file.
     pub(super) row: fn(&Strip, u32, &[Vec3], &[f32], &mut Vec<u8>),
-    /// Whether all that is packed by PNG's own rules, its head with it.
+    /// True if the rows form a PNG, whose encoder writes the header, too.
     #[cfg_attr(not(feature = "codecs"), allow(dead_code))]
     pub(super) png: bool,
 }
 
-/// What all rows of a picture have in common.
+/// Common properties of a picture's rows.
 #[derive(Clone, Copy, Debug)]
 pub struct Strip {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: u32,
-    /// Rows.
+    /// Height in pixels.
     pub height: u32,
-    /// Whether what the camera does not see is told beside the colours, in formats that can.
+    /// True if alpha is stored, in formats that support it.
     pub alpha: bool,
-    /// What makes eight bits of a colour.
+    /// Conversion of colours to 8-bit values.
     pub display: Display,
 }
 
 impl Strip {
-    /// Of a layer, as a format shows it.
+    /// Properties of a layer's rows for these options.
     pub(super) fn of(layer: &Layer, options: &WriteOptions) -> Self {
         let alpha = layer.coverage.is_some();
         let Image { width, height, .. } = *layer.image;
         Strip { width, height, alpha, display: super::display(layer, options) }
     }
 
-    /// Offers the eight-bit numbers of each pixel of a row: red, green, blue and opacity. Where
-    /// there is one, colours are those of what is seen alone, without the share of it (straight
-    /// alpha).
+    /// Calls `offer` with the 8-bit red, green, blue, and opacity of each pixel in a row. With
+    /// alpha, colours are not premultiplied (straight alpha).
     #[cfg(feature = "codecs")]
     pub(super) fn eight_bit(&self, pixels: &[Vec3], coverage: &[f32], mut offer: impl FnMut([u8; 4])) {
         for (i, &pixel) in pixels.iter().enumerate() {
@@ -60,22 +59,21 @@ impl Strip {
     }
 }
 
-/// A picture that is being written row by row.
+/// Writer of a picture's rows.
 pub struct RowWriter<'w> {
     format: &'static RowFormat,
     strip: Strip,
-    /// The number of the next row.
+    /// Number of the next row.
     next: u32,
     out: &'w mut dyn Write,
 }
 
 impl Format {
-    /// Writes a picture whose rows come one after the other, the lowest first where
-    /// [`RowFormat::bottom_up`] says so.
+    /// Writes a picture row by row, bottom row first if [`RowFormat::bottom_up`] is set.
     ///
     /// # Errors
-    /// Those of `rows` and of the file, and [`ImageError::Unsupported`] for formats that are not
-    /// written so, and for sizes that they cannot hold.
+    /// Errors of `rows` and of the file, and [`ImageError::Unsupported`] for formats without
+    /// row-by-row writing, and for sizes that they cannot hold.
     pub fn write_rows<T, E: From<ImageError> + From<io::Error>>(
         &self,
         strip: Strip,
@@ -88,7 +86,7 @@ impl Format {
     }
 }
 
-/// Writes rows, packed where that is the format's way.
+/// Writes rows, compressed if the format requires it.
 fn packed<T, E: From<io::Error>>(
     format: &'static RowFormat,
     strip: Strip,
@@ -103,20 +101,20 @@ fn packed<T, E: From<io::Error>>(
 }
 
 impl<'w> RowWriter<'w> {
-    /// Writes the rows of `strip` to `out`, from the first.
+    /// Creates a writer that begins at the first row.
     pub(super) fn new(format: &'static RowFormat, strip: Strip, out: &'w mut dyn Write) -> Self {
         RowWriter { format, strip, next: 0, out }
     }
 
-    /// The next rows, from top to bottom whatever comes first in the file. `coverage` is the share
-    /// of each pixel that is seen; empty where all is.
+    /// Writes the next rows. `pixels` are in order from top to bottom, regardless of the order in
+    /// the file. `coverage` is the coverage of each pixel; empty if all are fully covered.
     ///
     /// # Errors
-    /// Those of the file.
+    /// Errors of the file.
     pub fn rows(&mut self, pixels: &[Vec3], coverage: &[f32]) -> io::Result<()> {
         let (format, strip, width) = (self.format, &self.strip, self.strip.width as usize);
         let count = (pixels.len() / width) as u32;
-        // In the order of the file.
+        // Rows in the order of the file.
         let row = |i: u32| {
             let y = if format.bottom_up { count - 1 - i } else { i } as usize;
             let range = y * width..(y + 1) * width;
@@ -134,7 +132,7 @@ impl<'w> RowWriter<'w> {
     }
 }
 
-/// A picture in memory, by its rows.
+/// Encodes a picture in memory row by row.
 pub(super) fn encode(
     format: &'static RowFormat,
     layers: &[Layer],
@@ -146,7 +144,7 @@ pub(super) fn encode(
         out.extend((format.head)(&strip)?);
         let coverage = layer.coverage.as_deref().unwrap_or_default();
         let written = packed(format, strip, out, |rows| rows.rows(&layer.image.pixels, coverage));
-        // Memory takes whatever is written.
+        // Writing to memory cannot fail.
         debug_assert!(written.is_ok());
     }
     Ok(())

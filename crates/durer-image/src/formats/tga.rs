@@ -1,5 +1,5 @@
-//! Truevision Targa: uncompressed true colour of 24 bits, bottom row first, as the course's
-//! programs wrote it; of 32 bits with alpha where the camera does not see everything.
+//! Truevision Targa: uncompressed 24-bit true colour, bottom row first, as written by the programs
+//! of the course; 32 bits with alpha for layers with coverage.
 
 use super::{Depth, Format, Head, ImageError, RowFormat, codec, rows};
 use ::image::ImageFormat;
@@ -12,11 +12,11 @@ pub const FORMAT: Format = Format {
     depth: Depth::EightBit,
     layers: false,
     most_side: 65535,
-    // The format has no mark of its own: it is known by its name only.
+    // The format has no signature and is recognised by its extension only.
     begins: |_| false,
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::Tga, bytes)?);
-        // The decoder expands palettes and pixels of 16 bits from a copy.
+        // The decoder expands palettes and 16-bit pixels from a copy.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 2, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::Tga, bytes)?),
@@ -24,7 +24,7 @@ pub const FORMAT: Format = Format {
     rows: Some(&ROWS),
 };
 
-/// Image type: true colour, not compressed.
+/// Image type: uncompressed true colour.
 const TRUE_COLOR: u8 = 2;
 
 static ROWS: RowFormat = RowFormat {
@@ -65,7 +65,7 @@ mod tests {
         let layer = Layer::color("", image).with_coverage(vec![0.0, 0.5]);
         FORMAT.write(&[layer], &WriteOptions::default(), &mut out).unwrap();
         assert_eq!(out[..18], [0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 32, 8]);
-        // Straight alpha: the colour of the covered half is full red.
+        // Straight alpha: the colour of the half-covered pixel is full red.
         assert_eq!(out[18..], [0, 0, 255, 128, 0, 0, 0, 0]);
     }
 

@@ -1,4 +1,4 @@
-//! WebP, with and without loss: read only.
+//! WebP, lossy and lossless: read only.
 
 use super::{Depth, Format, Head, ImageError, codec};
 use ::image::ImageFormat;
@@ -14,7 +14,7 @@ pub const FORMAT: Format = Format {
     begins: |bytes| bytes.starts_with(b"RIFF") && bytes.get(8..12) == Some(b"WEBP"),
     head: |bytes| {
         let head = codec::head(&codec::decoder(NAME, ImageFormat::WebP, bytes)?);
-        // Frames, and planes of their own for brightness, colour and alpha.
+        // Memory for frames, and for separate planes of brightness, colour, and alpha.
         Ok(Head { bytes_per_pixel: head.bytes_per_pixel + 8, spare: bytes.len() as u64, ..head })
     },
     decode: |bytes| codec::raster(NAME, codec::decoder(NAME, ImageFormat::WebP, bytes)?),

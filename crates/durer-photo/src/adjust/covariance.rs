@@ -1,10 +1,10 @@
-//! How exactly cameras are known.
+//! Covariance of estimated cameras.
 //!
-//! Near the solution the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ
-//! pixels in each component of each observation. That of the cameras is σ² times the inverse of the
-//! reduced matrix. Place, direction and size of the whole cannot be known from photographs: they
-//! are held by the first photograph's pose and, in the farthest photograph from it, the
-//! largest component of what its translation is from there.
+//! Near the solution, the errors of all parameters have the covariance σ² (Jᵀ J)⁻¹, for errors of σ
+//! pixels in each component of each observation. The covariance of the cameras is σ² times the
+//! inverse of the reduced matrix. Photographs do not determine the position, orientation, and scale
+//! of the whole. These are fixed by the pose of the first photograph and by the largest component
+//! of the relative translation of the photograph farthest from it.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 5.2 and A6.
@@ -13,48 +13,49 @@ use super::{Loss, Options, System};
 use crate::{Error, Reconstruction};
 use nalgebra::{Cholesky, DMatrix, Matrix6};
 
-/// The covariance of all cameras.
+/// Covariance of all cameras.
 pub struct Covariance {
-    /// The standard deviation of a component of an observation in pixels, from the residuals that
-    /// are left.
+    /// Standard deviation of an observation's components in pixels, estimated from the residuals.
     pub sigma: f64,
-    /// For each pose that is known, the number of its photograph, and where its six columns begin:
-    /// a rotation ω by which the pose's rotation R becomes exp(\[ω\]×) R, then its translation.
+    /// Photograph number of each known pose, and the start of its six columns: a rotation ω, which
+    /// replaces R by exp(\[ω\]×) R, followed by the translation.
     pub views: Vec<(usize, usize)>,
-    /// All cameras together, six rows a pose, then three a lens (f, k1, k2). Zero for what is held.
+    /// Covariance matrix of all cameras: six rows per pose, then three per lens (f, k1, k2). Zero
+    /// for fixed parameters.
     pub matrix: DMatrix<f64>,
-    /// The rows that are free.
+    /// Rows of the free parameters.
     pub free: Vec<usize>,
 }
 
 impl Covariance {
-    /// Of one photograph's pose.
+    /// Covariance of a photograph's pose.
     pub fn pose(&self, view: usize) -> Option<Matrix6<f64>> {
         let (_, at) = *self.views.iter().find(|(number, _)| *number == view)?;
         Some(self.matrix.fixed_view::<6, 6>(at, at).into_owned())
     }
 
-    /// The standard deviation of a photograph's place, as a length.
+    /// Standard deviation of a photograph's position, as a length.
     pub fn place(&self, all: &Reconstruction, view: usize) -> Option<f64> {
         let (pose, covariance) = (all.views[view].pose?, self.pose(view)?);
         let turn = pose.rotation.transpose();
         let mut jacobian = nalgebra::Matrix3x6::zeros();
-        // R becomes (1 + [ω]×) R, so that C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]×
-        // ω.
+        // R becomes (1 + [ω]×) R, so C = -Rᵀ t changes by -Rᵀ [ω]×ᵀ t = Rᵀ (ω × t) = -Rᵀ [t]× ω.
         jacobian.fixed_columns_mut::<3>(0).copy_from(&(-turn * pose.translation.cross_matrix()));
         jacobian.fixed_columns_mut::<3>(3).copy_from(&-turn);
         Some((jacobian * covariance * jacobian.transpose()).trace().max(0.0).sqrt())
     }
 }
 
-/// The covariance of the cameras of a solution; `options` say what was free.
+/// Computes the covariance of the cameras of a solution. `options` must be the options of the
+/// adjustment.
 ///
 /// # Errors
 ///
-/// Says so where something is not determined by the photographs.
+/// If the photographs do not determine a camera.
 pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance, Error> {
     let options = Options { loss: Loss::Squared, ..*options };
-    // A point that one photograph sees tells nothing of cameras, and nobody knows where it is.
+    // A point with a single observation does not constrain the cameras, and its own position is
+    // undetermined.
     let known = |seen: &&crate::Observation| all.views[seen.view].pose.is_some();
     let mut kept = all.clone();
     kept.points.retain(|point| !options.points || point.track.iter().filter(known).count() > 1);
@@ -64,7 +65,7 @@ pub fn covariance(all: &Reconstruction, options: &Options) -> Result<Covariance,
     }
     let reduced = system.reduce(&state, 0.0);
     let first = state.poses[0].center();
-    // The other photographs' translations, seen from the first one.
+    // Translations of the other photographs, relative to the first one.
     let from_first = |i: usize| state.poses[i].apply(&first);
     let far = (1..views.len()).fold(1, |far, i| if from_first(i).norm() > from_first(far).norm() { i } else { far });
     let scale = from_first(far).iamax();

@@ -1,19 +1,20 @@
-//! Losses: how much a residual counts.
+//! Loss functions.
 
-/// What half of is summed: a function ρ of the square s of a residual's length, in square pixels.
+/// Loss function ρ of the squared length s of a residual, in square pixels. The cost is half the
+/// sum of ρ.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Loss {
     /// ρ = s: least squares.
     Squared,
-    /// Huber's: s to the given length d, beyond that 2 d √s - d², which grows with the length only.
+    /// Huber loss with length d: s up to d², then 2 d √s - d², which grows linearly with the
+    /// residual.
     Huber(f64),
-    /// Cauchy's: c² ln(1 + s / c²) for the given length c; what is far off counts for hardly
-    /// anything.
+    /// Cauchy loss with length c: c² ln(1 + s / c²). Outliers count very little.
     Cauchy(f64),
 }
 
 impl Loss {
-    /// ρ and its derivative by s.
+    /// Returns ρ and its derivative by s.
     pub(super) fn at(self, s: f64) -> (f64, f64) {
         match self {
             Loss::Huber(d) if s > d * d => (2.0 * d * s.sqrt() - d * d, d / s.sqrt()),

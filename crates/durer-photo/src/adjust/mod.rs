@@ -1,11 +1,11 @@
-//! Bundle adjustment: cameras and points are moved together until the points are seen where the
-//! photographs show them.
+//! Bundle adjustment: moves cameras and points together until the projections match the
+//! observations.
 //!
-//! Levenberg's and Marquardt's method: of the normal equations with the diagonal times 1 + λ, a
-//! step is taken if the cost falls, and λ follows from how well the fall was foreseen. The whole is
-//! free to move, turn and grow: the damping holds it.
+//! Uses the Levenberg-Marquardt method: the diagonal of the normal equations is multiplied by 1 +
+//! λ, a step is accepted if the cost decreases, and λ depends on how well the decrease was
+//! predicted. The position, orientation, and scale of the whole are free; damping holds them.
 //!
-//! Sources: Nocedal, Wright, *Numerical Optimization*, 2nd edition, 2006, chapter 10; for λ:
+//! Sources: Nocedal, Wright, *Numerical Optimisation*, 2nd edition, 2006, chapter 10; for λ:
 //! Madsen, Nielsen, Tingleff, *Methods for Non-Linear Least Squares Problems*, 2004, section 3.2.
 
 mod covariance;
@@ -20,20 +20,20 @@ use crate::Reconstruction;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use system::{State, System};
 
-/// What is adjusted, and how.
+/// Options of bundle adjustment.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// How much a residual counts.
+    /// Loss function of a residual.
     pub loss: Loss,
-    /// Whether focal lengths are free. Photographs of one lens share it.
+    /// True if focal lengths are free. Photographs with the same lens share one.
     pub focal: bool,
-    /// Whether k1 and k2 are free.
+    /// True if k1 and k2 are free.
     pub radial: bool,
-    /// Whether points are free.
+    /// True if points are free.
     pub points: bool,
-    /// Steps that are tried at most.
+    /// Maximum number of steps.
     pub iterations: usize,
-    /// It ends when a step lowers the cost by less than this share.
+    /// Relative decrease of the cost below which the adjustment ends.
     pub tolerance: f64,
 }
 
@@ -43,21 +43,21 @@ impl Default for Options {
     }
 }
 
-/// What adjusting did.
+/// Report of a bundle adjustment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Report {
-    /// The cost at the start and after each step that was tried: half the sum of the losses.
+    /// Cost at the start and after each tried step: half the sum of the losses.
     pub costs: Vec<f64>,
-    /// Whether it ended because nothing more was to be had.
+    /// True if the adjustment converged, false if it reached the maximum number of steps.
     pub converged: bool,
 }
 
-/// Adjusts the photographs whose pose is known, their lenses, and the points.
+/// Adjusts the photographs with a known pose, their lenses, and the points.
 pub fn adjust(all: &mut Reconstruction, options: &Options) -> Report {
     adjust_watched(all, options, &|_, _| {})
 }
 
-/// The same, and tells of each step its number and the cost.
+/// Adjusts as [`adjust`] does, and calls `watch` with the number and the cost of each step.
 pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn Fn(usize, f64)) -> Report {
     let (system, mut state, views) = System::new(all, *options);
     let mut cost = system.cost(&state);
@@ -70,14 +70,14 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
                 let next_cost = system.cost(next);
                 let fall = cost - next_cost;
                 let ratio = fall / foreseen;
-                // Not a number, where a step led through a camera, is no fall.
+                // NaN, if a step led through a camera, does not count as a decrease.
                 if ratio > 1e-3 && fall > 0.0 {
                     let bend = 2.0 * ratio - 1.0;
                     damping = (damping * (1.0 - bend * bend * bend).max(1.0 / 3.0)).max(1e-16);
                     growth = 2.0;
                     (true, fall)
                 } else {
-                    // The end of what double precision can tell.
+                    // Limit of double precision.
                     report.converged = foreseen.abs() <= 1e-14 * cost;
                     (false, fall)
                 }
@@ -89,7 +89,7 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
                 report.converged = fall <= options.tolerance * cost;
                 state = next;
                 cost -= fall;
-                // Nothing but rounding is left.
+                // Only rounding errors are left.
                 report.converged |= cost <= 1e-20 * report.costs[0];
             }
             _ => {
@@ -102,7 +102,7 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
         report.costs.push(cost);
     }
     views.iter().zip(state.poses).for_each(|(view, pose)| {
-        // Many small turns are not quite a rotation any more.
+        // Many small rotations accumulate rounding errors.
         let rotation = crate::model::nearest_rotation(&pose.rotation);
         all.views[*view].pose = Some(crate::Pose { rotation, ..pose });
     });
@@ -111,7 +111,7 @@ pub fn adjust_watched(all: &mut Reconstruction, options: &Options, watch: &dyn F
     report
 }
 
-/// The derivatives of a pixel by its camera: rotation, translation, f, k1, k2.
+/// Derivatives of a pixel by its camera: rotation, translation, f, k1, and k2.
 pub(crate) fn camera_jacobian(
     lens: &crate::Lens,
     pose: &crate::Pose,
@@ -120,10 +120,10 @@ pub(crate) fn camera_jacobian(
     jacobian::project(lens, pose, point).1
 }
 
-/// A damped step, and the fall of the cost that it promises.
+/// Computes a damped step, and the decrease of the cost that it predicts.
 fn attempt(system: &System, state: &State, damping: f64) -> Option<(State, f64)> {
     let mut reduced = system.reduce(state, damping);
-    // Parameters on which nothing depends, or which are held, stand alone.
+    // Decouple fixed parameters and those without influence.
     let held: DVector<f64> = reduced.diagonal.map(|d| if d > 0.0 { damping * d } else { 1.0 });
     (0..system.size).for_each(|i| reduced.matrix[(i, i)] += held[i]);
     let step = solve(reduced.matrix, &reduced.right)?;
@@ -133,7 +133,7 @@ fn attempt(system: &System, state: &State, damping: f64) -> Option<(State, f64)>
     Some((State { poses, lenses, points }, foreseen))
 }
 
-/// Solves symmetric equations, which are scaled to a diagonal of 1 first.
+/// Solves symmetric equations after scaling them to a unit diagonal.
 fn solve(mut matrix: DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
     let scale = matrix.diagonal().map(|d| 1.0 / d.sqrt());
     if scale.iter().any(|s| !s.is_finite()) {

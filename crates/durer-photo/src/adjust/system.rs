@@ -1,15 +1,15 @@
-//! The normal equations, and the points taken out of them (Schur's complement).
+//! Normal equations, with the points eliminated by the Schur complement.
 //!
-//! With the cameras' parameters c and the points' p, a step solves
+//! With camera parameters c and point parameters p, a step solves
 //!
 //! ```text
 //! | U  W | |dc|     |gc|
 //! | Wᵀ V | |dp| = - |gp|
 //! ```
 //!
-//! V is made of blocks of 3x3, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is
-//! small, and each point's step follows from dc. Source: Triggs, McLauchlan, Hartley, Fitzgibbon,
-//! *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
+//! V consists of 3x3 blocks, one for each point, so that (U - W V⁻¹ Wᵀ) dc = -gc + W V⁻¹ gp is
+//! small, and dc determines the step of each point. Source: Triggs, McLauchlan, Hartley,
+//! Fitzgibbon, *Bundle Adjustment: A Modern Synthesis*, 2000, section 6.
 
 use super::Options;
 use super::jacobian::{CameraJacobian, project};
@@ -17,7 +17,7 @@ use crate::{Lens, Pose, Reconstruction};
 use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, SMatrix, Vector2, Vector3};
 use rayon::prelude::*;
 
-/// What is solved for.
+/// Free parameters.
 #[derive(Clone)]
 pub struct State {
     pub poses: Vec<Pose>,
@@ -25,47 +25,47 @@ pub struct State {
     pub points: Vec<Vector3<f64>>,
 }
 
-/// An observation of a photograph whose pose is known: where it is, and of which pose and lens.
+/// An observation by a photograph with a known pose: pixel, pose, and lens.
 struct Seen {
     pixel: Vector2<f64>,
     pose: usize,
     lens: usize,
 }
 
-/// What is known, and where each parameter stands.
+/// Observations and the layout of the parameters.
 pub struct System {
     options: Options,
     seen: Vec<Seen>,
-    /// Where each point's observations begin, and the end.
+    /// Start of each point's observations, and the end.
     starts: Vec<usize>,
-    /// Points, in runs of about as many observations. Their number depends on the problem alone, so
-    /// that sums do too.
+    /// Runs of points with similar numbers of observations. The number of runs depends only on the
+    /// problem, so that the order of summation does, too.
     runs: Vec<std::ops::Range<usize>>,
     poses: usize,
-    /// How many parameters cameras have: six a pose, then three a lens.
+    /// Number of camera parameters: six per pose, then three per lens.
     pub size: usize,
 }
 
-/// The reduced equations and more that is found on the way.
+/// Reduced equations and intermediate results.
 pub struct Reduced {
-    /// U - W V⁻¹ Wᵀ without damping of U.
+    /// U - W V⁻¹ Wᵀ, with undamped U.
     pub matrix: DMatrix<f64>,
     /// -gc + W V⁻¹ gp.
     pub right: DVector<f64>,
     /// gc.
     pub gradient: DVector<f64>,
-    /// The diagonal of U.
+    /// Diagonal of U.
     pub diagonal: DVector<f64>,
 }
 
-/// One observation's weighted residual and derivatives.
+/// Weighted residual and derivatives of an observation.
 struct Row {
     residual: Vector2<f64>,
     by_camera: CameraJacobian,
     by_point: Matrix2x3<f64>,
 }
 
-/// A point's normal equations, damped.
+/// Damped normal equations of a point.
 struct PointBlock {
     rows: Vec<Row>,
     inverse: Matrix3<f64>,
@@ -74,8 +74,8 @@ struct PointBlock {
 }
 
 impl System {
-    /// The problem of a reconstruction; `views` are the numbers of the photographs whose poses are
-    /// in it.
+    /// Creates the system of a reconstruction. Also returns the initial state and the numbers of
+    /// the photographs with a known pose.
     pub fn new(all: &Reconstruction, options: Options) -> (Self, State, Vec<usize>) {
         let views: Vec<usize> = (0..all.views.len()).filter(|i| all.views[*i].pose.is_some()).collect();
         let mut number = vec![usize::MAX; all.views.len()];
@@ -91,7 +91,7 @@ impl System {
             starts.push(seen.len());
         }
         let size = 6 * views.len() + 3 * all.lenses.len();
-        // As many as keep threads busy, in no more than 256 MiB for their sums.
+        // Enough runs to keep threads busy, with at most 256 MiB for their sums.
         let count = ((1 << 25) / (size * size).max(1)).clamp(1, 16);
         let bound = |i: usize| starts.partition_point(|start| start * count < i * seen.len()).min(all.points.len());
         let runs = (0..count).map(|i| bound(i)..if i + 1 == count { all.points.len() } else { bound(i + 1) }).collect();
@@ -101,7 +101,8 @@ impl System {
         (System { options, seen, starts, runs, poses: views.len(), size }, state, views)
     }
 
-    /// Where the nine columns of an observation begin: those of its pose, and those of its lens.
+    /// Ranges of an observation's nine columns: for each, start in the row, count, and start in the
+    /// system; first for the pose, then for the lens.
     fn columns(&self, seen: &Seen) -> [(usize, usize, usize); 2] {
         [(0, 6, 6 * seen.pose), (6, 3, 6 * self.poses + 3 * seen.lens)]
     }
@@ -134,7 +135,7 @@ impl System {
         }
         let diagonal = v.diagonal().map(|d| damping * d);
         let damped = v + Matrix3::from_diagonal(&diagonal);
-        // A point that nothing holds stays where it is.
+        // A point without constraints keeps its position.
         let inverse = damped.try_inverse().filter(|m| m.iter().all(|c| c.is_finite())).unwrap_or_default();
         PointBlock { rows, inverse, gradient, damping: diagonal }
     }
@@ -143,7 +144,7 @@ impl System {
         let (lens, pose) = (&state.lenses[seen.lens], &state.poses[seen.pose]);
         let (pixel, mut by_camera, by_point) = project(lens, pose, &state.points[point]);
         let residual = pixel - seen.pixel;
-        // The loss as a weight: Triggs' correction without its second derivative.
+        // Apply the loss as a weight: Triggs' correction without its second derivative.
         let weight = self.options.loss.at(residual.norm_squared()).1.sqrt();
         for (column, free) in [(6, self.options.focal), (7, self.options.radial), (8, self.options.radial)] {
             if !free {
@@ -154,7 +155,7 @@ impl System {
         Row { residual: weight * residual, by_camera: weight * by_camera, by_point }
     }
 
-    /// The reduced equations, with the points' blocks damped.
+    /// Computes the reduced equations, with damped point blocks.
     pub fn reduce(&self, state: &State, damping: f64) -> Reduced {
         let n = self.size;
         let run = |run: &std::ops::Range<usize>| {
@@ -178,8 +179,8 @@ impl System {
                             diagonal[to + k] += squares[(from + k, from + k)];
                         }
                     }
-                    // The matrix is the sum of `half` and its transpose: of a block on the
-                    // diagonal, half.
+                    // The matrix is the sum of `half` and its transpose, so diagonal blocks are
+                    // halved.
                     self.add(&mut half, &seen[i], &seen[i], &((squares - solved * w[i].transpose()) * 0.5));
                     if self.options.points {
                         for j in 0..i {
@@ -197,7 +198,7 @@ impl System {
         Reduced { matrix: &half + half.transpose(), right, gradient, diagonal }
     }
 
-    /// Adds a block of two observations' columns.
+    /// Adds a block for the columns of two observations.
     fn add(&self, to: &mut DMatrix<f64>, a: &Seen, b: &Seen, block: &SMatrix<f64, 9, 9>) {
         let [(_, _, pose), (_, _, lens)] = self.columns(a);
         let (size, all) = (self.size, to.as_mut_slice());
@@ -212,8 +213,8 @@ impl System {
         }
     }
 
-    /// The points' steps that follow from the cameras', and how much the points' part of a
-    /// quadratic model falls.
+    /// Computes the steps of the points from the step of the cameras, and the decrease of the
+    /// points' part of the quadratic model.
     pub fn back(&self, state: &State, damping: f64, step: &DVector<f64>) -> (Vec<Vector3<f64>>, f64) {
         let run = |run: &std::ops::Range<usize>| {
             let mut fall = 0.0;
@@ -238,7 +239,7 @@ impl System {
         (parts.into_iter().flat_map(|part| part.0).collect(), fall)
     }
 
-    /// The cameras after a step.
+    /// Cameras after a step.
     pub fn moved(&self, state: &State, step: &DVector<f64>) -> (Vec<Pose>, Vec<Lens>) {
         let (mut poses, mut lenses) = (state.poses.clone(), state.lenses.clone());
         let three = |at: usize| Vector3::new(step[at], step[at + 1], step[at + 2]);
@@ -255,7 +256,7 @@ impl System {
         (poses, lenses)
     }
 
-    /// How many components all residuals have.
+    /// Number of components of all residuals.
     pub fn residuals(&self) -> usize {
         2 * self.seen.len()
     }

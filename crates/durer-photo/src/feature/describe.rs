@@ -4,19 +4,19 @@ use super::detect::{Octave, Point};
 use super::{Feature, Gray, LENGTH};
 use std::f32::consts::{PI, TAU};
 
-/// Bins of the histogram of orientations.
+/// Number of bins of the orientation histogram.
 const BINS: usize = 36;
-/// Cells of a descriptor across and down, and bins of each.
+/// Number of cells of a descriptor along each axis, and number of bins per cell.
 const CELLS: usize = 4;
 const TURNS: usize = 8;
-/// The width of a cell, in scales.
+/// Width of a cell, relative to the scale.
 const CELL: f32 = 3.0;
 
-/// The features of a point, one for each of its orientations, in pixels of the picture.
+/// Features of a point, one for each of its orientations, in pixels of the picture.
 pub fn describe(octaves: &[Octave], point: &Point, doubled: bool) -> Vec<(Feature, [u8; LENGTH])> {
     let gray = &octaves[point.octave].blurs[point.level];
-    // Pixels of the picture for one of the octave. Halving keeps the first pixel's centre where it
-    // is.
+    // Pixels of the picture per pixel of the octave. Halving keeps the centre of the first pixel in
+    // place.
     let of_base = (1 << point.octave) as f32;
     let base = if doubled { 0.5 } else { 1.0 };
     let feature = |angle: f32| Feature {
@@ -35,7 +35,7 @@ fn gradient(gray: &Gray, x: usize, y: usize) -> (f32, f32) {
     ((dx * dx + dy * dy).sqrt(), libm::atan2f(dy, dx))
 }
 
-/// Calls for every pixel within a radius of a point, but for the border.
+/// Calls `each` for every pixel within a radius of a point, except at the border.
 fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, usize, f32, f32)) {
     let range = |middle: f32, end: usize| {
         let low = (middle - radius).ceil().max(1.0) as usize;
@@ -48,8 +48,8 @@ fn around(gray: &Gray, point: &Point, radius: f32, mut each: impl FnMut(usize, u
     }
 }
 
-/// At most two orientations: peaks of the histogram of gradients, of which the second has four
-/// fifths of the first.
+/// Finds at most two orientations: peaks of the gradient histogram that reach four fifths of the
+/// highest.
 fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     let sigma = 1.5 * point.scale;
     let mut bins = [0.0_f32; BINS];
@@ -71,7 +71,7 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     for i in 0..BINS {
         let (left, here, right) = (bins[(i + BINS - 1) % BINS], bins[i], bins[(i + 1) % BINS]);
         if here > left && here > right && here >= 0.8 * largest {
-            // The vertex of the parabola through three bins, whose middles count.
+            // Vertex of the parabola through the centres of three bins.
             let shift = 0.5 * (left - right) / (left - 2.0 * here + right);
             peaks.push((here, (i as f32 + 0.5 + shift) / BINS as f32 * TAU - PI));
         }
@@ -81,8 +81,7 @@ fn orientations(gray: &Gray, point: &Point) -> Vec<f32> {
     peaks.into_iter().map(|peak| peak.1).collect()
 }
 
-/// The histograms of gradients in the cells, each gradient shared among neighbouring cells and
-/// bins.
+/// Gradient histograms of the cells. Each gradient is distributed to neighbouring cells and bins.
 fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
     let width = CELL * point.scale;
     let (sin, cos) = (libm::sinf(angle), libm::cosf(angle));
@@ -90,7 +89,7 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
     let mut bins = [0.0_f32; LENGTH];
     around(gray, point, width * (half + 0.5) * std::f32::consts::SQRT_2, |x, y, dx, dy| {
         let (u, v) = ((cos * dx + sin * dy) / width, (cos * dy - sin * dx) / width);
-        // Counted from the middle of the first cell.
+        // Relative to the centre of the first cell.
         let (column, row) = (u + half - 0.5, v + half - 0.5);
         if column <= -1.0 || row <= -1.0 || column >= CELLS as f32 || row >= CELLS as f32 {
             return;
@@ -113,7 +112,7 @@ fn descriptor(gray: &Gray, point: &Point, angle: f32) -> [u8; LENGTH] {
             }
         }
     });
-    // Large gradients, which light makes, count no more than a fifth of the whole.
+    // Clamp large gradients, which lighting causes, to a fifth of the whole.
     let length = bins.iter().map(|b| b * b).sum::<f32>().sqrt().max(1e-12);
     bins.iter_mut().for_each(|b| *b = (*b / length).min(0.2));
     let sum = bins.iter().sum::<f32>().max(1e-12);

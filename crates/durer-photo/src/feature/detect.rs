@@ -1,48 +1,48 @@
-//! Extremes of the difference of Gaussians (Lowe, sections 3 and 4).
+//! Extrema of the difference of Gaussians (Lowe, sections 3 and 4).
 
 use super::Gray;
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
-/// Scales in an octave that are searched.
+/// Number of scales per octave that are searched.
 pub const LEVELS: usize = 3;
-/// The blur of an octave's first picture.
+/// Blur of the first picture of an octave.
 pub const FIRST: f32 = 1.6;
-/// The blur that a photograph has by itself.
+/// Assumed blur of a photograph.
 const OWN: f32 = 0.5;
-/// The least difference of Gaussians, of brightness from 0 to 1, and the largest ratio of
-/// curvatures.
+/// Minimum difference of Gaussians, for values from 0 to 1, and maximum ratio of curvatures.
 const WEAKEST: f32 = 0.02 / LEVELS as f32;
 const EDGE: f32 = 10.0;
-/// Pixels at the border that are not searched.
+/// Width of the border that is not searched, in pixels.
 const BORDER: usize = 5;
 
-/// Pictures of one size, each blurred more than the one before.
+/// Pictures of the same size with increasing blur.
 pub struct Octave {
     pub blurs: Vec<Gray>,
     differences: Vec<Gray>,
 }
 
-/// An extreme.
+/// An extremum.
 #[derive(Debug, Clone, Copy)]
 pub struct Point {
     pub octave: usize,
     pub level: usize,
     pub row: usize,
     pub column: usize,
-    /// Where it is, in pixels' centres of the octave, and its scale in pixels of the octave.
+    /// Position in pixels of the octave, relative to pixel centres, and scale in pixels of the
+    /// octave.
     pub x: f32,
     pub y: f32,
     pub scale: f32,
     pub strength: f32,
 }
 
-/// 2 to the power of a share of an octave.
+/// Computes 2^(levels / LEVELS), for a fraction of an octave.
 fn power(levels: f32) -> f32 {
     libm::exp2f(levels / LEVELS as f32)
 }
 
-/// All octaves, until pictures are too small.
+/// Builds all octaves, down to the smallest useful size.
 pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
     let (start, own) = if doubled { (gray.doubled(), 2.0 * OWN) } else { (gray.clone(), OWN) };
     let mut first = start.blurred((FIRST * FIRST - own * own).sqrt());
@@ -50,7 +50,7 @@ pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
     while first.width.min(first.height) > 4 * BORDER && all.len() < 8 {
         let mut blurs = vec![first];
         for level in 1..LEVELS + 3 {
-            // From one blur to the next, variances add.
+            // Variances of successive blurs add up.
             let (before, after) = (FIRST * power(level as f32 - 1.0), FIRST * power(level as f32));
             blurs.push(blurs[level - 1].blurred((after * after - before * before).sqrt()));
         }
@@ -61,7 +61,7 @@ pub fn octaves(gray: &Gray, doubled: bool) -> Vec<Octave> {
     all
 }
 
-/// All extremes.
+/// Finds the extrema in all octaves.
 pub fn points(octaves: &[Octave]) -> Vec<Point> {
     let in_octave = |(number, octave): (usize, &Octave)| -> Vec<Point> {
         let height = octave.differences[0].height;
@@ -90,8 +90,8 @@ fn in_row(d: &[Gray], octave: usize, level: usize, row: usize) -> Vec<Point> {
     (BORDER..width - BORDER).filter(extreme).filter_map(|column| refined(d, octave, level, row, column)).collect()
 }
 
-/// Where the parabola through the neighbours has its extreme; none if that is far away, weak, or on
-/// an edge.
+/// Refines an extremum by a quadratic fit to its neighbours; `None` if the extremum is far away,
+/// weak, or on an edge.
 fn refined(d: &[Gray], octave: usize, mut level: usize, mut row: usize, mut column: usize) -> Option<Point> {
     for _ in 0..5 {
         let at = |dx: isize, dy: isize, dl: isize| {

@@ -1,25 +1,25 @@
-//! Pictures of one channel.
+//! Single-channel pictures.
 
 use rayon::prelude::*;
 
-/// A picture of brightness.
+/// A greyscale picture.
 #[derive(Debug, Clone)]
 pub struct Gray {
-    /// Pixels in a row.
+    /// Width in pixels.
     pub width: usize,
-    /// Rows.
+    /// Height in pixels.
     pub height: usize,
-    /// Row by row, from the top.
+    /// Values, row by row from the top.
     pub values: Vec<f32>,
 }
 
 impl Gray {
-    /// A pixel.
+    /// Value of a pixel.
     pub fn at(&self, x: usize, y: usize) -> f32 {
         self.values[y * self.width + x]
     }
 
-    /// A Gaussian blur; at the borders, the outermost pixels go on.
+    /// Applies a Gaussian blur. Beyond the borders, the edge pixels are repeated.
     pub fn blurred(&self, sigma: f32) -> Gray {
         let radius = (4.0 * sigma).ceil() as usize;
         let weight = |i: usize| libm::expf(-((i * i) as f32) / (2.0 * sigma * sigma));
@@ -52,10 +52,10 @@ impl Gray {
         Gray { width, height, values }
     }
 
-    /// Twice as wide and high, linearly between pixels' centres.
+    /// Doubles the size, with linear interpolation between pixel centres.
     pub fn doubled(&self) -> Gray {
         let (width, height) = (2 * self.width, 2 * self.height);
-        // The centre of pixel i is at (i + 1/2) / 2 of the smaller picture.
+        // The centre of pixel i is at (i + 1/2) / 2 in the smaller picture.
         let between = |i: usize, end: usize| {
             let near = i / 2;
             let far = if i.is_multiple_of(2) { near.saturating_sub(1) } else { (near + 1).min(end - 1) };
@@ -70,14 +70,14 @@ impl Gray {
         Gray { width, height, values }
     }
 
-    /// Every second pixel of every second row.
+    /// Keeps every second pixel of every second row.
     pub fn halved(&self) -> Gray {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let values = (0..width * height).map(|i| self.at(2 * (i % width), 2 * (i / width))).collect();
         Gray { width, height, values }
     }
 
-    /// The difference of two pictures of one size.
+    /// Difference of two pictures of the same size.
     pub fn minus(&self, other: &Gray) -> Gray {
         let values = self.values.iter().zip(&other.values).map(|(a, b)| a - b).collect();
         Gray { values, ..*self }

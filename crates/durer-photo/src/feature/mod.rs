@@ -1,7 +1,7 @@
-//! Salient points and what they look like: SIFT.
+//! SIFT features: salient points and their descriptors.
 //!
-//! Points are extremes of the difference of two Gaussian blurs, over place and scale; each gets one
-//! or two orientations, and a descriptor of the gradients around it, in its own scale and
+//! Points are extrema of the difference of two Gaussian blurs in position and scale. Each gets one
+//! or two orientations, and a descriptor of the gradients around it, relative to its scale and
 //! orientation.
 //!
 //! Sources: Lowe, *Distinctive Image Features from Scale-Invariant Keypoints*, IJCV 60(2), 2004;
@@ -16,31 +16,32 @@ pub use gray::Gray;
 
 use rayon::prelude::*;
 
-/// Bytes of a descriptor.
+/// Length of a descriptor in bytes.
 pub const LENGTH: usize = 128;
 
 /// A salient point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Feature {
-    /// Pixels from the upper left corner.
+    /// Horizontal position in pixels from the left.
     pub x: f32,
-    /// Pixels from the upper left corner, downwards.
+    /// Vertical position in pixels from the top.
     pub y: f32,
-    /// The standard deviation of the blur at which it is salient, in pixels.
+    /// Scale: the standard deviation of the blur at which the point is salient, in pixels.
     pub scale: f32,
-    /// Its orientation in radians, from right to down.
+    /// Orientation in radians, from right to down.
     pub angle: f32,
-    /// How strong it is: the difference of the blurs.
+    /// Strength: the difference of the blurs.
     pub strength: f32,
 }
 
-/// The strongest features of a picture, with their descriptors, in the order of strength.
+/// Finds the strongest features of a picture and their descriptors, strongest first.
 pub fn features(gray: &Gray, most: usize) -> Vec<(Feature, [u8; LENGTH])> {
-    // Small pictures have more to tell when they are doubled; of large ones there is enough.
+    // Small pictures yield more features when doubled; large ones have enough.
     let doubled = gray.width.max(gray.height) <= 1000;
     let octaves = detect::octaves(gray, doubled);
     let mut points = detect::points(&octaves);
-    // Strength falls; ties go by place, so that nothing depends on who found what first.
+    // Sort by decreasing strength, and break ties by position, so that the order does not depend on
+    // threads.
     points.sort_by(|a, b| {
         let keys = |p: &detect::Point| (p.octave, p.level, p.row, p.column);
         b.strength.abs().total_cmp(&a.strength.abs()).then_with(|| keys(a).cmp(&keys(b)))

@@ -1,7 +1,7 @@
-//! *Bundle Adjustment in the Large*: problems by which solvers are compared.
+//! Problems of *Bundle Adjustment in the Large*, a benchmark of solvers.
 //!
 //! Source: Agarwal, Snavely, Seitz, Szeliski, *Bundle Adjustment in the Large*, ECCV 2010, and the
-//! page of its data.
+//! web page of its data.
 
 use super::{Words, joined, opposite};
 use crate::model::{axis_angle_of, rotation_of};
@@ -9,8 +9,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a file. Neither sizes of pictures nor colours are in it: pixels count from the middle,
-/// points are grey.
+/// Reads a file. The format contains neither picture sizes nor colours: pixels are relative to the
+/// centre, and points are grey.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     let cameras = words.count("the number of cameras", 18)?;
@@ -43,7 +43,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(all)
 }
 
-/// Writes a file; photographs without pose are left out.
+/// Writes a file. Leaves out photographs without a pose.
 pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     let mut numbers = vec![None; all.views.len()];
     let mut cameras = String::new();

@@ -1,5 +1,5 @@
-//! Bundler's `.out` files, versions 0.3 and 0.4 alike: the cameras and points of Photo Tourism's
-//! own program.
+//! Bundler's `.out` files, versions 0.3 and 0.4: the cameras and points of the Photo Tourism
+//! program.
 //!
 //! Source: Snavely, *Bundler v0.4 User's Manual*, 2010, "Output format and scene representation".
 
@@ -8,8 +8,8 @@ use crate::{Error, Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use std::fmt::Write;
 
-/// Reads a file. Pictures' sizes are not in it: the origin of pixels is the middle, until
-/// [`Reconstruction::set_picture`] is told them.
+/// Reads a file. The format contains no picture sizes: pixels are relative to the centre until
+/// [`Reconstruction::set_picture`] sets the size.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let mut words = Words::new(file, bytes)?;
     if !words.next_line('#') {

@@ -1,5 +1,5 @@
-//! COLMAP's folders of `cameras`, `images` and `points3D`: what is in them, apart from
-//! [text](super::colmap_text) and [binary](super::colmap_binary).
+//! COLMAP folders with `cameras`, `images`, and `points3D`: the common part of
+//! [text](super::colmap_text) and [binary](super::colmap_binary) files.
 //!
 //! Source: Schönberger, *COLMAP* manual, "Output Format" and "Camera Models".
 
@@ -9,12 +9,11 @@ use nalgebra::{Vector2, Vector3};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 
-/// A camera model that is read: its name, its number in binary files, and how many parameters it
-/// has.
+/// Supported camera models: name, number in binary files, and number of parameters.
 pub const MODELS: [(&str, i32, usize); 5] =
     [("SIMPLE_PINHOLE", 0, 3), ("PINHOLE", 1, 4), ("SIMPLE_RADIAL", 2, 4), ("RADIAL", 3, 5), ("OPENCV", 4, 8)];
 
-/// The lens of a model's parameters.
+/// Creates a lens from the parameters of a model.
 pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
     let (focal, vertical, center, radial) = match model {
         0 => (p[0], p[0], [p[1], p[2]], [0.0; 2]),
@@ -32,7 +31,7 @@ pub fn lens(model: usize, size: [u32; 2], p: &[f64]) -> Result<Lens, String> {
     Ok(Lens { size, focal, aspect: vertical / focal, center, radial })
 }
 
-/// A lens as a model's number in [`MODELS`] and its parameters.
+/// Converts a lens to an index into [`MODELS`] and the parameters of that model.
 pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
     let ([x, y], [k1, k2]) = (lens.center, lens.radial);
     match lens.aspect {
@@ -41,25 +40,25 @@ pub fn parameters(lens: &Lens) -> (usize, Vec<f64>) {
     }
 }
 
-/// A row of `images`.
+/// A row of the `images` table.
 pub struct Image {
     pub quaternion: [f64; 4],
     pub translation: [f64; 3],
     pub camera: u32,
     pub name: String,
-    /// Where features are.
+    /// Positions of the features.
     pub features: Vec<[f64; 2]>,
 }
 
-/// A row of `points3D`.
+/// A row of the `points3D` table.
 pub struct Row {
     pub position: [f64; 3],
     pub color: [u8; 3],
-    /// Image's id and feature's number.
+    /// Pairs of image id and feature number.
     pub track: Vec<(u32, usize)>,
 }
 
-/// What a folder holds, each by its id.
+/// Tables of a folder, by id.
 #[derive(Default)]
 pub struct Tables {
     pub cameras: BTreeMap<u32, Lens>,
@@ -67,7 +66,7 @@ pub struct Tables {
     pub points: BTreeMap<u64, Row>,
 }
 
-/// Puts in what has an id of its own.
+/// Inserts a row. Returns an error if the id exists already.
 pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row: T) -> Result<(), String> {
     match into.insert(id, row) {
         None => Ok(()),
@@ -76,7 +75,7 @@ pub fn once<Id: Ord + Copy + Display, T>(into: &mut BTreeMap<Id, T>, id: Id, row
 }
 
 impl Tables {
-    /// All of it as a reconstruction; ids become numbers in their order.
+    /// Converts the tables to a reconstruction. Ids become numbers in the same order.
     pub fn into_reconstruction(self, file: &str) -> Result<Reconstruction, Error> {
         let fail = |why: String| Error::of(file, why);
         let lens_of: BTreeMap<u32, usize> = self.cameras.keys().enumerate().map(|(i, id)| (*id, i)).collect();
@@ -106,11 +105,11 @@ impl Tables {
     }
 }
 
-/// A photograph's features: place and the point's id.
+/// Features of a photograph: positions and ids of points.
 pub type Features = Vec<(Vector2<f64>, usize)>;
 
-/// The features of each photograph as they are written; and for each point's observations, the
-/// numbers of their features.
+/// Features of each photograph in written order, and the feature numbers of each point's
+/// observations.
 pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     let mut features = vec![Vec::new(); all.views.len()];
     let mut numbers = Vec::new();
@@ -124,7 +123,7 @@ pub fn features(all: &Reconstruction) -> (Vec<Features>, Vec<Vec<usize>>) {
     (features, numbers)
 }
 
-/// The mean length of a point's residuals.
+/// Mean length of a point's residuals.
 pub fn error(all: &Reconstruction, point: &Point) -> f64 {
     let lengths: Vec<f64> =
         point.track.iter().filter_map(|seen| Some(all.residual(&point.position, seen)?.norm())).collect();

@@ -1,10 +1,10 @@
-//! COLMAP's three tables as binary files: little-endian.
+//! COLMAP's three tables as little-endian binary files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 
-/// Bytes that are read one after the other.
+/// Sequential reader of bytes.
 pub struct Bytes<'b> {
     file: &'b str,
     bytes: &'b [u8],
@@ -16,7 +16,7 @@ impl<'b> Bytes<'b> {
         Bytes { file, bytes, at: 0 }
     }
 
-    /// An error at the bytes that were read last.
+    /// Creates an error at the current position.
     pub fn error(&self, why: impl AsRef<str>) -> Error {
         Error::of(self.file, format!("at byte {}: {}", self.at, why.as_ref()))
     }
@@ -42,7 +42,7 @@ impl<'b> Bytes<'b> {
         Ok(u64::from_le_bytes(self.array()?))
     }
 
-    /// A finite number.
+    /// Reads a finite number.
     pub fn f64(&mut self) -> Result<f64, Error> {
         let number = f64::from_le_bytes(self.array()?);
         if number.is_finite() { Ok(number) } else { Err(self.error(format!("{number} is not a number"))) }
@@ -56,7 +56,7 @@ impl<'b> Bytes<'b> {
         Ok(numbers)
     }
 
-    /// A number of things of which each takes at least some bytes.
+    /// Reads a number of entries, each of which takes at least `bytes` bytes.
     fn count(&mut self, bytes: usize) -> Result<usize, Error> {
         let count = self.u64()?;
         let fits = usize::try_from(count).ok().filter(|count| *count <= (self.bytes.len() - self.at) / bytes);
@@ -68,7 +68,7 @@ impl<'b> Bytes<'b> {
     }
 }
 
-/// Reads the contents of cameras.bin, images.bin and points3D.bin, each with its name.
+/// Reads the contents of cameras.bin, images.bin, and points3D.bin, each with its file name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
     let mut tables = Tables::default();
     let mut bytes = Bytes::new(cameras.0, cameras.1);
@@ -122,7 +122,7 @@ fn put(into: &mut Vec<u8>, numbers: impl IntoIterator<Item = f64>) {
     numbers.into_iter().for_each(|number| into.extend(number.to_le_bytes()));
 }
 
-/// Writes cameras.bin, images.bin and points3D.bin. Photographs without pose are left out.
+/// Writes cameras.bin, images.bin, and points3D.bin. Leaves out photographs without a pose.
 pub fn write(all: &Reconstruction) -> [Vec<u8>; 3] {
     let (features, numbers) = features(all);
     let mut cameras = (all.lenses.len() as u64).to_le_bytes().to_vec();

@@ -1,4 +1,4 @@
-//! COLMAP's three tables as text.
+//! COLMAP's three tables as text files.
 
 use super::colmap::{Image, MODELS, Row, Tables, error, features, lens, once, parameters};
 use super::{Words, joined};
@@ -6,7 +6,7 @@ use crate::model::quaternion_of;
 use crate::{Error, Reconstruction};
 use std::fmt::Write;
 
-/// Reads the contents of cameras.txt, images.txt and points3D.txt, each with its name.
+/// Reads the contents of cameras.txt, images.txt, and points3D.txt, each with its file name.
 pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Result<Reconstruction, Error> {
     let mut tables = Tables::default();
     let mut words = Words::in_rows(cameras.0, cameras.1)?;
@@ -31,7 +31,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
         let camera = words.parse("a camera's id")?;
         words.is_at_end_of_line();
         let name = words.rest_of_line().to_string();
-        // The second line may be empty. It begins after the end of the first one.
+        // The second line of an image may be empty. It begins after the end of the first.
         let mut list = Vec::new();
         words.skip_line_end();
         while !words.is_at_end_of_line() {
@@ -59,7 +59,7 @@ pub fn read(folder: &str, [cameras, images, points]: [(&str, &[u8]); 3]) -> Resu
     tables.into_reconstruction(folder)
 }
 
-/// Writes cameras.txt, images.txt and points3D.txt. Photographs without pose are left out.
+/// Writes cameras.txt, images.txt, and points3D.txt. Leaves out photographs without a pose.
 pub fn write(all: &Reconstruction) -> [String; 3] {
     let (features, numbers) = features(all);
     let mut cameras = String::from("# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n");

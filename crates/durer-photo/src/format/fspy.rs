@@ -1,12 +1,12 @@
-//! fSpy's projects (`.fspy`) and exported cameras (`.json`): one photograph's camera from vanishing
-//! lines.
+//! fSpy projects (`.fspy`) and exported cameras (`.json`): the camera of a single photograph from
+//! vanishing lines.
 //!
-//! A project is `fspy`, a version, the lengths of its state as JSON and of its photograph, and
-//! both. Its points run from 0 to 1 over the photograph, y downwards. An exported camera has points
-//! of the image plane instead: the longer side runs from -1 to 1, y upwards; its camera looks down
-//! -z.
+//! A project consists of `fspy`, a version, the lengths of its JSON state and of its photograph,
+//! and both. Its points range from 0 to 1 across the photograph, y downwards. The points of an
+//! exported camera lie in the image plane instead: the longer side ranges from -1 to 1, y upwards,
+//! and the camera looks down -z.
 //!
-//! Source: fSpy-Blender's documentation, *The fSpy project file format*.
+//! Source: documentation of fSpy-Blender, *The fSpy project file format*.
 
 use super::colmap_binary::Bytes;
 use super::opposite;
@@ -52,8 +52,7 @@ pub fn read_camera(file: &str, json: &[u8]) -> Result<Reconstruction, Error> {
     Ok(Reconstruction { lenses: vec![lens], views: vec![view], points: Vec::new() })
 }
 
-/// Reads what a project says of its photograph: its vanishing lines, the point that is the origin,
-/// and the photograph itself.
+/// Reads a project: its vanishing lines and origin, and the bytes of the photograph.
 pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLines, &'b [u8]), Error> {
     let mut bytes = Bytes::new(file, content);
     if bytes.take(4).ok() != Some(b"fspy") {
@@ -91,7 +90,7 @@ pub fn read_project<'b>(file: &'b str, content: &'b [u8]) -> Result<(VanishingLi
     };
     let first = lines(&base["firstVanishingPoint"]);
     let second = match state["calibrationSettings2VP"]["quadModeEnabled"].as_bool() {
-        // The second pair joins the ends of the first one's lines.
+        // The second pair joins the ends of the first pair of lines.
         Some(true) => first.as_ref().map(|lines| vec![[lines[0][0], lines[1][0]], [lines[0][1], lines[1][1]]]),
         _ => lines(&two["secondVanishingPoint"]),
     };

@@ -1,12 +1,12 @@
-//! What people write by hand: points, lines and control points, a row a line, with `#` before
-//! comments.
+//! Handwritten files of points, lines, and control points: one row per line, with comments after
+//! `#`.
 
 use super::Words;
 use crate::known::{Axis, Control, Pair, VanishingLines};
 use crate::{Error, Observation};
 use nalgebra::{Vector2, Vector3};
 
-/// Points of the world and their pixels: rows `X Y Z u v`.
+/// Reads world points and their pixels, in rows `X Y Z u v`.
 pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<Pair>, Error> {
     let mut words = Words::in_rows(file, bytes)?;
     let mut pairs = Vec::new();
@@ -18,9 +18,9 @@ pub fn read_points(file: &str, bytes: &[u8]) -> Result<Vec<Pair>, Error> {
     Ok(pairs)
 }
 
-/// Vanishing lines: rows `x u1 v1 u2 v2`, where `x`, `-y` and so on is the axis that leads towards
-/// the vanishing point, and one row `origin u v`. Two axes must be named, each by two lines or
-/// more.
+/// Reads vanishing lines, in rows `x u1 v1 u2 v2`, where `x`, `-y`, and so on is the axis that
+/// leads towards the vanishing point, and one row `origin u v`. There must be two axes, each with
+/// at least two lines.
 pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingLines, Error> {
     let mut words = Words::in_rows(file, bytes)?;
     let center = Vector2::from(size.map(|side| f64::from(side) / 2.0));
@@ -48,8 +48,8 @@ pub fn read_lines(file: &str, bytes: &[u8], size: [u32; 2]) -> Result<VanishingL
     Ok(VanishingLines { size, center, origin, axes: [one.0, two.0], lines: [one.1, two.1] })
 }
 
-/// Control points: rows `X Y Z photograph u v photograph u v ...`; photographs by their names,
-/// which have no blanks.
+/// Reads control points, in rows `X Y Z photograph u v photograph u v ...`. Names of photographs
+/// must not contain spaces.
 pub fn read_control(file: &str, bytes: &[u8], names: &[&str]) -> Result<Vec<Control>, Error> {
     let mut words = Words::in_rows(file, bytes)?;
     let mut points = Vec::new();

@@ -1,10 +1,10 @@
-//! glTF 2.0: cameras as nodes, points as a mesh of points, in one file; read as JSON (`.gltf`) or
+//! glTF 2.0: cameras as nodes and points as a point mesh in one file, read as JSON (`.gltf`) or
 //! binary (`.glb`).
 //!
-//! glTF's cameras look down -z with y up, have no distortion, and their middle is the principal
-//! point. What a lens has beyond that, and the size of its photographs, is written as `extras` that
-//! other programs pass over; where these are not there, photographs are taken to have 1000 rows.
-//! The world is turned upside down by no one: y of the world stays y.
+//! glTF cameras look down -z with y up, have no distortion, and their principal point is the
+//! centre. Other properties of a lens and the size of its photographs are stored as `extras`, which
+//! other programs ignore. Without them, photographs are assumed to have 1000 rows. The world is not
+//! flipped: its y axis stays the y axis.
 //!
 //! Source: Khronos, *glTF 2.0 Specification*, sections 3.6, 3.10, 4.4 and 5.12.
 
@@ -17,7 +17,7 @@ use nalgebra::{Matrix3, Matrix4, Vector3};
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// The rows of a photograph whose size nobody tells.
+/// Assumed number of rows of a photograph with an unknown size.
 const ROWS: f64 = 1000.0;
 
 #[derive(Default, Deserialize)]
@@ -59,7 +59,7 @@ struct Perspective {
     aspect_ratio: Option<f64>,
 }
 
-/// What [`Lens`] has beyond a field of view.
+/// Properties of a [`Lens`] beyond the field of view.
 #[derive(Serialize, Deserialize)]
 struct Extras {
     width: u32,
@@ -76,7 +76,7 @@ struct Mesh {
 #[derive(Deserialize)]
 struct Primitive {
     attributes: Attributes,
-    /// 0 for points; triangles are usual.
+    /// Topology: 0 for points; triangles by default.
     mode: Option<u32>,
 }
 
@@ -115,8 +115,7 @@ struct Buffer {
     uri: Option<String>,
 }
 
-/// Reads cameras and points; what else is in the file is passed over. Nothing tells which
-/// photographs see a point.
+/// Reads cameras and points, and ignores the rest of the file. The format contains no observations.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let fail = |why: String| Error::of(name, why);
     let (json, binary) =
@@ -130,7 +129,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
         if let Some(number) = node.camera {
             let camera =
                 file.cameras.get(number).ok_or_else(|| fail(format!("node {i}: there is no camera {number}")))?;
-            // Those without perspective have no place from which rays go out.
+            // Orthographic cameras have no centre of projection.
             let Some(perspective) = &camera.perspective else { continue };
             let lens = lens(perspective, &camera.extras).map_err(|why| fail(format!("camera {number}: {why}")))?;
             let pose = pose(&world)
@@ -151,7 +150,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
             if colors.as_ref().is_some_and(|colors| colors.len() != positions.len()) {
                 return Err(fail(format!("node {i}: there is not one colour for each point")));
             }
-            // One mesh may stand in many places.
+            // A mesh may be instanced many times.
             if all.points.len() + positions.len() > bytes.len() {
                 return Err(fail(
                     "there are more points than the file has bytes: the same ones, in too many places".into(),
@@ -168,7 +167,7 @@ pub fn read(name: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     Ok(all)
 }
 
-/// The JSON of a file, and the bytes that a binary file has behind it.
+/// JSON of a file, and the data chunk of a binary file.
 fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     if !bytes.starts_with(b"glTF") {
         return Some((bytes, &[]));
@@ -183,7 +182,7 @@ fn chunks(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
     Some((json, binary))
 }
 
-/// All nodes with their places in the world, each after its parent.
+/// World transforms of the nodes, parents first.
 fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
     let count = file.nodes.len();
     let mut is_child = vec![false; count];
@@ -200,11 +199,11 @@ fn placed(file: &File) -> Result<Vec<(usize, Matrix4<f64>)>, String> {
         all.extend(file.nodes[parent].children.iter().map(|child| (*child, world * local(&file.nodes[*child]))));
         next += 1;
     }
-    // Nobody comes to nodes that are their own ancestors.
+    // Nodes that are their own ancestors are never reached.
     if all.len() == count { Ok(all) } else { Err("some nodes are their own ancestors".into()) }
 }
 
-/// A node's place in its parent.
+/// Transform of a node relative to its parent.
 fn local(node: &Node) -> Matrix4<f64> {
     if let Some(matrix) = node.matrix {
         return Matrix4::from_column_slice(&matrix);
@@ -216,7 +215,7 @@ fn local(node: &Node) -> Matrix4<f64> {
     matrix
 }
 
-/// The pose of a camera by its place in the world. A scale changes no camera.
+/// Pose of a camera from its world transform. Scaling does not affect cameras.
 fn pose(world: &Matrix4<f64>) -> Option<Pose> {
     let axes = world.fixed_view::<3, 3>(0, 0).into_owned();
     let is_turn = axes.determinant() > 0.0 && world.iter().all(|value| value.is_finite());
@@ -240,7 +239,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     };
     let vertical = f64::from(beyond.height) / (2.0 * half);
     let aspect = ratio * f64::from(beyond.height) / f64::from(beyond.width);
-    // Square pixels are such exactly, but for what was lost with digits.
+    // Square pixels have an aspect of exactly 1, up to rounding.
     let aspect = if (aspect - 1.0).abs() < 1e-12 { 1.0 } else { aspect };
     let size = [beyond.width, beyond.height];
     if size.contains(&0) {
@@ -249,7 +248,7 @@ fn lens(perspective: &Perspective, extras: &Value) -> Result<Lens, String> {
     Ok(Lens { size, focal: vertical / aspect, aspect, center: beyond.center, radial: beyond.radial })
 }
 
-/// An attribute of points: three numbers of each; whole numbers are shares of the largest one.
+/// Reads three components of an attribute per point. Integers are normalised by their maximum.
 fn column(
     file: &File,
     buffers: &mut [Option<Vec<u8>>],
@@ -288,7 +287,7 @@ fn column(
     let bytes = bytes.get(view.byte_offset..).and_then(|bytes| bytes.get(..view.byte_length)).ok_or_else(short)?;
     let bytes = bytes.get(accessor.byte_offset..).ok_or_else(short)?;
     let stride = view.byte_stride.unwrap_or(width * size).max(1);
-    // So no more memory is taken than there are bytes.
+    // Limits the allocation to the size of the data.
     if accessor.count > bytes.len() {
         return Err(short());
     }
@@ -369,7 +368,7 @@ pub fn write(all: &Reconstruction) -> Result<Vec<u8>, Error> {
     serde_json::to_vec_pretty(&gltf).map_err(|error| Error::new(error.to_string()))
 }
 
-/// glTF's quaternion (x, y, z, w) from the camera's frame to the world.
+/// glTF quaternion (x, y, z, w) from the camera frame to the world.
 fn rotation(pose: &Pose) -> [f64; 4] {
     let [w, x, y, z] = quaternion_of(&pose.rotation.transpose());
     [x, y, z, w]

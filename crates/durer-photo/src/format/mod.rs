@@ -1,4 +1,4 @@
-//! What other programs read and write.
+//! Formats of other programs.
 
 mod bal;
 mod bundler;
@@ -25,19 +25,19 @@ pub use fspy::read_project;
 pub use given::{read_control, read_lines, read_points};
 pub use scene::projective_camera;
 
-/// How a format's numbers are meant.
+/// Conventions of a format.
 pub struct Convention {
-    /// The format.
+    /// Name of the format.
     pub name: &'static str,
-    /// How its files are known.
+    /// Recognition of its files.
     pub files: &'static str,
-    /// In which directions it goes.
+    /// Supported directions: in, out, or both.
     pub way: &'static str,
-    /// The camera's frame.
+    /// Camera frame.
     pub frame: &'static str,
-    /// How a rotation is written.
+    /// Representation of rotations.
     pub rotation: &'static str,
-    /// What the translation is.
+    /// Meaning of the translation.
     pub translation: &'static str,
     /// Units and origin of pixels.
     pub pixels: &'static str,
@@ -45,7 +45,7 @@ pub struct Convention {
     pub lens: &'static str,
 }
 
-/// The conventions of all formats.
+/// Conventions of all formats.
 pub const CONVENTIONS: [Convention; 9] = {
     const fn row(f: [&'static str; 8]) -> Convention {
         let [name, files, way, frame, rotation, translation, pixels, lens] = f;
@@ -105,14 +105,14 @@ pub const CONVENTIONS: [Convention; 9] = {
     ]
 };
 
-/// A pose of a camera that looks down -z with y up as one that looks along +z with y down, and
-/// back.
+/// Converts between poses of cameras that look down -z with y up and cameras that look along +z
+/// with y down.
 fn opposite(pose: &Pose) -> Pose {
     let turn = Matrix3::from_diagonal(&Vector3::new(1.0, -1.0, -1.0));
     Pose { rotation: turn * pose.rotation, translation: turn * pose.translation }
 }
 
-/// Whether a matrix is a rotation, but for what was lost with digits.
+/// Returns true if a matrix is a rotation, up to rounding.
 fn is_rotation(matrix: &Matrix3<f64>) -> bool {
     (matrix * matrix.transpose() - Matrix3::identity()).norm() < 1e-3 && matrix.determinant() > 0.0
 }
@@ -121,7 +121,7 @@ fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     text::joined(values)
 }
 
-/// Refuses a lens that is not of square pixels, for formats that have no other.
+/// Rejects lenses with non-square pixels, for formats that do not support them.
 fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     if lens.aspect == 1.0 {
         return Ok(());
@@ -129,14 +129,14 @@ fn square(lens: &Lens, format: &str) -> Result<(), Error> {
     Err(Error::new(format!("{format}'s files know square pixels only, and here is a lens of aspect {}", lens.aspect)))
 }
 
-/// The bytes of a file, which gzip or bzip2 may have made smaller.
+/// Reads a file and decompresses it if it was compressed by gzip or bzip2.
 fn bytes(path: &Path) -> Result<Vec<u8>, Error> {
     let file = path.to_string_lossy();
     let bytes = std::fs::read(path).map_err(|error| Error::of(&file, format!("cannot read it: {error}")))?;
     packed::unpacked(&file, bytes)
 }
 
-/// The files that [`read`] reads for a path.
+/// Files that [`read`] reads for a path.
 pub fn inputs(path: &Path) -> Vec<PathBuf> {
     if path.is_dir() {
         let end = if path.join("cameras.bin").exists() { "bin" } else { "txt" };
@@ -145,7 +145,7 @@ pub fn inputs(path: &Path) -> Vec<PathBuf> {
     tracks_of(path).into_iter().chain([path.to_path_buf()]).collect()
 }
 
-/// The tracks that belong to a reconstruction of OpenSfM's: its own name with `tracks` for
+/// Tracks that belong to an OpenSfM reconstruction: the same name with `tracks` instead of
 /// `reconstruction`.
 fn tracks_of(path: &Path) -> Option<PathBuf> {
     let name = path.file_name()?.to_str()?;
@@ -153,8 +153,8 @@ fn tracks_of(path: &Path) -> Option<PathBuf> {
     (path.extension()? == "json" && other.exists()).then_some(other)
 }
 
-/// Reads cameras and points: the format follows from the name's extension, before `.gz` or `.bz2`
-/// where it has that; a folder is COLMAP's.
+/// Reads cameras and points. The extension determines the format, ignoring a final `.gz` or `.bz2`;
+/// a folder is in COLMAP's format.
 pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     let file = path.to_string_lossy();
     if path.is_dir() {
@@ -189,34 +189,34 @@ pub fn read(path: &Path) -> Result<Reconstruction, Error> {
     }
 }
 
-/// Whether a file is what [`Matches::to_json`](crate::matching::Matches::to_json) writes: it says
-/// so in its first line.
+/// Returns true if a file was written by [`Matches::to_json`](crate::matching::Matches::to_json),
+/// according to its first line.
 pub fn is_matches(content: &[u8]) -> bool {
     let head = String::from_utf8_lossy(&content[..content.len().min(80)]);
     head.contains("\"format\"") && head.contains(crate::matching::FORMAT)
 }
 
-/// A way to write cameras and points.
+/// An output format for cameras and points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Output {
-    /// Bundler's `.out`.
+    /// Bundler's `.out` file.
     Bundler,
-    /// A problem as in *Bundle Adjustment in the Large*.
+    /// A problem of *Bundle Adjustment in the Large*.
     Bal,
-    /// COLMAP's folder of text.
+    /// COLMAP's folder of text files.
     ColmapText,
     /// COLMAP's folder of binary files.
     ColmapBinary,
-    /// OpenSfM's JSON, and its tracks beside it.
+    /// OpenSfM's JSON file, with its tracks beside it.
     OpenSfm,
-    /// Points.
+    /// PLY file of points.
     Ply,
-    /// Cameras and points.
+    /// glTF file of cameras and points.
     Gltf,
 }
 
 impl Output {
-    /// The format that a name asks for: one without extension is a folder.
+    /// Finds the output format for a path. A path without an extension is a folder.
     pub fn of(path: &Path, binary: bool) -> Result<Self, Error> {
         Ok(match path.extension().and_then(|end| end.to_str()) {
             None if binary => Output::ColmapBinary,
@@ -234,12 +234,12 @@ impl Output {
         })
     }
 
-    /// Whether it is a folder.
+    /// Returns true if the output is a folder.
     pub fn is_folder(self) -> bool {
         matches!(self, Output::ColmapText | Output::ColmapBinary)
     }
 
-    /// The files for a path, in the order of [`Output::write`].
+    /// Paths of the files, in the order of [`Output::write`].
     pub fn files(self, path: &Path) -> Vec<PathBuf> {
         let table = |end: &str| ["cameras", "images", "points3D"].map(|name| path.join(format!("{name}.{end}"))).into();
         match self {
@@ -257,7 +257,7 @@ impl Output {
         }
     }
 
-    /// The files' contents.
+    /// Creates the contents of the files.
     pub fn write(self, all: &Reconstruction) -> Result<Vec<Vec<u8>>, Error> {
         Ok(match self {
             Output::Bundler => vec![bundler::write(all)?],
@@ -272,8 +272,8 @@ impl Output {
 }
 
 impl Reconstruction {
-    /// Tells the size and the name of a photograph, where its format had none: pixels count from
-    /// its corner then.
+    /// Sets the size and the name of a photograph if its format does not contain them. Pixels are
+    /// then relative to the upper left corner.
     pub fn set_picture(&mut self, view: usize, name: &str, size: [u32; 2]) {
         self.views[view].name = name.to_string();
         let lens = self.views[view].lens;

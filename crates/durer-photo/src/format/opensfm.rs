@@ -1,4 +1,4 @@
-//! OpenSfM's `reconstruction.json` with its `tracks.csv`.
+//! OpenSfM's `reconstruction.json` and `tracks.csv`.
 //!
 //! Source: OpenSfM documentation, "Reconstruction file format", "Tracks" and "Geometric Models".
 
@@ -42,8 +42,8 @@ struct Part {
     points: BTreeMap<String, Place>,
 }
 
-/// Reads the reconstruction, of several parts the one with the most shots, with its tracks where
-/// there are any.
+/// Reads a reconstruction and its tracks, if any. Of several parts, the one with the most shots is
+/// read.
 pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Reconstruction, Error> {
     let parts: Vec<Part> = serde_json::from_slice(json)
         .map_err(|error| Error::at(file, (error.line(), error.column()), format!("OpenSfM's JSON: {error}")))?;
@@ -85,8 +85,8 @@ pub fn read(file: &str, json: &[u8], tracks: Option<(&str, &[u8])>) -> Result<Re
     Ok(all)
 }
 
-/// Adds what the photographs see. Rows of other photographs and points are passed over: not all
-/// that was tracked became a point.
+/// Adds the observations. Skips rows of unknown photographs and points, since not every track
+/// becomes a point.
 fn read_tracks(
     file: &str,
     bytes: &[u8],
@@ -101,7 +101,7 @@ fn read_tracks(
     }
     words.rest_of_line();
     while !words.is_at_end() {
-        // Names may hold blanks: a row's fields are between tabs.
+        // Names may contain spaces; fields are separated by tabs.
         let error = words.error("this row should be: photograph, track, feature, x, y, ..., between tabs");
         let fields: Vec<&str> = words.rest_of_line().split('\t').collect();
         let number = |i: usize| fields.get(i)?.trim().parse::<f64>().ok().filter(|value| value.is_finite());
@@ -116,7 +116,7 @@ fn read_tracks(
     Ok(())
 }
 
-/// Writes reconstruction.json and tracks.csv. Photographs without pose are left out.
+/// Writes reconstruction.json and tracks.csv. Leaves out photographs without a pose.
 pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
     let name = |lens: usize| format!("camera {}", lens + 1);
     let mut part = Part { cameras: BTreeMap::new(), shots: BTreeMap::new(), points: BTreeMap::new() };
@@ -143,7 +143,7 @@ pub fn write(all: &Reconstruction) -> Result<[String; 2], Error> {
             let lens = all.lenses[view.lens];
             let p = (seen.pixel - Vector2::from(lens.center)) / lens.longer_side();
             let [r, g, b] = point.color;
-            // The size of the feature is not kept; 0.001 is OpenSfM's usual one.
+            // Sizes of features are not stored; 0.001 is OpenSfM's default.
             let row = (&view.name, i, seen.feature, p.x, p.y);
             let _ =
                 writeln!(tracks, "{}\t{}\t{}\t{}\t{}\t0.001\t{r}\t{g}\t{b}\t-1\t-1", row.0, row.1, row.2, row.3, row.4);

@@ -1,13 +1,13 @@
-//! Files that gzip or bzip2 made smaller, as those of *Bundle Adjustment in the Large* are.
+//! Files compressed by gzip or bzip2, such as those of *Bundle Adjustment in the Large*.
 
 use crate::Error;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-/// No file is longer than this when it is unpacked; a small one could fill the memory otherwise.
+/// Maximum length of a decompressed file, since a small file could fill the memory otherwise.
 const LONGEST: u64 = 4 << 30;
 
-/// A file's bytes, unpacked if they begin as those of gzip and bzip2 do.
+/// Decompresses a file if it begins with the signature of gzip or bzip2.
 pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     let (packed, mut reader): (_, Box<dyn Read + '_>) = match bytes.get(..3) {
         Some([0x1f, 0x8b, _]) => ("gzip", Box::new(flate2::read::MultiGzDecoder::new(&*bytes))),
@@ -24,7 +24,7 @@ pub fn unpacked(file: &str, bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     Ok(plain)
 }
 
-/// A path without what gzip and bzip2 add to a name.
+/// Removes the extension of gzip or bzip2 from a path.
 pub fn plain(path: &Path) -> PathBuf {
     match path.extension().and_then(|end| end.to_str()) {
         Some("gz" | "bz2") => path.with_extension(""),

@@ -1,9 +1,8 @@
-//! Points with colours as PLY. What is written is binary and little-endian; text and big-endian
-//! files are read too.
+//! PLY point clouds with colours. Writes binary little-endian files, and also reads text and
+//! big-endian files.
 //!
-//! The places of cameras are written as red points, for programs that show points; a comment says
-//! how many of the last points they are, so that they are not taken for points of the scene when
-//! the file is read.
+//! Camera positions are written as red points, for programs that show points. A comment states how
+//! many of the last points are cameras, so that they are not read as points of the scene.
 //!
 //! Source: Turk, *The PLY Polygon File Format*, 1994.
 
@@ -12,10 +11,10 @@ use super::colmap_binary::Bytes;
 use crate::{Error, Point, Reconstruction};
 use nalgebra::Vector3;
 
-/// The comment before the number of camera places.
+/// Start of the comment with the number of cameras.
 const CAMERAS: &str = "cameras at the end:";
 
-/// Types of numbers: both names, and how many bytes one takes.
+/// Number types: both names, and the size in bytes.
 const KINDS: [(&str, &str, usize); 8] = [
     ("char", "int8", 1),
     ("uchar", "uint8", 1),
@@ -27,7 +26,7 @@ const KINDS: [(&str, &str, usize); 8] = [
     ("double", "float64", 8),
 ];
 
-/// How the rows of numbers are written.
+/// Encoding of the rows.
 #[derive(Clone, Copy, PartialEq)]
 enum Encoding {
     Text,
@@ -35,20 +34,19 @@ enum Encoding {
     Big,
 }
 
-/// What stands before the rows.
+/// Header of a file.
 struct Head {
     encoding: Encoding,
-    /// How many points there are, and where that is said.
+    /// Number of points, and the position of that number in the header.
     count: usize,
     place: (usize, usize),
-    /// How many of the last points are places of cameras.
+    /// Number of the last points that are camera positions.
     cameras: usize,
-    /// Name and type (a row of [`KINDS`]) of each number in a row.
+    /// Name and type (index into [`KINDS`]) of each property.
     properties: Vec<(String, usize)>,
 }
 
-/// Reads points. Nothing tells which photographs see them; where there are no colours, they are
-/// grey.
+/// Reads points, which are grey if the file has no colours. The format contains no observations.
 pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let is_end = |line: &&[u8]| line.trim_ascii_end() == b"end_header";
     let lines = bytes.split_inclusive(|byte| *byte == b'\n').filter(|_| bytes.starts_with(b"ply"));
@@ -57,7 +55,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     end.ok_or_else(|| Error::of(file, "this is not a PLY file: it should go from `ply` to `end_header`, and on"))?;
     let head = head(file, &bytes[..length])?;
     let (size, rest) = (head.properties.iter().map(|(_, kind)| KINDS[*kind].2).sum::<usize>(), bytes.len() - length);
-    // A number in text takes two bytes or more, with what parts it from the next.
+    // A number in text takes at least two bytes, including the separator.
     let row = if head.encoding == Encoding::Text { 2 * head.properties.len() } else { size };
     if head.count > rest / row + 1 {
         let why = format!("the file is too short for {} points: {rest} bytes follow the header", head.count);
@@ -67,7 +65,7 @@ pub fn read(file: &str, bytes: &[u8]) -> Result<Reconstruction, Error> {
     let (Some(x), Some(y), Some(z)) = (of("x"), of("y"), of("z")) else {
         return Err(Error::at(file, head.place, "these points have no x, y and z"));
     };
-    // Colours are whole numbers up to 255 or 65535, or else from 0 to 1.
+    // Colours are integers up to 255 or 65535, or floats from 0 to 1.
     let shade = |i: usize| match KINDS[head.properties[i].1].0 {
         "float" | "double" => (i, 255.0),
         "ushort" => (i, 255.0 / 65535.0),
@@ -164,7 +162,7 @@ fn head(file: &str, text: &[u8]) -> Result<Head, Error> {
     Ok(head)
 }
 
-/// A number of a type, by its row in [`KINDS`].
+/// Decodes a number of a type, given by its index into [`KINDS`].
 fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
     let mut all = [0; 8];
     all[..bytes.len()].copy_from_slice(bytes);
@@ -184,7 +182,7 @@ fn number(kind: usize, bytes: &[u8], encoding: Encoding) -> f64 {
     }
 }
 
-/// The points, then the places of the cameras in red.
+/// Writes the points, followed by the camera positions in red.
 pub fn write(all: &Reconstruction) -> Vec<u8> {
     let cameras = all.views.iter().filter_map(|view| Some((view.pose.as_ref()?.center(), [255, 0, 0])));
     let rows: Vec<_> = all.points.iter().map(|point| (point.position, point.color)).chain(cameras).collect();

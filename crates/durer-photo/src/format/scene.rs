@@ -1,10 +1,10 @@
-//! A camera in Dürer's own scene language.
+//! Cameras in Dürer's scene language.
 
 use crate::{Lens, Pose};
 use nalgebra::Matrix3;
 use std::fmt::Write;
 
-/// The block `ProjectiveCamera`: P = K [R | t], with the centre of the upper left pixel at (0, 0).
+/// Block `ProjectiveCamera`: P = K [R | t], with the centre of the upper left pixel at (0, 0).
 pub fn projective_camera(lens: &Lens, pose: &Pose) -> String {
     let [cx, cy] = lens.center;
     let k = Matrix3::new(lens.focal, 0.0, cx - 0.5, 0.0, lens.focal * lens.aspect, cy - 0.5, 0.0, 0.0, 1.0);

@@ -1,4 +1,4 @@
-//! Words and numbers of a text, each with its line and column.
+//! Tokeniser of words and numbers, with their lines and columns.
 
 use crate::Error;
 use std::fmt::Display;
@@ -8,17 +8,17 @@ use std::str::FromStr;
 pub struct Words<'t> {
     file: &'t str,
     text: &'t str,
-    /// Where the next word is looked for, in bytes.
+    /// Position in bytes from which the next word is searched.
     at: usize,
     line: usize,
-    /// Where the line begins.
+    /// Start of the line in bytes.
     start: usize,
-    /// Whether what belongs together is in one line.
+    /// True if each line is a row.
     rows: bool,
 }
 
 impl<'t> Words<'t> {
-    /// The words of a file's bytes.
+    /// Creates a reader of a file's words.
     pub fn new(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         let text = std::str::from_utf8(bytes).map_err(|error| {
             let before = &bytes[..error.valid_up_to()];
@@ -29,8 +29,8 @@ impl<'t> Words<'t> {
         Ok(Words { file, text, at: 0, line: 1, start: 0, rows: false })
     }
 
-    /// The words of a file in which each line is a row: nothing that a row lacks is taken from the
-    /// next one.
+    /// Creates a reader of a file in which each line is a row. Missing words of a row are not taken
+    /// from the next one.
     pub fn in_rows(file: &'t str, bytes: &'t [u8]) -> Result<Self, Error> {
         Ok(Words { rows: true, ..Words::new(file, bytes)? })
     }
@@ -39,18 +39,18 @@ impl<'t> Words<'t> {
         (self.line, 1 + self.text[self.start..self.at].chars().count())
     }
 
-    /// Line and column at which the next word begins.
+    /// Line and column of the next word.
     pub fn next_place(&mut self) -> (usize, usize) {
         self.advance(true);
         self.place()
     }
 
-    /// An error where the next word begins.
+    /// Creates an error at the next word.
     pub fn error(&self, message: impl Into<String>) -> Error {
         Error::at(self.file, self.place(), message)
     }
 
-    /// Goes to the next word, over ends of lines if that is wanted; says whether there is one.
+    /// Skips to the next word, across lines if `over_lines`. Returns false if there is none.
     fn advance(&mut self, over_lines: bool) -> bool {
         for byte in self.text.as_bytes()[self.at..].iter() {
             match byte {
@@ -67,24 +67,24 @@ impl<'t> Words<'t> {
         false
     }
 
-    /// Whether no words are left.
+    /// Returns true if no words are left.
     pub fn is_at_end(&mut self) -> bool {
         !self.advance(true)
     }
 
-    /// Whether no words are left in this line.
+    /// Returns true if no words are left in this line.
     pub fn is_at_end_of_line(&mut self) -> bool {
         !self.advance(false)
     }
 
-    /// The rest of this line, without blanks at its ends; the next line is next.
+    /// Returns the rest of this line, without surrounding spaces.
     pub fn rest_of_line(&mut self) -> &'t str {
         let rest = self.text[self.at..].split('\n').next().unwrap_or_default();
         self.at += rest.len();
         rest.trim()
     }
 
-    /// Goes over the end of this line, all of which was read.
+    /// Skips the end of this line, if all its words were read.
     pub fn skip_line_end(&mut self) {
         if !self.advance(false) && self.text[self.at..].starts_with('\n') {
             self.at += 1;
@@ -93,7 +93,7 @@ impl<'t> Words<'t> {
         }
     }
 
-    /// Goes to the next line that is neither empty nor, with this sign at its beginning, a comment.
+    /// Skips to the next line that is neither empty nor a comment, which begins with `comment`.
     pub fn next_line(&mut self, comment: char) -> bool {
         while self.advance(true) {
             if !self.text[self.at..].starts_with(comment) {
@@ -104,7 +104,7 @@ impl<'t> Words<'t> {
         false
     }
 
-    /// The next word, and where it stands.
+    /// Returns the next word and its position.
     pub fn word(&mut self, what: &str) -> Result<(&'t str, (usize, usize)), Error> {
         if !self.advance(!self.rows) {
             let end = if self.rows { "row" } else { "file" };
@@ -116,20 +116,20 @@ impl<'t> Words<'t> {
         Ok((word, place))
     }
 
-    /// The next word as a value of some type.
+    /// Parses the next word.
     pub fn parse<T: FromStr>(&mut self, what: &str) -> Result<T, Error> {
         let (word, place) = self.word(what)?;
         word.parse().map_err(|_| Error::at(self.file, place, format!("`{word}` is not {what}")))
     }
 
-    /// The next word as a finite number.
+    /// Parses the next word as a finite number.
     pub fn number(&mut self, what: &str) -> Result<f64, Error> {
         let (word, place) = self.word(what)?;
         let number: Option<f64> = word.parse().ok().filter(|number: &f64| number.is_finite());
         number.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}, a number")))
     }
 
-    /// Some finite numbers.
+    /// Parses `N` finite numbers.
     pub fn numbers<const N: usize>(&mut self, what: &str) -> Result<[f64; N], Error> {
         let mut numbers = [0.0; N];
         for number in &mut numbers {
@@ -138,8 +138,8 @@ impl<'t> Words<'t> {
         Ok(numbers)
     }
 
-    /// A number of things of which each takes at least some bytes of the text: what cannot be true
-    /// is refused before memory is taken for it.
+    /// Parses a number of entries, each of which takes at least `bytes` bytes of text. Rejects
+    /// impossible numbers before memory is allocated.
     pub fn count(&mut self, what: &str, bytes: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let fail = |why: String| Error::at(self.file, place, why);
@@ -150,14 +150,14 @@ impl<'t> Words<'t> {
         Ok(count)
     }
 
-    /// The next word as an index.
+    /// Parses the next word as an index below `end`.
     pub fn index(&mut self, what: &str, end: usize) -> Result<usize, Error> {
         let (word, place) = self.word(what)?;
         let index: Option<usize> = word.parse().ok().filter(|index| *index < end);
         index.ok_or_else(|| Error::at(self.file, place, format!("`{word}` is not {what}: there are {end}, from 0")))
     }
 
-    /// Refuses words that are left in this row.
+    /// Returns an error if words are left in this row.
     pub fn end_of_row(&mut self, row: &str) -> Result<(), Error> {
         match self.is_at_end_of_line() {
             true => Ok(()),
@@ -165,13 +165,13 @@ impl<'t> Words<'t> {
         }
     }
 
-    /// Refuses words that are left.
+    /// Returns an error if words are left.
     pub fn end(&mut self) -> Result<(), Error> {
         if self.is_at_end() { Ok(()) } else { Err(self.error("the file should end here")) }
     }
 }
 
-/// Values with blanks between them.
+/// Joins values with spaces.
 pub fn joined<T: Display>(values: impl IntoIterator<Item = T>) -> String {
     values.into_iter().map(|value| value.to_string()).collect::<Vec<_>>().join(" ")
 }

@@ -1,4 +1,4 @@
-//! How one set of points lies on another.
+//! Alignment of point sets.
 //!
 //! Source: Umeyama, *Least-Squares Estimation of Transformation Parameters Between Two Point
 //! Patterns*, PAMI 13(4), 1991.
@@ -7,24 +7,24 @@ use crate::model::nearest_rotation;
 use crate::{Pose, Reconstruction};
 use nalgebra::{Matrix3, Vector3};
 
-/// X' = scale rotation X + shift.
+/// A similarity transform: X' = scale rotation X + shift.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Similarity {
-    /// The factor of lengths.
+    /// Scale factor.
     pub scale: f64,
-    /// A rotation.
+    /// Rotation matrix.
     pub rotation: Matrix3<f64>,
-    /// What is added.
+    /// Translation.
     pub shift: Vector3<f64>,
 }
 
 impl Similarity {
-    /// Where a point goes.
+    /// Transforms a point.
     pub fn apply(&self, point: &Vector3<f64>) -> Vector3<f64> {
         self.scale * (self.rotation * point) + self.shift
     }
 
-    /// Moves cameras and points, so that what the photographs see stays the same.
+    /// Transforms cameras and points, so that the projections stay the same.
     pub fn apply_to(&self, all: &mut Reconstruction) {
         for view in &mut all.views {
             if let Some(pose) = &mut view.pose {
@@ -35,8 +35,8 @@ impl Similarity {
     }
 }
 
-/// Means, and the singular vectors of the covariance, as a rotation; none where the points are in a
-/// line.
+/// Means of both sets, the rotation from the singular vectors of their covariance, and the sum of
+/// the singular values; `None` if the points are on a line.
 fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 2], Matrix3<f64>, f64)> {
     let count = from.len().min(to.len()) as f64;
     let mean = |points: &[Vector3<f64>]| points.iter().sum::<Vector3<f64>>() / count;
@@ -52,8 +52,8 @@ fn turned(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<([Vector3<f64>; 
     Some((means, u * Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, sign)) * v, d[0] + d[1] + sign * d[2]))
 }
 
-/// The similarity that takes points nearest to others; none for fewer than three points, and for
-/// points in a line.
+/// Similarity that best maps points to others; `None` for fewer than three points, or points on a
+/// line.
 pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similarity> {
     if from.len() < 3 || from.len() != to.len() {
         return None;
@@ -64,9 +64,9 @@ pub fn similarity(from: &[Vector3<f64>], to: &[Vector3<f64>]) -> Option<Similari
     Some(Similarity { scale, rotation, shift: means[1] - scale * (rotation * means[0]) })
 }
 
-/// The similarity that brings cameras to others: the rotation nearest to all their turns, and the
-/// scale and shift by which their centres come nearest. Centres alone tell hardly anything of a
-/// rotation about a line near which all of them are.
+/// Similarity that best maps cameras to others: the rotation nearest to all relative rotations, and
+/// the scale and translation that align the centres. The centres alone hardly determine a rotation
+/// about a line close to all of them.
 pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     let count = from.len() as f64;
     if from.len() < 2 || from.len() != to.len() {
@@ -86,19 +86,19 @@ pub fn cameras(from: &[Pose], to: &[Pose]) -> Option<Similarity> {
     (scale.is_finite() && scale > 0.0).then(|| Similarity { scale, rotation, shift: means[1] - scale * means[0] })
 }
 
-/// The pose that takes points of the world nearest to points of the camera's frame.
+/// Pose that best maps world points to points in the camera frame.
 pub fn rigid(world: &[Vector3<f64>], camera: &[Vector3<f64>]) -> Option<Pose> {
     let (means, rotation, _) = turned(world, camera)?;
     Some(Pose { rotation, translation: means[1] - rotation * means[0] })
 }
 
-/// The similarity that brings control points, as the photographs see them, to where they are; and
-/// what is left of each.
+/// Similarity that maps triangulated control points to their known positions, and the remaining
+/// distance of each.
 ///
 /// # Errors
 ///
-/// Says so if fewer than three of them are seen by two photographs whose pose is known, or if they
-/// are in a line.
+/// If fewer than three control points are observed by two photographs with a known pose, or if they
+/// lie on a line.
 pub fn to_control(
     all: &Reconstruction,
     control: &[crate::known::Control],

@@ -1,8 +1,8 @@
-//! A camera from points of the world and their pixels, when nothing of its lens is known: the
-//! direct linear transform.
+//! Direct linear transform: the camera of world points and their pixels, without knowledge of the
+//! lens.
 //!
-//! x ~ P X with a matrix P of 3x4, of which each point gives two equations, linear in P. With P = K
-//! [R | t], K is upper triangular.
+//! x ~ P X with a 3x4 matrix P. Each point gives two equations that are linear in P. In P = K [R |
+//! t], K is upper triangular.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! sections 7.1 and 6.2.4.
@@ -10,17 +10,17 @@
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, Matrix3, Matrix3x4, Matrix4, Vector2, Vector3};
 
-/// The matrix, and how well it is determined.
+/// Projection matrix and its conditioning.
 pub struct Linear {
-    /// P, at any scale.
+    /// Matrix P, up to scale.
     pub matrix: Matrix3x4<f64>,
-    /// The singular values of the equations in Hartley's normalised coordinates, in falling order.
-    /// The last is how badly they are fulfilled; if the one before it is nothing, other
-    /// matrices do as well.
+    /// Singular values of the equations in Hartley's normalised coordinates, in falling order. The
+    /// last is the residual of the equations. If the one before it is zero, the matrix is not
+    /// unique.
     pub singular: Vec<f64>,
 }
 
-/// How flat points are: the standard deviations along their principal axes, in falling order.
+/// Standard deviations of points along their principal axes, in falling order.
 pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
     let mean = points.iter().sum::<Vector3<f64>>() / points.len().max(1) as f64;
     let covariance = points.iter().map(|p| (p - mean) * (p - mean).transpose()).sum::<Matrix3<f64>>();
@@ -30,7 +30,7 @@ pub fn spread(points: &[Vector3<f64>]) -> [f64; 3] {
     values
 }
 
-/// The matrix that fulfils the equations of six or more points best.
+/// Estimates the matrix that best fulfils the equations of six or more points.
 pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear> {
     if points.len() < 6 || points.len() != pixels.len() {
         return None;
@@ -59,13 +59,13 @@ pub fn linear(points: &[Vector3<f64>], pixels: &[Vector2<f64>]) -> Option<Linear
     matrix.iter().all(|c| c.is_finite()).then_some(Linear { matrix, singular })
 }
 
-/// P taken apart: K with 1 in its corner, R, t. Depth is positive where the determinant of P's left
-/// part is.
+/// Decomposes P into K, with 1 in its last element, R, and t. The sign is chosen so that depths are
+/// positive.
 pub fn take_apart(p: &Matrix3x4<f64>) -> Option<(Matrix3<f64>, Matrix3<f64>, Vector3<f64>)> {
     let left = p.fixed_columns::<3>(0).into_owned();
     let p = if left.determinant() < 0.0 { -p } else { *p };
     let row = |i: usize| Vector3::new(p[(i, 0)], p[(i, 1)], p[(i, 2)]);
-    // Gram and Schmidt's rule on the rows, from the last upwards.
+    // Gram-Schmidt orthogonalisation of the rows, from the last to the first.
     let forward = row(2).try_normalize(1e-300)?;
     let down = (row(1) - row(1).dot(&forward) * forward).try_normalize(1e-300)?;
     let right = down.cross(&forward);

@@ -1,10 +1,10 @@
-//! The essential matrix of two photographs whose lenses are known: five correspondences give up to
-//! ten.
+//! Essential matrix of two photographs with known lenses: five correspondences give up to ten
+//! solutions.
 //!
-//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R
-//! takes the second camera's pose from the first one's frame. E lies in the null space of five
-//! equations, E = x X + y Y + z Z + W, and 2 E Eᵀ E = tr(E Eᵀ) E with det E = 0 are ten cubics in
-//! x, y, z. Elimination leaves a polynomial of degree ten in z.
+//! q'ᵀ E q = 0 for the directions q and q' in which two cameras see a point, where E = \[t\]× R and
+//! (R, t) is the pose of the second camera in the frame of the first. E lies in the null space of
+//! five equations, E = x X + y Y + z Z + W. The conditions 2 E Eᵀ E = tr(E Eᵀ) E and det E = 0 are
+//! ten cubics in x, y, z. Elimination leaves a polynomial of degree ten in z.
 //!
 //! Source: Nistér, *An Efficient Solution to the Five-Point Relative Pose Problem*, PAMI 26(6),
 //! 2004.
@@ -16,8 +16,8 @@ use super::triangulate::two_views;
 use crate::Pose;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-/// The exponents of x, y, z of a cubic's monomials, in Nistér's order: elimination leaves only the
-/// last ten, and those below of the form x zⁿ, y zⁿ and zⁿ.
+/// Exponents of x, y, z in the monomials of a cubic, in Nistér's order. Elimination leaves only the
+/// last ten, and combinations of the form x zⁿ, y zⁿ, and zⁿ.
 const MONOMIALS: [[usize; 3]; 20] = [
     [3, 0, 0],
     [0, 3, 0],
@@ -41,15 +41,15 @@ const MONOMIALS: [[usize; 3]; 20] = [
     [0, 0, 0],
 ];
 
-/// A polynomial in x, y, z up to degree three.
+/// Coefficients of a polynomial in x, y, z of degree at most three.
 type Cubic = [f64; 20];
 
-/// The place of each monomial by its exponents.
+/// Index of a monomial by its exponents.
 fn place(exponents: [usize; 3]) -> usize {
     MONOMIALS.iter().position(|m| *m == exponents).unwrap_or(usize::MAX)
 }
 
-/// The places of products, [`usize::MAX`] where the degree is above three.
+/// Indices of the products of monomials; [`usize::MAX`] if the degree exceeds three.
 fn products() -> [[usize; 20]; 20] {
     let product = |a: usize, b: usize| place([0, 1, 2].map(|i| MONOMIALS[a][i] + MONOMIALS[b][i]));
     std::array::from_fn(|a| std::array::from_fn(|b| product(a, b)))
@@ -69,7 +69,7 @@ impl Algebra {
         product
     }
 
-    /// The sum of products.
+    /// Sum of three products.
     fn dot(&self, pairs: [(&Cubic, &Cubic); 3]) -> Cubic {
         pairs.iter().fold([0.0; 20], |sum, (a, b)| plus(&sum, &self.multiply(a, b), 1.0))
     }
@@ -79,7 +79,7 @@ fn plus(a: &Cubic, b: &Cubic, factor: f64) -> Cubic {
     std::array::from_fn(|i| a[i] + factor * b[i])
 }
 
-/// All essential matrices of five pairs of directions (x, y, 1).
+/// Essential matrices of five pairs of directions (x, y, 1).
 pub fn five_point(pairs: &[Pair; 5]) -> Vec<Matrix3<f64>> {
     solutions(pairs).unwrap_or_default()
 }
@@ -120,12 +120,12 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     (0..10).for_each(|row| all.row_mut(row).copy_from_slice(&entry(row)));
     let left = all.fixed_columns::<10>(0).into_owned();
     let right = left.lu().solve(&all.fixed_columns::<10>(10).into_owned())?;
-    // Rows by pairs: (x²z, x²), (y²z, y²), (xyz, xy). The first less z times the second has only x,
-    // y and powers of z.
+    // Pairs of rows: (x²z, x²), (y²z, y²), (xyz, xy). The first minus z times the second contains
+    // only x, y, and powers of z.
     let polynomials = [4, 6, 8].map(|row| {
         let (a, b) = (right.row(row), right.row(row + 1));
         let part = |at: usize, degree: usize| {
-            // Coefficients of zⁿ, from the constant one upwards.
+            // Coefficients of zⁿ, from the constant upwards.
             let mut p = [0.0; 5];
             for n in 0..=degree {
                 p[n] += a[at + degree - n];
@@ -152,7 +152,8 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     let mut found = Vec::new();
     for z in real_roots(&whole) {
         let m = Matrix3::from_fn(|i, j| at(&polynomials[i][j], z));
-        // (x, y, 1) is orthogonal to all rows; the two rows that differ most say it best.
+        // (x, y, 1) is orthogonal to all rows; the cross product of the two most different rows is
+        // the most exact.
         let crosses = [(0, 1), (0, 2), (1, 2)].map(|(i, j)| m.row(i).transpose().cross(&m.row(j).transpose()));
         let best = crosses.into_iter().fold(Vector3::zeros(), |a, b| if b.norm() > a.norm() { b } else { a });
         let (x, y) = (best.x / best.z, best.y / best.z);
@@ -164,11 +165,11 @@ fn solutions(pairs: &[Pair; 5]) -> Option<Vec<Matrix3<f64>>> {
     Some(found)
 }
 
-/// The four poses of the second camera, up to the length of its translation, which is 1.
+/// Four possible poses of the second camera, with a translation of length 1.
 pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     let svd = e.svd(true, true);
     let (mut u, mut v) = (svd.u?, svd.v_t?);
-    // The least singular value, which is nearly 0, is the last; both are to be rotations.
+    // The least singular value, which is nearly 0, is the last. Both matrices must be rotations.
     if u.determinant() < 0.0 {
         u.column_mut(2).neg_mut();
     }
@@ -181,7 +182,7 @@ pub fn poses(e: &Matrix3<f64>) -> Option<[Pose; 4]> {
     Some([pose(a, t), pose(a, -t), pose(b, t), pose(b, -t)])
 }
 
-/// Of the four poses the one that has most points before both cameras, and how many.
+/// Pose with the most points in front of both cameras, and their number.
 pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
     let before = |pose: &Pose| {
         let in_front = |pair: &&Pair| {
@@ -194,7 +195,7 @@ pub fn pose_before(e: &Matrix3<f64>, pairs: &[Pair]) -> Option<(Pose, usize)> {
     counted.reduce(|best, next| if next.1 > best.1 { next } else { best })
 }
 
-/// Pairs of directions (x, y, 1) some of which are false.
+/// Pairs of directions (x, y, 1), including outliers.
 pub struct Directions<'p>(pub &'p [Pair]);
 
 impl Estimate<5> for Directions<'_> {
@@ -211,7 +212,7 @@ impl Estimate<5> for Directions<'_> {
     fn refined(&self, inliers: &[usize], _: &Matrix3<f64>) -> Option<Matrix3<f64>> {
         let e = eight_point(&inliers.iter().map(|i| self.0[*i]).collect::<Vec<_>>())?;
         let svd = e.svd(true, true);
-        // The nearest essential matrix has the singular values 1, 1, 0.
+        // The singular values of the nearest essential matrix are 1, 1, 0.
         let mut values = Vector3::new(1.0, 1.0, 1.0);
         values[svd.singular_values.imin()] = 0.0;
         Some(svd.u? * Matrix3::from_diagonal(&values) * svd.v_t?)

@@ -1,5 +1,5 @@
-//! The fundamental matrix of two photographs: seven correspondences give one to three, eight or
-//! more one.
+//! Fundamental matrix of two photographs: seven correspondences give one to three solutions, eight
+//! or more give one.
 //!
 //! x'ᵀ F x = 0 for pixels x and x' of the same point in the first and the second photograph.
 //!
@@ -11,15 +11,15 @@ use super::ransac::Estimate;
 use super::{normalization, null_vector};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector2, Vector3};
 
-/// Places in two photographs.
+/// Positions of a point in two photographs.
 pub type Pair = (Vector2<f64>, Vector2<f64>);
 
 fn homogeneous(p: &Vector2<f64>) -> Vector3<f64> {
     Vector3::new(p.x, p.y, 1.0)
 }
 
-/// The square of Sampson's distance: how far a pair must move to fulfil the equation, to first
-/// order.
+/// Squared Sampson distance: the distance by which a pair must move to fulfil the equation, to
+/// first order.
 pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
     let (a, b) = (homogeneous(a), homogeneous(b));
     let (fa, fb) = (f * a, f.transpose() * b);
@@ -27,7 +27,7 @@ pub fn sampson(f: &Matrix3<f64>, (a, b): &Pair) -> f64 {
     product * product / (fa.xy().norm_squared() + fb.xy().norm_squared())
 }
 
-/// Rows of the equations of pairs that are normalised by `(scale, mean)` in each photograph.
+/// Equations of pairs that are normalised by `(scale, mean)` in each photograph.
 fn equations(pairs: &[Pair], [one, two]: [(f64, Vector2<f64>); 2]) -> DMatrix<f64> {
     DMatrix::from_fn(pairs.len(), 9, |row, column| {
         let (a, b) = pairs[row];
@@ -44,15 +44,15 @@ fn matrix_of(v: &DVector<f64>) -> Matrix3<f64> {
     Matrix3::from_row_slice(v.as_slice())
 }
 
-/// The matrix for pixels, of that for normalised ones.
+/// Converts the matrix for normalised pixels to one for pixels.
 fn denormalized(f: Matrix3<f64>, [one, two]: [(f64, Vector2<f64>); 2]) -> Matrix3<f64> {
     let matrix = |(s, m): (f64, Vector2<f64>)| Matrix3::new(s, 0.0, -s * m.x, 0.0, s, -s * m.y, 0.0, 0.0, 1.0);
     let f = matrix(two).transpose() * f * matrix(one);
     f / f.norm()
 }
 
-/// The matrix of rank 2 that fulfils the equations of eight or more pairs best, in Hartley's
-/// normalised coordinates.
+/// Estimates the matrix of rank 2 that best fulfils the equations of eight or more pairs, in
+/// Hartley's normalised coordinates.
 pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     if pairs.len() < 8 {
         return None;
@@ -67,15 +67,15 @@ pub fn eight_point(pairs: &[Pair]) -> Option<Matrix3<f64>> {
     Some(denormalized(f, normal)).filter(|f| f.iter().all(|c| c.is_finite()))
 }
 
-/// All matrices of rank 2 that fulfil the equations of seven pairs.
+/// Matrices of rank 2 that fulfil the equations of seven pairs.
 pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
     let normal = normalizations(pairs);
     let svd = super::padded(&equations(pairs, normal)).svd(false, true);
     let Some(v) = svd.v_t else { return Vec::new() };
     let row = |i: usize| matrix_of(&v.row(i).transpose());
-    // Singular values fall, so that the last two rows span the null space.
+    // Singular values are in falling order, so the last two rows span the null space.
     let (a, b) = (row(7), row(8));
-    // det(a + x b) is a cubic: its values at four places tell its coefficients.
+    // det(a + x b) is a cubic; four values determine its coefficients.
     let at = |x: f64| (a + x * b).determinant();
     let (c0, c3, plus, minus) = (at(0.0), b.determinant(), at(1.0), at(-1.0));
     let c2 = (plus + minus) / 2.0 - c0;
@@ -83,7 +83,7 @@ pub fn seven_point(pairs: &[Pair; 7]) -> Vec<Matrix3<f64>> {
     real_roots(&[c0, c1, c2, c3]).into_iter().map(|x| denormalized(a + x * b, normal)).collect()
 }
 
-/// Pairs some of which are false.
+/// Pairs of pixels, including outliers.
 pub struct Pairs<'p>(pub &'p [Pair]);
 
 impl Estimate<7> for Pairs<'_> {

@@ -1,4 +1,4 @@
-//! What follows from points that correspond: few of them give a camera exactly, many of them well.
+//! Solvers for corresponding points: minimal solvers for small samples, and least-squares solvers.
 
 pub mod align;
 pub mod camera;
@@ -12,11 +12,9 @@ pub mod triangulate;
 
 use nalgebra::{DMatrix, DVector, Vector2};
 
-/// The direction v of length 1 for which |A v| is least, and the singular values of A in falling
-/// order.
+/// Unit vector v that minimises |A v|, and the singular values of A in falling order.
 pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
-    // The eigenvectors of AᵀA would lose half of the digits; a QR step makes the matrix small
-    // instead.
+    // Eigenvectors of AᵀA would lose half of the digits. A QR step reduces the matrix instead.
     let square = if matrix.nrows() > matrix.ncols() { matrix.clone().qr().r() } else { padded(matrix) };
     let svd = square.svd(false, true);
     let mut order: Vec<usize> = (0..svd.singular_values.len()).collect();
@@ -26,14 +24,14 @@ pub fn null_vector(matrix: &DMatrix<f64>) -> (DVector<f64>, Vec<f64>) {
     (vector, order.into_iter().map(|i| svd.singular_values[i]).collect())
 }
 
-/// The matrix with rows of zeros below, until it is square.
+/// Appends rows of zeros until the matrix is square.
 fn padded(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let side = matrix.ncols().max(matrix.nrows());
     matrix.clone().resize(side, matrix.ncols(), 0.0)
 }
 
-/// Hartley's normalisation: the factor and the shift that give points mean 0 and mean distance √2
-/// from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6), 1997.
+/// Hartley's normalisation: the scale and the mean that give points mean 0 and a mean distance of
+/// √2 from it. Source: Hartley, *In Defense of the Eight-Point Algorithm*, PAMI 19(6), 1997.
 pub fn normalization(points: impl Iterator<Item = Vector2<f64>> + Clone) -> (f64, Vector2<f64>) {
     let count = points.clone().count().max(1) as f64;
     let mean = points.clone().sum::<Vector2<f64>>() / count;

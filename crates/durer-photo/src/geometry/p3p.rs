@@ -1,4 +1,4 @@
-//! The pose of a camera from three points whose directions it sees: up to four.
+//! Pose of a camera from three points and their directions: up to four solutions.
 //!
 //! With the angles α, β, γ between the directions and the sides a, b, c of the triangle, the
 //! distances s₁, s₂ = u s₁, s₃ = v s₁ fulfil three laws of cosines. Eliminating u leaves a quartic
@@ -13,13 +13,12 @@ use super::polynomial::real_roots;
 use crate::Pose;
 use nalgebra::Vector3;
 
-/// All poses for which three points of the world are in three directions, which need not have
-/// length 1.
+/// Poses for which three world points lie in three directions, which need not have length 1.
 pub fn p3p(points: &[Vector3<f64>; 3], directions: &[Vector3<f64>; 3]) -> Vec<Pose> {
     let [j1, j2, j3] = directions.map(|direction| direction.normalize());
     let [p1, p2, p3] = points;
     let (a2, b2, c2) = ((p2 - p3).norm_squared(), (p1 - p3).norm_squared(), (p1 - p2).norm_squared());
-    // Points in a line have no pose of their own.
+    // Points on a line do not determine the pose.
     if (p2 - p1).cross(&(p3 - p1)).norm_squared() <= 1e-20 * b2 * c2 || a2 == 0.0 {
         return Vec::new();
     }

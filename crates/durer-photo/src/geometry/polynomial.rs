@@ -1,13 +1,13 @@
 //! Real roots of polynomials.
 
-/// The value of a polynomial; coefficients from the constant one upwards.
+/// Evaluates a polynomial; coefficients from the constant upwards.
 fn value(coefficients: &[f64], x: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
 }
 
-/// The real roots, in rising order. Between two extremes, which are the roots of the derivative,
-/// there is one root at most: it is enclosed and halved. Double roots, which rounding may lift off
-/// the axis, are found if an extreme is a root to rounding.
+/// Real roots in rising order. Between two extrema, which are the roots of the derivative, there is
+/// at most one root, which bisection finds. A double root, which rounding may lift off the axis, is
+/// found if the polynomial is zero at an extremum up to rounding.
 pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
     let largest = coefficients.iter().fold(0.0_f64, |m, c| m.max(c.abs()));
     let degree = coefficients.iter().rposition(|c| c.abs() > 1e-14 * largest).unwrap_or(0);
@@ -19,7 +19,7 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         return vec![-p[0] / p[1]];
     }
     let derivative: Vec<f64> = (1..=degree).map(|i| i as f64 * p[i]).collect();
-    // Cauchy's bound of all roots.
+    // Cauchy's bound on the roots.
     let bound = 1.0 + p[..degree].iter().fold(0.0_f64, |m, c| m.max((c / p[degree]).abs()));
     let ends = [-bound].into_iter().chain(real_roots(&derivative)).chain([bound]).collect::<Vec<_>>();
     let mut roots: Vec<f64> = Vec::new();
@@ -27,7 +27,7 @@ pub fn real_roots(coefficients: &[f64]) -> Vec<f64> {
         let ([mut low, mut high], mut at_low) = ([ends[0], ends[1]], value(p, ends[0]));
         let at_high = value(p, high);
         let size = p.iter().rev().fold(0.0, |sum, c| sum * high.abs() + c.abs());
-        // An extreme that is a root is the only one on both sides of it.
+        // An extremum that is a root is the only root on both sides of it.
         if at_high.abs() < 1e-13 * size && high != bound {
             roots.push(high);
             continue;
@@ -59,7 +59,7 @@ mod tests {
     #[test]
     fn roots_of_products_are_found() {
         let wanted = [-3.0, -0.5, 0.0, 0.25, 2.0, 7.0];
-        let mut p = vec![1.0, 0.0, 1.0]; // x² + 1 has none.
+        let mut p = vec![1.0, 0.0, 1.0]; // x² + 1 has no real roots.
         for root in wanted {
             let mut product = vec![0.0; p.len() + 1];
             for (i, c) in p.iter().enumerate() {

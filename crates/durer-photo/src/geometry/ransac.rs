@@ -1,41 +1,40 @@
-//! Models of data some of which are false: RANSAC with local optimisation.
+//! RANSAC with local optimisation, for data with outliers.
 //!
-//! Small samples give models; the one that explains the data best is kept, and is fitted again to
-//! all data that it explains. Truncated squares are summed (MSAC). It ends when a better sample has
-//! become unlikely.
+//! Models are computed from small samples. The one that explains the data best is kept and fitted
+//! again to all its inliers. Models are compared by their sum of truncated squares (MSAC). The
+//! search ends when a better sample has become unlikely.
 //!
 //! Sources: Fischler, Bolles, *Random Sample Consensus*, CACM 24(6), 1981; Torr, Zisserman,
 //! *MLESAC*, CVIU 78, 2000; Chum, Matas, Kittler, *Locally Optimized RANSAC*, DAGM 2003.
 
 use crate::random::Random;
 
-/// A problem that RANSAC solves: `N` data make a sample.
+/// A problem for RANSAC with samples of `N` data.
 pub trait Estimate<const N: usize> {
-    /// What explains the data.
+    /// Model of the data.
     type Model: Clone;
-    /// How many data there are.
+    /// Number of data.
     fn count(&self) -> usize;
-    /// The models of a sample.
+    /// Models of a sample.
     fn minimal(&self, sample: &[usize; N]) -> Vec<Self::Model>;
-    /// A model fitted to many data, from one near it.
+    /// Model fitted to many data, starting from a model near it.
     fn refined(&self, inliers: &[usize], model: &Self::Model) -> Option<Self::Model>;
-    /// The square of a datum's error.
+    /// Squared error of a datum.
     fn error(&self, model: &Self::Model, datum: usize) -> f64;
 }
 
-/// How it is searched.
+/// Parameters of the search.
 #[derive(Debug, Clone, Copy)]
 pub struct Search {
-    /// The largest error of a datum that is true.
+    /// Maximum error of an inlier.
     pub threshold: f64,
-    /// Samples at most.
+    /// Maximum number of samples.
     pub samples: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
-/// The best model that was found, and the data that it explains; none where no sample gave a model
-/// with more data than made it.
+/// Finds the best model and its inliers; `None` if no model has more inliers than its sample.
 pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> Option<(E::Model, Vec<usize>)> {
     let count = problem.count();
     if count < N {
@@ -61,7 +60,7 @@ pub fn ransac<const N: usize, E: Estimate<N>>(problem: &E, search: &Search) -> O
     (inliers.len() > N).then_some((model, inliers))
 }
 
-/// So many samples that with probability 0.9999 one of them has only true data.
+/// Number of samples that, with probability 0.9999, include one without outliers.
 fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     let good = (0..N).map(|_| share).product::<f64>();
     if good <= 1e-12 {
@@ -70,11 +69,11 @@ fn samples_for<const N: usize>(share: f64, most: usize) -> usize {
     if good >= 1.0 { 1 } else { (libm::log(1e-4) / libm::log1p(-good)).ceil().max(8.0).min(most as f64) as usize }
 }
 
-/// The sum of truncated errors, if it is less than a bound.
+/// Sum of truncated errors; `None` if it reaches a bound.
 fn loss<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit: f64, bound: f64) -> Option<f64> {
     let mut sum = 0.0;
     for datum in 0..problem.count() {
-        // What is not a number counts as far off.
+        // NaN counts as an outlier.
         let error = problem.error(model, datum);
         sum += if error < limit { error } else { limit };
         if sum >= bound {
@@ -88,7 +87,7 @@ fn inliers<const N: usize, E: Estimate<N>>(problem: &E, model: &E::Model, limit:
     (0..problem.count()).filter(|datum| problem.error(model, *datum) < limit).collect()
 }
 
-/// Fits again and again to what the model explains, from twice the threshold down to it.
+/// Fits the model repeatedly to its inliers, from twice the threshold down to it.
 fn improved<const N: usize, E: Estimate<N>>(problem: &E, model: E::Model, start: f64, limit: f64) -> (f64, E::Model) {
     let (mut best, mut current) = ((start, model.clone()), model);
     for widened in [4.0, 2.0, 1.0, 1.0] {

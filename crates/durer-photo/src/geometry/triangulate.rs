@@ -1,4 +1,4 @@
-//! Points from the rays to them.
+//! Triangulation of points from rays.
 //!
 //! Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 //! chapter 12.
@@ -7,8 +7,8 @@ use super::fundamental::Pair;
 use crate::Pose;
 use nalgebra::{Matrix3, Vector3};
 
-/// The point nearest to some rays (origin, direction of length 1), in the sum of squared distances;
-/// none if they are parallel.
+/// Point nearest to some rays (origin and unit direction) in the sum of squared distances; `None`
+/// if they are parallel.
 pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<f64>> {
     let (mut matrix, mut right) = (Matrix3::zeros(), Vector3::zeros());
     for (origin, direction) in rays {
@@ -20,8 +20,8 @@ pub fn nearest_to_rays(rays: &[(Vector3<f64>, Vector3<f64>)]) -> Option<Vector3<
     point.iter().all(|c| c.is_finite()).then_some(point)
 }
 
-/// The point that two cameras see in the directions (x, y, 1): the first one is at the origin. Not
-/// a number where the rays are parallel.
+/// Point that two cameras see in the directions (x, y, 1), with the first camera at the origin. NaN
+/// if the rays are parallel.
 pub fn two_views(second: &Pose, (a, b): &Pair) -> Vector3<f64> {
     let ray = |pose: &Pose, x: f64, y: f64| (pose.center(), pose.outwards(&Vector3::new(x, y, 1.0)).normalize());
     let rays = [ray(&Pose::identity(), a.x, a.y), ray(second, b.x, b.y)];

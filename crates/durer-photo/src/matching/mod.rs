@@ -1,4 +1,4 @@
-//! From photographs to tracks: the same points of the scene, found in several photographs.
+//! Matching of photographs: tracks of the same scene points in several photographs.
 
 mod pairs;
 mod tracks;
@@ -12,24 +12,24 @@ use pairs::{Descriptors, alike, verified};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// How photographs are matched.
+/// Options for matching photographs.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Features of a photograph at most.
+    /// Maximum number of features per photograph.
     pub features: usize,
-    /// Photographs are made smaller until their longer side has at most so many pixels.
+    /// Maximum length of the longer side in pixels; larger photographs are reduced.
     pub side: u32,
-    /// The nearest feature must be nearer than this times the distance of the second nearest.
+    /// Maximum ratio of the distances of the nearest and the second nearest feature.
     pub ratio: f64,
-    /// The distance from the epipolar line that is allowed, in pixels of the smaller photograph.
+    /// Maximum distance from the epipolar line, in pixels of the reduced photograph.
     pub threshold: f64,
-    /// Matches that must agree with one geometry.
+    /// Minimum number of matches that agree with the same geometry.
     pub least: usize,
-    /// The horizontal field of view in degrees where EXIF tells nothing.
+    /// Horizontal field of view in degrees for photographs without EXIF data.
     pub field: f64,
-    /// Take no focal length from EXIF.
+    /// Ignores focal lengths from EXIF.
     pub ignore_exif: bool,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
@@ -40,72 +40,72 @@ impl Default for Options {
     }
 }
 
-/// A photograph that was matched.
+/// A matched photograph.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Picture {
-    /// Its file's name.
+    /// File name.
     pub name: String,
-    /// Pixels across and down.
+    /// Width and height in pixels.
     pub size: [u32; 2],
-    /// The focal length to begin with, in pixels.
+    /// Initial focal length in pixels.
     pub focal: f64,
-    /// How it is known.
+    /// Source of the focal length.
     pub focal_from: String,
-    /// Photographs of one camera, size and focal length share a lens: its number.
+    /// Number of the lens. Photographs with the same camera, size, and focal length share one.
     pub lens: usize,
-    /// How many features were found.
+    /// Number of features.
     pub features: usize,
 }
 
-/// Two photographs that show the same things.
+/// Two photographs that show the same scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Link {
-    /// Their numbers.
+    /// Numbers of the photographs.
     pub pictures: [usize; 2],
-    /// Features that look alike.
+    /// Number of features with similar descriptors.
     pub alike: usize,
-    /// Of these, what agrees with one fundamental matrix.
+    /// Number of these that agree with the same fundamental matrix.
     pub matches: usize,
-    /// The share of these that one homography explains.
+    /// Share of the matches that a single homography explains.
     pub planar: f64,
-    /// The median distance between the places in both pictures, in pixels.
+    /// Median distance between the positions in both pictures, in pixels.
     pub moved: f64,
 }
 
-/// Where a point is seen: the photograph's number, the feature's number, and the place in pixels
+/// Observation of a point: number of the photograph, number of the feature, and position in pixels
 /// from the upper left corner.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Sighting(pub usize, pub usize, pub f64, pub f64);
 
-/// A point of the scene before anyone knows where it is.
+/// A scene point with an unknown position.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Track {
-    /// Its mean colour.
+    /// Mean colour.
     pub color: [u8; 3],
-    /// Where it is seen.
+    /// Observations.
     pub seen: Vec<Sighting>,
 }
 
-/// What matching found.
+/// Result of matching.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Matches {
-    /// What the file is.
+    /// Format identifier of the file.
     pub format: String,
-    /// The photographs.
+    /// Photographs.
     pub pictures: Vec<Picture>,
-    /// Which of them go together.
+    /// Links between photographs.
     pub links: Vec<Link>,
-    /// The tracks.
+    /// Tracks of scene points.
     pub tracks: Vec<Track>,
 }
 
-/// How [`Picture::focal_from`] begins where nothing was written.
+/// Prefix of [`Picture::focal_from`] if the focal length is a guess.
 pub const GUESS: &str = "a guess";
 
-/// What [`Matches::format`] says.
+/// Value of [`Matches::format`].
 pub const FORMAT: &str = "durer matches 1";
 
-/// A photograph's features.
+/// Features of a photograph.
 pub struct Described {
     picture: Picture,
     camera: String,
@@ -115,7 +115,7 @@ pub struct Described {
     scale: f64,
 }
 
-/// Finds the features of a photograph, which is not needed any more then.
+/// Finds the features of a photograph. The photograph is then no longer needed.
 pub fn describe(photo: &Photo, options: &Options) -> Described {
     let (gray, scale) = photo.gray(options.side);
     let mut found = features(&gray, options.features);
@@ -138,12 +138,12 @@ pub fn describe(photo: &Photo, options: &Options) -> Described {
     }
 }
 
-/// Matches all pairs of photographs. `progress` hears the share that is done.
+/// Matches all pairs of photographs. `progress` receives the finished share.
 ///
 /// # Errors
 ///
-/// Says so if there are fewer than two photographs, or if no two of them show the same things from
-/// two places.
+/// If there are fewer than two photographs, or if no two of them show the same scene from different
+/// positions.
 pub fn match_all(
     mut photos: Vec<Described>,
     options: &Options,
@@ -221,13 +221,13 @@ fn place(feature: &Feature) -> Vector2<f64> {
 }
 
 impl Matches {
-    /// The lenses to begin with.
+    /// Initial lenses.
     pub fn lenses(&self) -> Vec<Lens> {
         let first = |lens: usize| self.pictures.iter().find(|picture| picture.lens == lens);
         (0..self.pictures.len()).map_while(first).map(|picture| Lens::new(picture.size, picture.focal)).collect()
     }
 
-    /// Reads what [`Matches::to_json`] wrote.
+    /// Reads the output of [`Matches::to_json`].
     pub fn from_json(file: &str, json: &[u8]) -> Result<Self, Error> {
         let all: Matches = serde_json::from_slice(json).map_err(|error| {
             Error::at(file, (error.line(), error.column()), format!("not of durer photo match: {error}"))
@@ -256,7 +256,7 @@ impl Matches {
         Ok(all)
     }
 
-    /// All of it as text, a row a line.
+    /// Writes the matches as JSON, one item per line.
     pub fn to_json(&self) -> String {
         let rows = |values: Vec<String>| values.join(",\n");
         let row = |value: Result<String, serde_json::Error>| value.unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Which features of two photographs look alike, and which of these are of the same points.
+//! Pairwise matching of features, by descriptors and geometry.
 
 use crate::feature::LENGTH;
 use crate::geometry::fundamental::{Pair, Pairs};
@@ -6,14 +6,14 @@ use crate::geometry::homography::{Planar, mapped};
 use crate::geometry::ransac::{Search, ransac};
 use nalgebra::{Matrix3, Vector2};
 
-/// Descriptors as the processor multiplies them fastest.
+/// Descriptors in a layout for fast multiplication.
 pub struct Descriptors {
     values: Vec<[i16; LENGTH]>,
     squares: Vec<i32>,
 }
 
 impl Descriptors {
-    /// Of all features of a photograph.
+    /// Creates the descriptors of all features of a photograph.
     pub fn new<'d>(all: impl Iterator<Item = &'d [u8; LENGTH]>) -> Self {
         let values: Vec<[i16; LENGTH]> = all.map(|descriptor| descriptor.map(i16::from)).collect();
         let squares = values.iter().map(|v| dot(v, v)).collect();
@@ -21,14 +21,14 @@ impl Descriptors {
     }
 }
 
-/// In whole numbers: no processor rounds them otherwise. 128 products of bytes are far from
-/// overflow, and without its tests many are made at once.
+/// Integer arithmetic gives the same result on all processors. 128 products of bytes cannot
+/// overflow, and without overflow checks the loop is vectorised.
 fn dot(a: &[i16; LENGTH], b: &[i16; LENGTH]) -> i32 {
     a.iter().zip(b).fold(0, |sum, (a, b)| sum.wrapping_add(i32::from(*a).wrapping_mul(i32::from(*b))))
 }
 
-/// Pairs of features that are each other's nearest, clearly nearer than the second nearest is to
-/// the first: `ratio` of distances. Lowe, section 7.1.
+/// Pairs of features that are each other's nearest, and whose distance is less than `ratio` times
+/// the distance to the second nearest. Lowe, section 7.1.
 pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)> {
     let mut back = vec![(i32::MAX, usize::MAX); b.values.len()];
     let mut forth = Vec::with_capacity(a.values.len());
@@ -54,24 +54,24 @@ pub fn alike(a: &Descriptors, b: &Descriptors, ratio: f64) -> Vec<(usize, usize)
     forth.into_iter().enumerate().filter(|(_, row)| row.2 != usize::MAX).filter_map(clear).collect()
 }
 
-/// What two photographs have in common.
+/// Common geometry of two photographs.
 pub struct Geometry {
-    /// The matches that agree with it, by their numbers in the list.
+    /// Indices of the matches that agree with it.
     pub inliers: Vec<usize>,
-    /// The share of these that one homography explains: near 1 the scene is flat or the camera only
-    /// turned.
+    /// Share of these that a single homography explains. If it is near 1, the scene is flat or the
+    /// camera only rotated.
     pub planar: f64,
-    /// The median distance in pixels between the places in both pictures.
+    /// Median distance in pixels between the positions in both pictures.
     pub moved: f64,
 }
 
-/// Whether so few of so many matches may agree on one geometry by chance: of false matches, a few
-/// in a hundred lie near any line.
+/// Returns true if `agree` of `all` matches may agree on a geometry by chance: a few percent of
+/// false matches lie near any line.
 pub fn by_chance(agree: usize, all: usize) -> bool {
     agree * 5 < all
 }
 
-/// Matches that are of the same points of a rigid scene; none if there are not enough.
+/// Finds the matches that agree with a rigid scene; `None` if there are not enough.
 pub fn verified(places: &[Pair], threshold: f64, least: usize, seed: u64) -> Option<Geometry> {
     let search = Search { threshold, samples: 5000, seed };
     let (_, inliers) = ransac(&Pairs(places), &search)?;

@@ -1,11 +1,10 @@
-//! Features that are matched from photograph to photograph: the same point of the scene, if all is
-//! well.
+//! Tracks: features matched across photographs, ideally of the same scene point.
 
-/// A feature: its photograph, and its number there.
+/// A feature: the number of its photograph, and its number there.
 pub type Member = (usize, usize);
 
-/// Features that matches connect, each in the order of photographs. What has two features in one
-/// photograph cannot be one point and is left out.
+/// Connected components of matched features, each in the order of photographs. A component with two
+/// features in the same photograph cannot be a single point and is dropped.
 pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>) -> Vec<Vec<Member>> {
     let mut starts = vec![0];
     counts.iter().for_each(|count| starts.push(starts[starts.len() - 1] + count));
@@ -19,7 +18,7 @@ pub fn tracks(counts: &[usize], matches: impl Iterator<Item = (Member, Member)>)
     }
     for (a, b) in matches {
         let (a, b) = (root(&mut parents, starts[a.0] + a.1), root(&mut parents, starts[b.0] + b.1));
-        // The smaller number is the root, whatever the order of matches.
+        // The smaller number becomes the root, regardless of the order of matches.
         parents[a.max(b)] = a.min(b);
     }
     let mut lists: Vec<Vec<Member>> = vec![Vec::new(); parents.len()];

@@ -1,4 +1,4 @@
-//! The two photographs that begin.
+//! Selection of the initial two photographs.
 
 use super::Solver;
 use crate::geometry::essential::{Directions, pose_before};
@@ -9,12 +9,12 @@ use crate::{Error, Pose};
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
-/// Links that are tried: those with most matches.
+/// Number of links that are tried, in falling order of matches.
 const TRIED: usize = 30;
 
 impl Solver<'_> {
-    /// Chooses two photographs that see many points from clearly different places, and sets their
-    /// poses and points.
+    /// Selects two photographs that share many points and were taken from clearly different
+    /// positions. Sets their poses and triangulates their points.
     pub(super) fn initial(&mut self, matches: &Matches) -> Result<[usize; 2], Error> {
         let mut links: Vec<&Link> = matches.links.iter().collect();
         links.sort_by(|a, b| b.matches.cmp(&a.matches).then(a.pictures.cmp(&b.pictures)));
@@ -28,7 +28,8 @@ impl Solver<'_> {
                 turned += 1;
                 continue;
             }
-            // Beyond ten degrees, more is not better; a plane leaves the lens open.
+            // Angles beyond ten degrees bring no further benefit. A planar scene leaves the lens
+            // undetermined.
             let score = count as f64 * (angle.to_degrees() / 10.0).min(1.0) * (1.2 - link.planar);
             if best.as_ref().is_none_or(|best| score > best.0) {
                 best = Some((score, link.pictures, pose));
@@ -51,8 +52,8 @@ impl Solver<'_> {
         Ok([a, b])
     }
 
-    /// The second photograph's pose in the first one's frame, how many points fit it, and the
-    /// median angle of the rays to them.
+    /// Pose of the second photograph in the frame of the first, number of points in front of both,
+    /// and median angle between the rays.
     fn relative(&self, [a, b]: [usize; 2]) -> Option<(Pose, usize, f64)> {
         let lenses = [a, b].map(|view| self.lenses[self.views[view].lens]);
         let mut pairs = Vec::new();

@@ -1,8 +1,8 @@
-//! From tracks to cameras and points, photograph by photograph.
+//! Incremental reconstruction: cameras and points from tracks.
 //!
-//! Two photographs begin (`initial`); the photograph that sees most of the points that are known
-//! comes next (`register`); what it adds is triangulated (`structure`), and all is adjusted again.
-//! What does not fit is left out on the way.
+//! Starts with two photographs (`initial`). The photograph that observes the most known points
+//! comes next (`register`), its new points are triangulated (`structure`), and everything is
+//! adjusted again. Outliers are dropped on the way.
 //!
 //! Source: Snavely, Seitz, Szeliski, *Photo Tourism: Exploring Photo Collections in 3D*, SIGGRAPH
 //! 2006, section 4.2.
@@ -19,31 +19,31 @@ use crate::matching::{GUESS, Matches};
 use crate::{Error, Lens, Observation, Point, Reconstruction, View};
 use nalgebra::{Matrix3, Vector2, Vector3};
 
-/// Cauchy's loss at so many standard deviations loses a twentieth of the exactness where errors are
-/// normal (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*, 1977),
-/// and gains much where they are not: half of the coordinates of salient points are off by a tenth
+/// Scale of the Cauchy loss in standard deviations. It loses a twentieth of the efficiency for
+/// normal errors (Holland, Welsch, *Robust Regression Using Iteratively Reweighted Least-Squares*,
+/// 1977), but gains much for others: half of the coordinates of salient points are off by a tenth
 /// of a pixel or less, and some by two pixels.
 const CAUCHY: f64 = 2.385;
-/// No salient point is known better than to so many pixels.
+/// Minimum standard deviation of a salient point in pixels.
 const FINEST: f64 = 0.02;
 
-/// How it is solved.
+/// Options of the solver.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// Hold focal lengths.
+    /// Keeps focal lengths fixed.
     pub fixed_focal: bool,
-    /// Hold k1 and k2 at 0.
+    /// Keeps k1 and k2 at 0.
     pub no_distortion: bool,
-    /// Each photograph has a lens of its own.
+    /// Gives each photograph its own lens.
     pub own_lenses: bool,
-    /// The residual in pixels beyond which an observation is left out, for photographs of up to
-    /// 1600 pixels; more for larger ones.
+    /// Maximum residual of an observation in pixels, for photographs of up to 1600 pixels;
+    /// proportionally more for larger ones.
     pub threshold: f64,
-    /// The least angle in degrees between the rays to a point.
+    /// Minimum angle in degrees between the rays to a point.
     pub angle: f64,
-    /// Points that a photograph must see to be registered.
+    /// Minimum number of known points that a photograph must observe to be registered.
     pub least: usize,
-    /// Of the random numbers.
+    /// Seed of the random numbers.
     pub seed: u64,
 }
 
@@ -54,44 +54,45 @@ impl Default for Options {
     }
 }
 
-/// A track on its way to a point.
+/// A track that may become a point.
 struct Growing {
     color: [u8; 3],
     seen: Vec<Observation>,
-    /// Which observations fit.
+    /// Flags of the observations that fit.
     fits: Vec<bool>,
     position: Option<Vector3<f64>>,
 }
 
-/// Everything while it grows.
+/// State of an incremental reconstruction.
 struct Solver<'o> {
     options: &'o Options,
     views: Vec<View>,
     lenses: Vec<Lens>,
-    /// The lenses as they were, for those that go astray.
+    /// Initial lenses, to reset lenses that diverge.
     first: Vec<Lens>,
     tracks: Vec<Growing>,
-    /// For each photograph its tracks, and which observation of them it is.
+    /// Tracks of each photograph, with the index of its observation in the track.
     of_view: Vec<Vec<(usize, usize)>>,
 }
 
-/// What was solved.
+/// Result of the solver.
 pub struct Solved {
     /// Cameras and points.
     pub all: Reconstruction,
-    /// What is worth telling: photographs left out and why, focal lengths far from EXIF's.
+    /// Notes for the user: photographs that were left out and the reason, and focal lengths far
+    /// from EXIF.
     pub notes: Vec<String>,
 }
 
-/// Solves. `progress` hears how many photographs are registered.
+/// Reconstructs cameras and points. `progress` receives the number of registered photographs.
 ///
-/// A focal length that is far off, as EXIF's is of photographs that were made smaller, lets few
-/// photographs fit or moves far; it is solved again then, from the focal length that came out or
-/// from a usual one, and the better of both counts.
+/// With a wrong focal length, as EXIF contains for photographs that were reduced in size, few
+/// photographs fit, or the focal length moves far. In that case, solves again from the resulting
+/// focal length or from a usual one, and returns the better result.
 ///
 /// # Errors
 ///
-/// Says why if no two photographs can begin.
+/// If no two photographs are suitable to start with.
 pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
     let first = attempt(matches, matches, options, progress);
     let usual = |size: [u32; 2]| 1.2 * f64::from(size[0].max(size[1]));
@@ -118,19 +119,19 @@ pub fn solve(matches: &Matches, options: &Options, progress: &dyn Fn(usize)) -> 
     }
 }
 
-/// Whether a focal length is another one.
+/// Returns true if a focal length has changed considerably.
 fn moved(ratio: f64) -> bool {
     !(0.75..=1.33).contains(&ratio)
 }
 
 impl Solved {
-    /// The focal length of a photograph's lens.
+    /// Focal length of a photograph's lens.
     fn focal(&self, view: usize) -> f64 {
         self.all.lenses[self.all.views[view].lens].focal
     }
 }
 
-/// Solves once; what is told goes by what was written with the photographs.
+/// Solves once. Notes compare focal lengths with the ones in `written`.
 fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &dyn Fn(usize)) -> Result<Solved, Error> {
     let mut solver = Solver::new(matches, options);
     let mut notes = Vec::new();
@@ -143,12 +144,12 @@ fn attempt(matches: &Matches, written: &Matches, options: &Options, progress: &d
             refused[view] = true;
             continue;
         }
-        // Others may fit now.
+        // Other photographs may fit now.
         refused.fill(false);
         solver.extend();
         let known = solver.registered();
         progress(known);
-        // Of many photographs, one more changes little.
+        // With many photographs, one more changes little.
         if known > last_adjusted + last_adjusted / 10 {
             solver.adjust(false);
             solver.drop_misfits();
@@ -206,13 +207,13 @@ impl<'o> Solver<'o> {
         self.views.iter().filter(|view| view.pose.is_some()).count()
     }
 
-    /// The longest residual that is allowed in a photograph.
+    /// Maximum residual in a photograph.
     fn threshold(&self, view: usize) -> f64 {
         self.options.threshold * (self.lenses[self.views[view].lens].longer_side() / 1600.0).max(1.0)
     }
 
-    /// The points that are known, with the observations that fit; of each, its track. With `all`,
-    /// lenses that no registered photograph has are kept too.
+    /// Known points with the observations that fit, and the track of each point. Without `all`,
+    /// points with fewer than two observations are kept, too.
     fn reconstruction(&self, all: bool) -> (Reconstruction, Vec<usize>) {
         let mut points = Vec::new();
         let mut tracks = Vec::new();
@@ -229,7 +230,7 @@ impl<'o> Solver<'o> {
         (Reconstruction { lenses: self.lenses.clone(), views: self.views.clone(), points }, tracks)
     }
 
-    /// Adjusts and leaves out what does not fit, some times.
+    /// Alternates between adjusting and dropping outliers, at most `times` times.
     fn settle(&mut self, times: usize) {
         for _ in 0..times {
             self.adjust(false);
@@ -243,11 +244,11 @@ impl<'o> Solver<'o> {
         self.drop_misfits();
     }
 
-    /// Adjusts all; on the way only so far as the next step needs.
+    /// Adjusts everything; unless `thoroughly`, only as far as the next step requires.
     fn adjust(&mut self, thoroughly: bool) {
         let (mut all, tracks) = self.reconstruction(false);
         let known = self.registered();
-        // Two photographs do not tell a lens.
+        // Two photographs do not determine a lens.
         let free = known > 2;
         let options = adjust::Options {
             loss: if thoroughly { Loss::Cauchy(CAUCHY * all.noise().max(FINEST)) } else { Loss::Huber(1.0) },
@@ -270,7 +271,7 @@ impl<'o> Solver<'o> {
         }
     }
 
-    /// The photograph that sees most of the points that are known.
+    /// Finds the photograph that observes the most known points.
     fn next(&self, refused: &[bool]) -> Option<usize> {
         let count = |view: usize| self.of_view[view].iter().filter(|(t, _)| self.tracks[*t].position.is_some()).count();
         let open = (0..self.views.len()).filter(|i| self.views[*i].pose.is_none() && !refused[*i]);
@@ -279,8 +280,8 @@ impl<'o> Solver<'o> {
     }
 }
 
-/// Turns, moves and scales the whole: photographs' mean upward direction is y, the points' middle
-/// the origin, and the photographs are 1 from it on average.
+/// Normalises orientation, position, and scale: the mean up direction of the photographs becomes y,
+/// the median of the points the origin, and the mean distance of the cameras 1.
 fn upright(all: &mut Reconstruction) {
     let poses: Vec<_> = all.views.iter().filter_map(|view| view.pose).collect();
     let up: Vector3<f64> = poses.iter().map(|pose| -pose.rotation.row(1).transpose()).sum();

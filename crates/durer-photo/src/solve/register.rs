@@ -1,4 +1,4 @@
-//! The pose of a photograph that sees points that are known.
+//! Registration of photographs that observe known points.
 
 use super::Solver;
 use crate::adjust::{Loss, Options, adjust};
@@ -7,7 +7,7 @@ use crate::geometry::ransac::{Estimate, Search, ransac};
 use crate::{Lens, Observation, Point, Pose, Reconstruction, View};
 use nalgebra::{Vector2, Vector3};
 
-/// Points of the world and their pixels, some of which are false, through a lens that is known.
+/// World points and their pixels, including outliers, with a known lens.
 struct Known<'k> {
     lens: &'k Lens,
     pairs: &'k [(Vector3<f64>, Vector2<f64>)],
@@ -21,7 +21,7 @@ impl Estimate<4> for Known<'_> {
         self.pairs.len()
     }
 
-    /// Three points give up to four poses; the fourth decides.
+    /// Three points give up to four poses; the fourth point selects one.
     fn minimal(&self, sample: &[usize; 4]) -> Vec<Pose> {
         let [Some(a), Some(b), Some(c), _] = sample.map(|i| self.directions[i]) else { return Vec::new() };
         let points = [0, 1, 2].map(|k| self.pairs[sample[k]].0);
@@ -42,7 +42,7 @@ impl Estimate<4> for Known<'_> {
     }
 }
 
-/// Adjusts one camera alone.
+/// Adjusts a single camera.
 pub fn refined_pose(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
     lens: &Lens,
@@ -62,7 +62,7 @@ pub fn refined_pose(
     Some((one.views[0].pose?, one.lenses[0]))
 }
 
-/// The pose of a camera whose lens is known, and which pairs agree with it; none if no more than
+/// Estimates the pose of a camera with a known lens, and the pairs that agree; `None` if at most
 /// four do.
 pub fn pose_of(
     pairs: &[(Vector3<f64>, Vector2<f64>)],
@@ -75,13 +75,13 @@ pub fn pose_of(
 }
 
 impl Solver<'_> {
-    /// Finds the pose of a photograph. Says whether it did.
+    /// Registers a photograph. Returns true on success.
     pub(super) fn register(&mut self, view: usize) -> bool {
         let known = self.of_view[view].iter().filter_map(|(t, k)| Some((*t, *k, self.tracks[*t].position?)));
         let known: Vec<(usize, usize, Vector3<f64>)> = known.collect();
         let pairs: Vec<_> = known.iter().map(|(t, k, position)| (*position, self.tracks[*t].seen[*k].pixel)).collect();
         let number = self.views[view].lens;
-        // A lens that no other photograph has may have another focal length than EXIF says.
+        // If no registered photograph has the same lens, the focal length in EXIF may be wrong.
         let alone = !self.views.iter().any(|other| other.lens == number && other.pose.is_some());
         let free = alone && !self.options.fixed_focal;
         let factors: &[f64] = if free { &[1.0, 0.8, 1.25, 0.6, 1.6] } else { &[1.0] };

@@ -1,15 +1,15 @@
-//! Points: which are found, and which observations of them fit.
+//! Triangulation of points and selection of observations that fit.
 
 use super::{Growing, Solver};
 use crate::geometry::triangulate::nearest_to_rays;
 use crate::{Observation, Pose};
 use nalgebra::Vector3;
 
-/// Pairs of rays that are tried for a point.
+/// Maximum number of pairs of rays that are tried for a point.
 const TRIED: usize = 12;
 
 impl Solver<'_> {
-    /// The residual of an observation by a registered photograph; infinite behind it.
+    /// Residual of an observation by a registered photograph; infinite behind the camera.
     fn residual(&self, position: &Vector3<f64>, seen: &Observation) -> Option<f64> {
         let view = &self.views[seen.view];
         let p = view.pose.as_ref()?.apply(position);
@@ -21,8 +21,8 @@ impl Solver<'_> {
         self.residual(position, seen).is_some_and(|length| length <= self.threshold(seen.view))
     }
 
-    /// Triangulates tracks that are no points yet, and takes up observations that fit by now. Gives
-    /// how many points are new.
+    /// Triangulates tracks without a point, and updates which observations fit. Returns the number
+    /// of new points.
     pub(super) fn extend(&mut self) -> usize {
         let mut added = 0;
         for t in 0..self.tracks.len() {
@@ -55,14 +55,15 @@ impl Solver<'_> {
         track.seen.iter().filter_map(ray).collect()
     }
 
-    /// The point of two of the rays with which most observations agree, at a sufficient angle.
+    /// Triangulates a track from the pair of rays whose point agrees with the most observations, at
+    /// a sufficient angle.
     fn triangulated(&self, track: &Growing) -> Option<Vector3<f64>> {
         let rays = self.rays(track);
         let mut pairs: Vec<(f64, usize, usize)> = Vec::new();
         for i in 0..rays.len() {
             pairs.extend((0..i).map(|j| (rays[i].1.dot(&rays[j].1), j, i)));
         }
-        // The widest angles first.
+        // Widest angles first.
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let widest = libm::cos(self.options.angle.to_radians());
         let mut best: Option<(usize, Vector3<f64>)> = None;
@@ -79,8 +80,8 @@ impl Solver<'_> {
         best.map(|best| best.1)
     }
 
-    /// Leaves out observations whose residual is too long, and points with fewer than two left or
-    /// too small an angle. Gives how many observations went.
+    /// Drops observations with too large residuals, and points with fewer than two observations or
+    /// too small an angle. Returns the number of dropped observations.
     pub(super) fn drop_misfits(&mut self) -> usize {
         let mut dropped = 0;
         let widest = libm::cos(self.options.angle.to_radians());

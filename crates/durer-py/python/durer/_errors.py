@@ -1,4 +1,4 @@
-"""What is wrong with a scene, as an exception; and what the command says of its options, as Python says it."""
+"""What is wrong with a scene, as an exception; and messages about options in the words of Python."""
 
 from __future__ import annotations
 
@@ -44,9 +44,5 @@ def spoken(work: Callable[[], T]) -> T:
 
 
 def _python(text: str) -> str:
-    text = re.sub(r"\n\n(  tip: .*|For more information, try '--help'\.)", "", text)
-    text = re.sub(r"invalid value '(.*?)' for '--([a-z-]+)[^']*'", r"--\2 cannot be \1", text)
-    text = re.sub(r"\n +\[possible values: (.*)\]", r": it is one of \1", text)
-    text = re.sub(r"unexpected argument '(.*?)' found", r"\1 is no number that can be given here", text)
     text = re.sub(r"say it as (\d+)x(\d+)", r'say it as (\1, \2) or "\1x\2"', text)
     return re.sub(r"--([a-z][a-z-]*)", lambda option: option[1].replace("-", "_"), text)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any, Iterable, Iterator, Optional, Sequence, Union
 
 from . import _durer
+from ._options import Pairs, parsed
 from ._progress import Progress, watch
 from .world import Part, PathLike, Pictures, World, load
 
@@ -29,7 +30,7 @@ def _files(world: World) -> dict[str, bytes]:
 
 
 @functools.lru_cache(maxsize=4)
-def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...]) -> _durer.World:
+def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...]) -> _durer.World:
     """A scene from its files: opened once in each worker."""
     with tempfile.TemporaryDirectory() as folder:
         for name, content in files:
@@ -39,18 +40,18 @@ def _opened(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...]) -> _
         return _durer.World(Path(folder) / files[0][0], None, [], list(reading))
 
 
-def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[str, ...], words: Sequence[str], index: int, count: int) -> bytes:
+def shard(files: tuple[tuple[str, bytes], ...], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
     """One shard, as the bytes of a part: what workers do."""
     world = _opened(files, reading)
-    all_words = [*words, "--threads", "1", "--shard", f"{index}/{count}"]
-    part = world.part(all_words)
-    world.render(part, all_words, None)
+    own = [*options, ("threads", "1"), ("shard", f"{index}/{count}")]
+    part = world.part(own)
+    world.render(part, own, None)
     return part.write()
 
 
-def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[str, ...], words: Sequence[str], index: int, count: int) -> bytes:
+def _whole(names: Sequence[str], contents: Sequence[bytes], reading: tuple[tuple[str, str], ...], options: Pairs, index: int, count: int) -> bytes:
     """The same of files whose contents were sent one by one."""
-    return shard(tuple(zip(names, contents)), reading, words, index, count)
+    return shard(tuple(zip(names, contents)), reading, options, index, count)
 
 
 def _given(content: bytes) -> bytes:
@@ -62,10 +63,10 @@ class _Frame:
     """A picture whose shards are with the workers."""
 
     def __init__(
-        self, world: World, client: Any, shards: int, asked: Sequence[str], sent: dict[bytes, Any]
+        self, world: World, client: Any, shards: int, asked: Pairs, sent: dict[bytes, Any]
     ) -> None:
         # What is wrong with the options is better known before anything is sent.
-        world._world.part([*asked, "--shard", f"1/{shards}"])
+        world._world.part([*asked, ("shard", f"1/{shards}")])
         files = _files(world)
         # Files are tasks that give them, not scattered data: of these Dask keeps one copy, and it is lost with the worker that has it.
         # They are held until the end: who dies with shards that were done already leaves them to others, who need the files.
@@ -112,7 +113,7 @@ def render(
     from distributed import as_completed
 
     if isinstance(scene, World):
-        world, asked = scene, [*scene._all(options), *(words or [])]
+        world, asked = scene, [*scene._all(options), *parsed(words)]
     else:
         world = load(scene, words=words)
         asked = world._all(options)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import difflib
 import json
 import os
 import time
@@ -17,6 +16,7 @@ import numpy.typing as npt
 from . import _durer
 from ._arrays import Bools, Doubles, Floats, Ints, vectors
 from ._errors import SceneError, spoken
+from ._options import STATEMENTS, Pairs, is_reading, is_work, pairs, parsed
 from ._progress import Progress, watch
 from .rays import Mesh, asked, threads_asked
 from .things import Camera, Group, Light, Object, Thing, Writer, ply
@@ -24,78 +24,8 @@ from .words import Background, PhongMaterial
 
 PathLike: TypeAlias = Union[str, "os.PathLike[str]"]
 
-#: Options of the command that say where things are written, which here the caller does.
-_SHELL = {
-    "output", "pixel", "sample", "hash", "quiet", "resume", "restart", "checkpoint", "checkpoint-every", "no-checkpoint",
-    "preview", "transfer", "zoom", "help", "version", "watch", "stats", "denoise", "frames", "fps", "turntable",
-}  # fmt: skip
-#: Those that say how a scene is read, and how a model becomes one.
-_READING = {
-    "dialect", "compat", "strict", "allow-outside", "assets", "memory", "accel", "grid",
-    "up", "view", "studio", "environment", "view-file", "camera", "fit", "at", "variant", "turned",
-}  # fmt: skip
 #: Kinds of picture whose three channels are one number.
 _SINGLE = {"depth", "object", "material", "sample-count", "variance", "cost"}
-
-#: Those that only say how the work is done.
-_CONTROL = {"threads", "tile", "time_limit", "time"}
-
-#: Words of before, and what they are now.
-_OLDER = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
-
-_OPTIONS = {name: (help, value, words) for name, help, value, words in _durer.options() if name not in _SHELL}
-
-
-def _words(options: Mapping[str, Any], reading: bool) -> list[str]:
-    """Options as the command's words: `size=(640, 480)` is `--size 640x480`."""
-    words: list[str] = []
-    for name, value in options.items():
-        option = name.replace("_", "-")
-        option = _OLDER.get(option, option)
-        if option not in _OPTIONS or (option in _READING) != reading and (option, reading) != ("size", True):
-            known = [n.replace("-", "_") for n in _OPTIONS if (n in _READING) == reading]
-            near = difflib.get_close_matches(name, known, 1)
-            hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
-            raise TypeError(f"there is no option {name}: {hint}")
-        takes = _OPTIONS[option][1]
-        if option == "studio" and value in (None, False, True):
-            words += [] if value else ["--studio", "none"]
-            continue
-        if value is None or value is False and takes is None:
-            continue
-        if takes is None:
-            words.append(f"--{option}")
-        elif isinstance(value, bool):
-            words.append(f"--{option}={'on' if value else 'off'}")
-        elif option == "depth-range":
-            if np.shape(value) != (2,):
-                raise ValueError(f"{name} must be two numbers, but is {value!r}")
-            words += [f"--{option}", *(repr(float(x)) for x in value)]
-        elif option == "assets" and not isinstance(value, (str, os.PathLike)):
-            words += [word for folder in value for word in (f"--{option}", os.fspath(folder))]
-        else:
-            words += [f"--{option}", _word(option, value)]
-    return words
-
-
-#: Options of several numbers, and what they are.
-_SEVERAL = {"size": ("width and height", 2), "crop": ("left, top, width and height", 4), "shard": ("number and count", 2)}
-
-
-def _word(option: str, value: Any) -> str:
-    meaning, count = _SEVERAL.get(option, ("", 0))
-    if count and not isinstance(value, str):
-        numbers = np.asarray(value)
-        if numbers.shape != (count,) or numbers.dtype.kind not in "iu" or (numbers < 0).any():
-            raise ValueError(f"{option} must be {meaning}, whole numbers, but is {value!r}")
-    if isinstance(value, (tuple, list, np.ndarray)):
-        parts = [str(x) for x in value]
-        if option == "crop" and len(parts) == 4:
-            return f"{parts[0]},{parts[1]},{parts[2]}x{parts[3]}"
-        return ("," if option in ("show", "compat") else "/" if option == "shard" else "x").join(parts)
-    if option == "time-limit" and isinstance(value, (int, float)):
-        return f"{round(1000 * value)}ms"
-    return os.fspath(value) if isinstance(value, os.PathLike) else str(value)
 
 
 class Pictures(dict[str, Floats]):
@@ -307,9 +237,9 @@ class World:
         text: Optional[bytes],
         given: list[tuple[str, bytes]],
         reading: Mapping[str, Any],
-        words: Optional[Sequence[str]] = None,
+        own: Pairs = [],
     ) -> None:
-        self.path, self._text, self._given, self._reading = path, text, given, [*_words(reading, True), *(words or [])]
+        self.path, self._text, self._given, self._reading = path, text, given, [*pairs(reading, True), *own]
         self._world = spoken(lambda: _durer.World(path, text, given, self._reading))
 
     @classmethod
@@ -321,7 +251,7 @@ class World:
         after `durer render SCENE`, those of renders among them, which hold for all that is made of the world. Raises SceneError with
         file, line and column."""
         world = cls.__new__(cls)
-        world._load(Path(path), None, [], reading, words)
+        world._load(Path(path), None, [], reading, parsed(words))
         return world
 
     @classmethod
@@ -335,7 +265,7 @@ class World:
         return World._again, (self.path, self._text, self._given, self._reading)
 
     @staticmethod
-    def _again(path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: list[str]) -> World:
+    def _again(path: Path, text: Optional[bytes], given: list[tuple[str, bytes]], reading: Pairs) -> World:
         world = World.__new__(World)
         world._load(path, text, given, {}, reading)
         return world
@@ -385,17 +315,15 @@ class World:
 
     def part(self, **options: Any) -> Part:
         """A part of a picture of which nothing is made yet; with `shard=(3, 16)` a shard."""
-        words = self._all(options)
-        part = Part(spoken(lambda: self._world.part(words)))
-        part._options = {name: value for name, value in options.items() if name not in _CONTROL}
+        given = self._all(options)
+        part = Part(spoken(lambda: self._world.part(given)))
+        part._options = {name: value for name, value in options.items() if not is_work(name)}
         return part
 
-    def _all(self, options: Mapping[str, Any]) -> list[str]:
-        reading = self._reading
-        if "--size" in reading and options.get("size") is not None:
-            at = reading.index("--size")
-            reading = reading[:at] + reading[at + 2 :]
-        return reading + _words(options, False)
+    def _all(self, options: Mapping[str, Any]) -> Pairs:
+        given = pairs(options, False)
+        size = any(name == "size" for name, _ in given)
+        return [pair for pair in self._reading if not (size and pair[0] == "size")] + given
 
     def render(
         self,
@@ -435,7 +363,7 @@ class World:
         """Refuses options that ask for another picture than a part is of."""
 
         def differs(wanted: Mapping[str, Any]) -> bool:
-            deciding = {name: value for name, value in wanted.items() if name not in _CONTROL}
+            deciding = {name: value for name, value in wanted.items() if not is_work(name)}
             asked = self.part(**{**(part._options or {}), **deciding})
             return bool(deciding) and (asked.job != part.job or "shard" in deciding and asked.shard != part.shard)
 
@@ -511,14 +439,14 @@ class World:
         for name, value in (("x", x), ("y", y)):
             if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 32:
                 raise ValueError(f"{name} must be the number of a pixel, 0 or more, but is {value!r}")
-        words = self._all(options)
-        answer: dict[str, Any] = json.loads(spoken(lambda: self._world.explain(words, (int(x), int(y)))))
+        given = self._all(options)
+        answer: dict[str, Any] = json.loads(spoken(lambda: self._world.explain(given, (int(x), int(y)))))
         return answer
 
     def check(self, **options: Any) -> list[dict[str, Any]]:
         """What is odd about it, in the order of cause, as `durer check --json` lists it."""
-        words = self._all(options)
-        found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(words)))
+        given = self._all(options)
+        found: list[dict[str, Any]] = json.loads(spoken(lambda: self._world.check(given)))
         return found
 
     def _repr_png_(self) -> bytes:
@@ -535,7 +463,7 @@ def load(path: PathLike, *, words: Optional[Sequence[str]] = None, **reading: An
 
 def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
     """What is wrong or odd with a scene file, also one that cannot be rendered: as `durer check --json` lists it."""
-    reading = {name: options.pop(name) for name in list(options) if name.replace("_", "-") in _READING}
+    reading = {name: options.pop(name) for name in list(options) if is_reading(name)}
     try:
         return World.load(path, **reading).check(**options)
     except SceneError as error:
@@ -544,7 +472,7 @@ def check(path: PathLike, **options: Any) -> list[dict[str, Any]]:
 
 def options() -> dict[str, str]:
     """The options of `World.render`, with what they do."""
-    return {name.replace("-", "_"): help for name, (help, _, _) in _OPTIONS.items() if name not in _READING}
+    return {name.replace("-", "_"): stated.help for name, stated in STATEMENTS.items() if stated.group != "reading"}
 
 
 def kinds() -> dict[str, str]:

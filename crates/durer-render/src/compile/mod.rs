@@ -173,7 +173,6 @@ pub fn compile(
         shading: rules::shading_rules(rules),
         display: rules::display_rules(rules, scene.lumens),
         rules: rules.clone(),
-        lumens: scene.lumens,
     };
     let assets = Assets { cube_map, environment, fog, profiles, illuminants, textures };
     let mut world = World::new(contents, assets, digest);

@@ -67,7 +67,7 @@ impl Contents {
     pub fn set_rules(&mut self, rules: Rules) {
         self.camera_rules = camera_rules(&rules);
         self.shading = shading_rules(&rules);
-        self.display = display_rules(&rules, self.lumens);
+        self.display = display_rules(&rules, self.display.lumens);
         self.rules = rules;
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod aov;
 pub mod bytes;
+pub mod course;
 pub mod false_color;
 #[expect(clippy::module_inception, reason = "the film is what this room is about")]
 mod film;

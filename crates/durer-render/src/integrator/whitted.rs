@@ -11,7 +11,7 @@ use super::media::Passage;
 use super::trace::{HitRecord, NodeId, RayKind, TermKind, TraceListener};
 use super::{Integrate, Parameters, Setup};
 use crate::world::{Interaction, Material, TOGETHER, WeightedMaterial, World};
-use direct::direct;
+use direct::{Direct, take_powers};
 use durer_scene::describe::described;
 use durer_scene::dialect::set;
 use durer_scene::light::Illumination;
@@ -78,13 +78,13 @@ pub struct Whitted<'w> {
     pub cancel: Option<&'w AtomicBool>,
 }
 
-/// One of the materials that make up a point, and what was worked out of it.
+/// One of the materials that make up a point.
 struct Lit<'w> {
     part: WeightedMaterial<'w>,
     /// Its diffuse colour: a texture or noise is looked up once for all lights.
     diffuse: Color,
-    /// What it scatters of the light in question, if nothing is in the way.
-    scattered: Color,
+    /// Terms of the current light.
+    direct: Direct,
 }
 
 /// A surface point that is shaded.
@@ -259,7 +259,7 @@ impl<'w> Whitted<'w> {
             point.first_part = parts.len();
             let lit = |part: WeightedMaterial<'w>| {
                 let diffuse = self.world.diffuse_color(part.phong, &point.at.surface);
-                Lit { part, diffuse, scattered: Color::ZERO }
+                Lit { part, diffuse, direct: Direct::default() }
             };
             match &self.world.materials()[point.at.material as usize] {
                 // Most points are of one material.
@@ -296,35 +296,35 @@ impl<'w> Whitted<'w> {
                 point.color += ambient * met;
             }
         }
-        // Of each shadow ray the number of its point, and the light that asks.
-        let mut asked = [(0, Illumination { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); TOGETHER];
+        // Points that a light may reach: their numbers, and the light as they see it.
+        let mut lit = [(0, Illumination { to_light: Vec3::ZERO, distance: 0.0, color: Color::ZERO }); TOGETHER];
         for number in 0..self.world.lights().len() {
             let mut count = 0;
             for (i, point) in points.iter_mut().enumerate().filter(|(_, point)| !point.black) {
                 let Interaction { ray, surface, .. } = &point.at;
                 let seen = self.world.illuminate(number, surface.point());
-                let parts = &mut parts[point.first_part..][..point.parts];
                 let mut dark = true;
-                for Lit { part, diffuse, scattered } in &mut *parts {
-                    *scattered = direct(part.phong, *diffuse, point.n, ray.dir(), &seen, NodeId::NONE, &mut ());
-                    dark &= *scattered == Color::ZERO;
+                for Lit { part, diffuse, direct } in &mut parts[point.first_part..][..point.parts] {
+                    *direct = Direct::of(part.phong, *diffuse, point.n, ray.dir(), &seen);
+                    dark &= direct.is_dark(part.phong);
                 }
-                // Where nothing of a light would be scattered, only listeners ask whether it arrives.
-                if dark && !T::LISTENS {
-                    continue;
-                }
-                if !self.settings.shadows || seen.color == Color::ZERO {
-                    self.add_light(point, parts, (number, &seen, Color::ONE), queue, tally);
+                // Where a light adds nothing, only listeners ask whether it arrives.
+                if (dark || seen.color == Color::ZERO) && !T::LISTENS {
                     continue;
                 }
                 shadows[count] = self.shadow_ray(surface, &seen);
-                asked[count] = (i, seen);
+                lit[count] = (i, seen);
                 count += 1;
             }
-            let mut shares = [Color::ZERO; TOGETHER];
-            self.visible(&mut shadows[..count], &mut shares[..count], tally);
-            for ((i, seen), share) in asked[..count].iter().zip(shares) {
-                let point = &mut points[*i];
+            let lit = &lit[..count];
+            let mut shares = [Color::ONE; TOGETHER];
+            if self.settings.shadows {
+                self.visible(&mut shadows[..count], &mut shares[..count], tally);
+            }
+            let arriving = lit.iter().zip(shares).filter(|(_, share)| *share != Color::ZERO);
+            take_powers(points, parts, arriving.map(|(&(i, _), _)| i));
+            for (&(i, ref seen), share) in lit.iter().zip(shares) {
+                let point = &mut points[i];
                 let parts = &parts[point.first_part..][..point.parts];
                 self.add_light(point, parts, (number, seen, share), queue, tally);
             }
@@ -341,10 +341,11 @@ impl<'w> Whitted<'w> {
         queue: &mut Queue,
         tally: &mut T,
     ) {
-        for Lit { part, diffuse, scattered } in parts {
+        for Lit { part, diffuse, direct } in parts {
             let share = part.share;
-            // In the dark nothing is computed.
-            let mut direct_light = if visible == Color::ZERO { Color::ZERO } else { *scattered };
+            // Nothing is computed of a light that does not arrive.
+            let dark = visible == Color::ZERO;
+            let color = if dark { Color::ZERO } else { direct.color(part.phong, seen) };
             if T::LISTENS {
                 let parent = queue.segment(point.segment).node;
                 let node = tally.begin(parent, || {
@@ -352,12 +353,12 @@ impl<'w> Whitted<'w> {
                     let (to_light, distance) = (seen.to_light, seen.distance);
                     TermKind::Light { light: number, to_light, distance, share, shadow }
                 });
-                if visible != Color::ZERO {
-                    direct_light = direct(part.phong, *diffuse, point.n, point.at.ray.dir(), seen, node, tally);
+                if !dark {
+                    direct.tell(part.phong, *diffuse, node, tally);
                 }
-                tally.end(node, share * visible, seen.color, direct_light);
+                tally.end(node, share * visible, seen.color, color);
             }
-            point.color += share * visible * direct_light;
+            point.color += share * visible * color;
         }
     }
 

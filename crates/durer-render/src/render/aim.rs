@@ -1,7 +1,7 @@
 //! Where the samples of a job go.
 
-use super::course::SubPixels;
 use super::error::center;
+use super::sub_pixels::SubPixels;
 use super::{Job, Sampling, camera_ray, raster};
 use crate::film::FilterSampler;
 use crate::world::World;

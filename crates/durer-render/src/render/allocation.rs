@@ -20,8 +20,6 @@
 mod tests;
 
 use super::job::Job;
-use super::part::PartialRender;
-use super::pictures::place;
 use super::{Crop, Sampling};
 use crate::film::{Film, luminance_of};
 use durer_scene::sampler::Sampler;
@@ -109,7 +107,7 @@ pub(super) fn variances(half: &Film, all: &Film, rect: Crop) -> Arc<[f32]> {
 }
 
 /// The variance of each pixel's mean as those of the other colour around it tell.
-fn around(variances: &[f32], width: usize) -> Vec<f32> {
+pub(super) fn around(variances: &[f32], width: usize) -> Vec<f32> {
     let (height, reach) = (variances.len() / width, WEIGHTS.len() / 2);
     let mut row = vec![(0.0_f32, 0.0_f32); width];
     let mut found = Vec::with_capacity(variances.len());
@@ -134,7 +132,7 @@ fn around(variances: &[f32], width: usize) -> Vec<f32> {
 
 /// Divides as many samples a pixel by the pixels' standard deviations: none gets fewer than the
 /// pilot's. What nobody needs is left over.
-fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
+pub(super) fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
     let (least, most) = (f64::from(pilot(samples)), f64::from(most(samples)));
     let wanted = |factor: f64, deviation: f32| (factor * f64::from(deviation)).clamp(least, most);
     let all = deviations.len() as f64 * f64::from(samples);
@@ -155,43 +153,4 @@ fn divided(deviations: &[f32], samples: u32) -> Vec<u32> {
         own as u32
     };
     deviations.iter().map(rounded).collect()
-}
-
-impl PartialRender {
-    /// Decides how many samples each pixel gets, once all have the pilot's. Whether that is so.
-    pub(super) fn allocate(&self) -> bool {
-        let (samples, window) = (self.job.sampling.samples(), self.job.window());
-        let blocks = self.state().samples.clone();
-        if blocks.iter().all(|block| block.targets.is_some()) {
-            return true;
-        }
-        let mut variances = vec![0.0; window.pixels() as usize];
-        for (index, block) in blocks.iter().enumerate() {
-            let Some(own) = &block.variances else { return false };
-            let places = self.blocks.rect(index).places();
-            places.zip(own.iter()).for_each(|((x, y), &variance)| variances[place(window, x, y)] = variance);
-        }
-        let mut deviations = around(&variances, window.width as usize);
-        deviations.iter_mut().for_each(|variance| *variance = variance.sqrt());
-        let mut targets = vec![0; deviations.len()];
-        for color in 0..2 {
-            let is_of_color = |&(x, y): &(u32, u32)| (x ^ y) & 1 == color;
-            let pixels: Vec<usize> = window.places().filter(is_of_color).map(|(x, y)| place(window, x, y)).collect();
-            let own: Vec<f32> = pixels.iter().map(|&pixel| deviations[pixel]).collect();
-            pixels.iter().zip(divided(&own, samples)).for_each(|(&pixel, target)| targets[pixel] = target);
-        }
-        let of_block =
-            |rect: Crop| -> Arc<[u32]> { rect.places().map(|(x, y)| targets[place(window, x, y)]).collect() };
-        for (index, block) in self.state().samples.iter_mut().enumerate() {
-            block.targets = Some(of_block(self.blocks.rect(index)));
-        }
-        true
-    }
-
-    /// How many samples a pixel of its window gets, where that was decided.
-    pub(super) fn target(&self, x: u32, y: u32) -> Option<u32> {
-        let (state, index) = (self.state(), self.blocks.at(x, y));
-        let pixel = self.blocks.rect(index).places().position(|place| place == (x, y))?;
-        Some(state.samples.get(index)?.targets.as_ref()?[pixel])
-    }
 }

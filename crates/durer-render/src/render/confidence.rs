@@ -13,7 +13,6 @@
 //! radius: at the sharp edge of a caustic about six tenths of the bias are found.
 
 use super::part::PartialRender;
-use super::pictures::place;
 use super::run::whole;
 use super::{Control, Job, RenderError};
 use crate::film::aov::{Sums, heat};
@@ -140,7 +139,7 @@ impl PartialRender {
             for (x, y) in rect.places() {
                 let sums = |film| Sums { pixel: Some((film, x, y)), gain, lumens: None };
                 let bound = ErrorBound::new(&sums(&film), &sums(twin.as_ref().unwrap_or(&film))).bound;
-                bounds[place(window, x, y)] = bound as f32;
+                bounds[window.index(x, y)] = bound as f32;
             }
         }
         bounds

@@ -47,6 +47,11 @@ impl Crop {
         x.wrapping_sub(self.left) < self.width && y.wrapping_sub(self.top) < self.height
     }
 
+    /// Index of a pixel inside the crop, in reading order.
+    pub(super) fn index(self, x: u32, y: u32) -> usize {
+        (y - self.top) as usize * self.width as usize + (x - self.left) as usize
+    }
+
     /// Its pixels, in reading order.
     pub fn places(self) -> impl Iterator<Item = (u32, u32)> {
         (self.top..self.top + self.height).flat_map(move |y| (self.left..self.left + self.width).map(move |x| (x, y)))

@@ -1,6 +1,7 @@
 //! Why a pixel has its colour: every sample, and the tree of terms that it is the sum of.
 
 pub mod check;
+mod course;
 mod firefly;
 mod text;
 
@@ -8,9 +9,9 @@ use super::aim::PixelSample;
 use super::allocation::pilot;
 use super::confidence::{ErrorBound, corrected};
 use super::control::Until;
-pub use super::course::SubPixels;
-use super::course::{explain as course, stale};
 use super::samples::Samples;
+use super::stale;
+pub use super::sub_pixels::SubPixels;
 use super::{Blocks, Control, Crop, Job, PartialRender, RenderError, Sampling, Shard, raster, render};
 use crate::film::Film;
 use crate::film::aov::{Aov, Sums};

@@ -4,9 +4,9 @@ use super::{Control, Job, PartialRender, RenderError, Sampling, Shard, explain, 
 use crate::compile::testing::read;
 use crate::compile::{AccelKind, Resources, compile};
 use crate::film::Filter;
+use crate::film::course::CourseFilter;
 use crate::film::false_color::LightScale;
 use crate::integrator::{Method, Settings};
-use crate::render::course::CourseFilter;
 use durer_diag::{Diagnostics, Files};
 use durer_formats::Decoder;
 use durer_formats::folder::FolderSource;

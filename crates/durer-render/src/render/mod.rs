@@ -1,12 +1,13 @@
 //! From a world and a job to pictures.
 
+mod adaptive;
 mod aim;
 mod allocation;
 mod bands;
 mod blocks;
 mod confidence;
 mod control;
-pub mod course;
+mod course;
 mod crop;
 mod denoised;
 mod error;
@@ -27,6 +28,8 @@ mod replay;
 mod run;
 mod samples;
 mod saved;
+mod stale;
+mod sub_pixels;
 #[cfg(test)]
 mod tests;
 pub mod verify;

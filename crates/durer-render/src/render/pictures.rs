@@ -162,7 +162,7 @@ impl PartialRender {
                 let Some(film) = &state.samples[index].film else { continue };
                 let mut places = self.blocks.rect(index).places();
                 film.means(|color, share| {
-                    let Some(at) = places.next().map(|(x, y)| place(strip, x, y)) else { return };
+                    let Some(at) = places.next().map(|(x, y)| strip.index(x, y)) else { return };
                     colors[at] = color;
                     if let Some(own) = coverage.get_mut(at) {
                         *own = share;
@@ -202,7 +202,7 @@ impl PartialRender {
     fn each_sampled(&self, state: &State, mut visit: impl FnMut(usize, &Film, u32, u32)) {
         let window = self.job.window();
         for index in 0..state.samples.len() {
-            self.each_of_block(state, index, |film, x, y| visit(place(window, x, y), film, x, y));
+            self.each_of_block(state, index, |film, x, y| visit(window.index(x, y), film, x, y));
         }
     }
 
@@ -222,7 +222,7 @@ impl PartialRender {
             let Some(block) = block else { continue };
             let values = &block.values[number * block.found.len()..];
             for ((x, y), value) in blocks.rect(index).places().zip(values.iter().zip(&block.found)) {
-                pixels[place(window, x, y)] = (*value.0, *value.1);
+                pixels[window.index(x, y)] = (*value.0, *value.1);
             }
         }
         pixels
@@ -251,12 +251,7 @@ impl PartialRender {
     }
 }
 
-/// The index of a pixel in a window.
-pub(super) fn place(window: Crop, x: u32, y: u32) -> usize {
-    (y - window.top) as usize * window.width as usize + (x - window.left) as usize
-}
-
 /// The part of a picture that covers more.
 fn cut<T: Copy>(pixels: Vec<T>, from: Crop, to: Crop) -> Vec<T> {
-    if from == to { pixels } else { to.places().map(|(x, y)| pixels[place(from, x, y)]).collect() }
+    if from == to { pixels } else { to.places().map(|(x, y)| pixels[from.index(x, y)]).collect() }
 }

@@ -2,7 +2,7 @@
 
 use super::allocation::{half, pilot, variances};
 use super::control::Until;
-use super::course::sampling::kept_bytes;
+use super::course::kept_bytes;
 use super::error::{Panicked, RenderError};
 use super::part::{BlockAovs, BlockSamples, PartialRender, film_of, passes_of};
 use super::samples::{SampleCursor, Samples, Stopped};

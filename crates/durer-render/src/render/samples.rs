@@ -1,8 +1,8 @@
 //! How the samples of a block are taken, for each way of sampling.
 
 use super::aim::{Aim, BATCH, Batch, Pixel, PixelSample, Row, Several};
-use super::course::stale;
 use super::error::center;
+use super::stale;
 use super::{Crop, Job, Sampling};
 use crate::film::Film;
 use crate::integrator::{Integrate, Integrator, Whitted};

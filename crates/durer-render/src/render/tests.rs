@@ -4,9 +4,9 @@ use super::verify::{Way, compare};
 use super::*;
 use crate::compile::{AccelKind, testing};
 use crate::film::aov::{AOVS, Aov};
+use crate::film::course::CourseFilter;
 use crate::film::{Film, Filter};
 use crate::integrator::{Method, Settings};
-use crate::render::course::CourseFilter;
 use crate::world::World;
 use durer_bvh::RayCount;
 use durer_image::{Depth, FORMATS, WriteOptions, read};
@@ -521,7 +521,7 @@ fn light_in_watts_is_shown_in_lumens() {
         rendered.layers[1..].iter().map(|layer| layer.image.pixels.clone()).collect::<Vec<_>>()
     };
     let plain = values(&world);
-    world.edit().lumens = Some(179.0 * durer_scene::math::LUMINANCE);
+    world.edit().display.lumens = Some(179.0 * durer_scene::math::LUMINANCE);
     let watts = values(&world);
     assert_eq!(plain.len(), 2);
     for (plain, watts) in plain.iter().flatten().zip(watts.iter().flatten()) {

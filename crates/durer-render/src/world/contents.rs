@@ -38,8 +38,6 @@ pub struct Contents {
     /// The dialect that all these were resolved from. Rendering does not ask it; checks, lessons
     /// and mistakes of the course do.
     pub(crate) rules: Rules,
-    /// What makes lumens of its light, by colour, where that is in watts.
-    pub lumens: Option<Vec3>,
 }
 
 /// What the files became that it names.

@@ -131,9 +131,9 @@ impl World {
         world
     }
 
-    /// What makes lumens of its light, by colour, where that is in watts.
+    /// Lumens of a watt per colour channel, in a scene whose light is in watts.
     pub fn lumens(&self) -> Option<Vec3> {
-        self.contents.lumens
+        self.contents.display.lumens
     }
 
     /// What shines.

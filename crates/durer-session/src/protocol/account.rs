@@ -1,4 +1,4 @@
-//! What is said of a pixel, and of a ray.
+//! Accounts of a pixel and of a ray.
 
 use super::scene::Place;
 use serde::{Deserialize, Serialize};
@@ -9,15 +9,15 @@ use ts_rs::TS;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Row {
-    /// What is computed.
+    /// Name of the result.
     pub name: String,
     /// How, in symbols.
     pub formula: String,
-    /// The same in numbers; may be empty.
+    /// The formula with numbers; may be empty.
     pub numbers: String,
-    /// What comes of it, in words.
+    /// The result as text.
     pub result: String,
-    /// What comes of it, as a number.
+    /// The result as a number.
     pub value: Option<f64>,
 }
 
@@ -25,13 +25,13 @@ pub struct Row {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Segment {
-    /// What it is.
+    /// Meaning.
     pub role: Role,
-    /// Where it begins.
+    /// Start.
     pub from: [f32; 3],
-    /// Where it ends.
+    /// End.
     pub to: [f32; 3],
-    /// Whether it goes on for ever.
+    /// True if it has no end.
     pub escapes: bool,
 }
 
@@ -58,19 +58,19 @@ pub enum Role {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Term {
-    /// What it is, in a few words.
+    /// Title.
     pub title: String,
     /// Its formulas.
     pub rows: Vec<Row>,
     /// The colour that comes of it.
     pub value: [f32; 3],
-    /// What it adds to the pixel.
+    /// Contribution to the pixel.
     pub adds: [f32; 3],
     /// Its share of the pixel's luminance.
     pub share: f32,
     /// The value in eight bits.
     pub swatch: [u8; 3],
-    /// Where the thing is written that it is about.
+    /// Place of its object or light in the text.
     pub place: Option<Place>,
     /// Its ray.
     pub segment: Option<Segment>,
@@ -78,11 +78,11 @@ pub struct Term {
     pub normal: Option<[[f32; 3]; 2]>,
     /// The ray in numbers, to ask all objects about it: origin, direction.
     pub ray: Option<[[f32; 3]; 2]>,
-    /// Where that ray ends.
+    /// End of the ray.
     pub t_max: Option<f32>,
     /// Number of the object that it is about.
     pub object: Option<u32>,
-    /// What it is the sum of.
+    /// Terms that sum to it.
     pub terms: Vec<Term>,
 }
 
@@ -98,7 +98,7 @@ pub struct PixelAccount {
     pub color: [f32; 3],
     /// In eight bits.
     pub bytes: [u8; 3],
-    /// How many samples it has.
+    /// Number of samples.
     pub samples: u32,
     /// Which of them the tree is of.
     pub sample: u32,
@@ -127,7 +127,7 @@ pub enum Verdict {
     Missed,
 }
 
-/// What an object says of a ray.
+/// Test of a ray against an object.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct ObjectTest {
@@ -135,35 +135,35 @@ pub struct ObjectTest {
     pub object: u32,
     /// Its keyword and line.
     pub name: String,
-    /// Where it is written.
+    /// Place in the text.
     pub place: Option<Place>,
     /// The answer.
     pub verdict: Verdict,
     /// The answer in words.
     pub why: String,
-    /// Where the ray meets it first.
+    /// First crossing along the line.
     pub t: Option<f32>,
     /// The formulas, with numbers.
     pub rows: Vec<Row>,
 }
 
-/// What all objects say of a ray.
+/// Tests of a ray against the objects.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct CastAccount {
-    /// Where the ray starts.
+    /// Origin of the ray.
     pub origin: [f32; 3],
     /// Its direction.
     pub direction: [f32; 3],
-    /// All objects, up to a limit, in the order in which they are written.
+    /// Tests of the objects in the order of the text, up to a limit.
     pub tests: Vec<ObjectTest>,
-    /// How many objects were not told about.
+    /// Number of objects beyond the limit.
     pub left_out: u32,
     /// The first hit.
     pub hit: Option<HitAccount>,
 }
 
-/// Where a ray hits.
+/// Hit of a ray.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct HitAccount {
@@ -171,7 +171,7 @@ pub struct HitAccount {
     pub object: u32,
     /// Number of the triangle in a mesh, else 0.
     pub part: u32,
-    /// Where on the ray.
+    /// Position along the ray.
     pub t: f32,
     /// The point.
     pub point: [f32; 3],
@@ -195,13 +195,13 @@ pub struct Outline {
     pub lines: Vec<Vec<f32>>,
 }
 
-/// A light that has a place.
+/// A light, for drawing.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Lamp {
-    /// Where it is, or from where it comes.
+    /// Position; of directional lights, a point from where they shine.
     pub at: [f32; 3],
-    /// Whether it is infinitely far.
+    /// True if it is infinitely far.
     pub far: bool,
     /// Its keyword and line.
     pub name: String,

@@ -1,4 +1,4 @@
-//! What is said of a scene, its camera and its picture.
+//! Messages about a scene, its camera and its picture.
 
 use serde::{Deserialize, Serialize};
 #[cfg(test)]
@@ -54,7 +54,7 @@ pub enum Motion {
         /// Upwards.
         up: f32,
     },
-    /// Where the scene has it.
+    /// Back to the camera of the text.
     Home,
     /// Away along its direction, until all of the scene is seen.
     Frame,
@@ -97,7 +97,7 @@ pub enum Severity {
     Error,
 }
 
-/// What is wrong or odd with a text.
+/// Finding in a text.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Finding {
@@ -107,15 +107,15 @@ pub struct Finding {
     pub code: String,
     /// In a sentence.
     pub message: String,
-    /// What may have been meant.
+    /// Advice.
     pub help: Option<String>,
-    /// What comes of it in the picture.
+    /// Effect on the picture.
     pub effect: Option<String>,
     /// The file, if it is not the scene's.
     pub file: Option<String>,
-    /// Where in it.
+    /// Place in it.
     pub place: Option<Place>,
-    /// What mends it.
+    /// Edits that fix it.
     pub fix: Vec<Change>,
 }
 
@@ -131,7 +131,7 @@ pub struct Change {
     pub text: String,
 }
 
-/// What is in a scene.
+/// Contents of a scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct Contents {
@@ -141,9 +141,9 @@ pub struct Contents {
     pub camera: CameraState,
     /// Objects, by number, up to a limit.
     pub objects: Vec<Thing>,
-    /// How many objects there are.
+    /// Number of objects.
     pub object_count: u32,
-    /// How many triangles they have.
+    /// Number of triangles.
     pub triangles: f64,
     /// Lights, by number.
     pub lights: Vec<Thing>,
@@ -153,7 +153,7 @@ pub struct Contents {
     pub job: JobState,
 }
 
-/// What a picture of a scene is made with.
+/// Job of a picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct JobState {
@@ -175,7 +175,7 @@ pub struct JobState {
 pub struct Thing {
     /// Its keyword and line.
     pub name: String,
-    /// Where it is written, if in the scene's text.
+    /// Place in the scene's text.
     pub place: Option<Place>,
 }
 
@@ -187,7 +187,7 @@ pub struct CameraState {
     pub keyword: String,
     /// The eye.
     pub eye: [f32; 3],
-    /// Where it looks, of length 1.
+    /// View direction, of length 1.
     pub forward: [f32; 3],
     /// To the right in the picture.
     pub right: [f32; 3],
@@ -201,7 +201,7 @@ pub struct CameraState {
     pub fields: Vec<FieldState>,
     /// How it is written.
     pub statement: String,
-    /// Whether it was moved.
+    /// True if it differs from the text.
     pub moved: bool,
 }
 
@@ -215,7 +215,7 @@ pub struct FieldState {
     pub doc: String,
     /// Its numbers; none for words and files.
     pub values: Vec<f32>,
-    /// What it says where it has no numbers.
+    /// Its value if that is a word or a file name.
     pub text: String,
     /// Least value, if there is one.
     pub least: Option<f32>,
@@ -223,7 +223,7 @@ pub struct FieldState {
     pub most: Option<f32>,
 }
 
-/// What a picture is.
+/// Description of a picture.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(test, derive(TS))]
 pub struct PictureHead {
@@ -257,7 +257,7 @@ pub struct Word {
     pub word: String,
     /// Its chapter in the manual.
     pub chapter: String,
-    /// What it is.
+    /// Meaning.
     pub doc: String,
     /// Its fields.
     pub fields: Vec<WordField>,
@@ -273,9 +273,9 @@ pub struct WordField {
     pub word: String,
     /// Type and range.
     pub value: String,
-    /// What holds where it is not given.
+    /// Default value.
     pub default: Option<String>,
-    /// Whether it must be given.
+    /// True if it must be given.
     pub required: bool,
     /// Meaning and unit.
     pub doc: String,

@@ -1,13 +1,13 @@
-//! A packet: rays that go together, and what is known of them.
+//! A packet: coherent rays and their shared data.
 
 use super::rays::PacketRays;
 use super::shared::{Axes, Meeting};
 use crate::lanes::WIDE;
 use crate::triangles::tree::TriangleBvh;
 
-/// How many rays may be in a packet.
+/// Maximum number of rays in a packet.
 pub const RAYS: usize = 64;
-/// Room for its rays.
+/// Rays of a packet, in groups of sixteen.
 pub type Sixteens = [PacketRays; RAYS / WIDE];
 
 pub struct Packet<'a> {
@@ -15,16 +15,16 @@ pub struct Packet<'a> {
     pub axes: Axes,
     pub numbers: [u32; RAYS],
     pub sixteens: &'a mut Sixteens,
-    /// How many of the sixteens hold rays.
+    /// Number of groups in use.
     pub groups: usize,
-    /// Whether all begin at the same point.
+    /// True if all rays have the same origin.
     pub is_point: bool,
-    /// The rays that still search.
+    /// Mask of the rays that are still searching.
     pub alive: u64,
-    /// Those that met anything.
+    /// Mask of the rays with a hit.
     pub met: u64,
-    /// None of them goes on beyond.
+    /// Upper bound of all rays' `t`.
     pub limit: f32,
-    /// The first stands for none.
+    /// Triangles hit so far. The first entry stands for none.
     pub meetings: &'a mut Vec<Meeting>,
 }

@@ -1,4 +1,4 @@
-//! A packet among the triangles of a leaf.
+//! Tests of a packet with the triangles of a leaf.
 
 use super::bundle::{Packet, RAYS};
 use super::shared::Meeting;
@@ -8,7 +8,7 @@ use crate::triangles::leaf::{Flat, by_corner, ends, from_origin};
 use crate::triangles::number;
 use std::mem::MaybeUninit;
 
-/// The triangles of a leaf, as they are or as seen from a point, by corner and axis.
+/// Corners of a leaf's triangles, absolute or relative to the origin, by corner and axis.
 struct Corners([[[f32; WIDTH]; 3]; 3]);
 
 impl Corners {
@@ -22,7 +22,7 @@ impl Corners {
         Corners(by_corner!(stored))
     }
 
-    /// Those of one triangle, in all lanes.
+    /// Broadcasts the corners of one triangle to all lanes.
     #[inline(always)]
     fn triangle<N: Numbers>(&self, numbers: N, lane: usize) -> [[N::Floats; 3]; 3] {
         macro_rules! one {
@@ -34,8 +34,8 @@ impl Corners {
     }
 }
 
-/// Triangles in the planes across rays: as they are, or as seen from the one `POINT` where all rays
-/// begin.
+/// Projects triangles onto the planes across rays. With `POINT`, the corners are relative to the
+/// common origin.
 #[inline(always)]
 fn flat<N: Numbers, const POINT: bool>(
     numbers: N,
@@ -50,7 +50,7 @@ fn flat<N: Numbers, const POINT: bool>(
 }
 
 impl Packet<'_> {
-    /// Triangles as seen from where the rays begin, if all do at the same point.
+    /// Corners relative to the common origin of the rays.
     #[inline(always)]
     fn as_seen<L: Lanes>(&self, lanes: L, corners: [[L::Floats; 3]; 3]) -> [[L::Floats; 3]; 3] {
         let [x, y, z] = self.axes.turned();
@@ -58,7 +58,7 @@ impl Packet<'_> {
         from_origin(lanes, corners, lanes.splat3([e.origin[x][0], e.origin[y][0], e.origin[z][0]]))
     }
 
-    /// Shows the triangles of a leaf to some rays: side by side are either those or these,
+    /// Tests the triangles of a leaf with some rays. The lanes hold either triangles or rays,
     /// whichever is less work.
     #[inline(always)]
     pub(super) fn leaf<L: Lanes, const ANY: bool>(&mut self, lanes: L, leaf: u32, rays: u64) {
@@ -67,8 +67,8 @@ impl Packet<'_> {
         for group in 0..self.groups {
             groups += usize::from(rays >> (group * WIDE) & 0xffff != 0);
         }
-        // Found by measurement: where few rays of a group are left, or triangles are many, rays go
-        // one by one.
+        // Tuned by measurement: with few rays left in the groups, or many triangles, test ray by
+        // ray.
         let met = match 2 * (rays.count_ones() as usize) < groups * (count + 4) {
             true if self.is_point => self.ray_by_ray::<L, ANY, true>(lanes, leaf, rays),
             true => self.ray_by_ray::<L, ANY, false>(lanes, leaf, rays),
@@ -88,8 +88,8 @@ impl Packet<'_> {
         }
     }
 
-    /// Sixteen rays at once with each triangle; gives the rays that met one. Where all begin in one
-    /// `POINT`, it is known once for all how that sees the triangles.
+    /// Tests each triangle with sixteen rays at once. Returns a mask of the rays that hit one. With
+    /// `POINT`, corners relative to the common origin are computed once.
     #[inline(always)]
     fn one_by_one<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let wide = lanes.wide();
@@ -100,7 +100,7 @@ impl Packet<'_> {
         let triangles = lanes.corners(rows, columns);
         let triangles = Corners::new(lanes, if POINT { self.as_seen(lanes, triangles) } else { triangles });
         let mut all_met = 0;
-        // The number of each triangle's meeting, if there is one.
+        // Index of each triangle's meeting, or 0.
         let mut meetings = [0; WIDTH];
         for group in 0..self.groups {
             let mut active = (rays >> (group * WIDE)) as u32 & 0xffff;
@@ -110,7 +110,7 @@ impl Packet<'_> {
             let e = &mut self.sixteens[group];
             let origin = [wide.load(&e.origin[x]), wide.load(&e.origin[y]), wide.load(&e.origin[z])];
             let shear = [wide.load(&e.shear[0]), wide.load(&e.shear[1])];
-            // First all tests, so that none waits for what another one finds.
+            // Run all tests first, so that none waits for the result of another.
             let (mut masks, mut some) = ([[0; 2]; WIDTH], 0);
             for (lane, masks) in masks.iter_mut().enumerate().take(count) {
                 let flat = flat::<_, POINT>(wide, triangles.triangle(wide, lane), origin, shear);
@@ -135,7 +135,7 @@ impl Packet<'_> {
                 let mut crossed = candidates & crossed;
                 let mut met = 0;
                 if ANY {
-                    // Where any hit will do, it need not be known where it is.
+                    // Any-hit rays need no exact distance.
                     met = crossed
                         & wide.lt(wide.load(&e.heights[2]), lowest)
                         & wide.lt(highest, wide.load(&e.heights[3]));
@@ -162,7 +162,7 @@ impl Packet<'_> {
         all_met
     }
 
-    /// All triangles at once with each ray.
+    /// Tests each ray with all triangles at once. Returns a mask of the rays that hit one.
     #[inline(always)]
     fn ray_by_ray<L: Lanes, const ANY: bool, const POINT: bool>(&mut self, lanes: L, leaf: u32, rays: u64) -> u64 {
         let mut room = MaybeUninit::uninit();

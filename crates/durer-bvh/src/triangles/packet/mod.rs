@@ -1,15 +1,15 @@
-//! Rays that go nearly the same way, through one tree together.
+//! Packet traversal of coherent rays.
 //!
-//! Up to 64 rays whose directions have the same signs and the same longest axis are a packet. A
-//! node is tested once for all of them, by interval arithmetic; what is left of its children is
-//! tested against the rays side by side when it is visited, and so is each triangle of a leaf. All
-//! tests of triangles are those of single rays, with the same roundings, so answers are the same.
+//! A packet holds up to 64 rays whose directions have the same signs and the same longest axis.
+//! Interval arithmetic tests a node once for all rays. When a remaining child is visited, its box
+//! is tested with the rays in lanes, and so is each triangle of a leaf. Triangles are tested as for
+//! single rays, with the same roundings, so the hits are the same.
 //!
 //! Sources: Wald, Slusallek, Benthin, Wagner, *Interactive Rendering with Coherent Ray Tracing*,
 //! Eurographics 2001; Boulos, Wald, Shirley, *Geometric and Arithmetic Culling Methods for Entire
 //! Ray Packets*, University of Utah 2006.
 
-/// The least or greatest of what all rays of a packet have. (No closure would do: what is not
+/// Minimum or maximum of a value over all rays of a packet. (Not a closure: a function that is not
 /// inlined into a level's entry is compiled without its instructions.)
 macro_rules! end {
     ($packet:expr, $wide:expr, $end:ident, $across:ident, $($of:tt)*) => {{
@@ -36,19 +36,18 @@ use shared::{Axes, Meeting};
 use std::cell::RefCell;
 use walk::Entry;
 
-/// So few are better off alone.
+/// Minimum number of rays in a packet; fewer rays are faster alone.
 const MIN_SIZE: usize = 16;
-/// After rays that do not go together so many windows of rays are left out at most, before it is
-/// tried again.
+/// Maximum number of windows that are skipped after incoherent rays.
 const MAX_SKIPPED_WINDOWS: u32 = 15;
-/// As far apart directions of a packet may be across the longest axis, for one unit along it.
+/// Maximum spread of the directions of a packet across the longest axis, per unit along it.
 const MAX_ANGLE: f32 = 0.5;
-/// As far apart origins may be, where the longest side of the tree's bounds is 1.
+/// Maximum spread of the origins, relative to the longest side of the tree's bounds.
 const MAX_START: f32 = 0.25;
 
 impl TriangleBvh {
-    /// Answers for rays that go together, and then tells the numbers of the others. Where `ANY`, any
-    /// hit will do, and only whether there is one means anything.
+    /// Traces coherent rays in packets, then passes the numbers of the other rays to `others`. With
+    /// `ANY`, any hit suffices, and only the existence of a hit is meaningful.
     pub(super) fn packets<const ANY: bool>(
         &self,
         rays: &[Ray],
@@ -67,10 +66,10 @@ impl TriangleBvh {
     }
 }
 
-/// What is used anew for each batch, one a thread: batches may be small.
+/// Buffers reused by all batches of a thread, since batches may be small.
 #[derive(Default)]
 struct Scratch {
-    /// Numbers of rays that do not go together.
+    /// Numbers of the rays that are not traced in packets.
     rest: Vec<u32>,
     meetings: Vec<Meeting>,
     stack: Vec<Entry>,
@@ -106,8 +105,8 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
             limit: 0.0,
             meetings,
         };
-        // Where no rays go together, or none are fast, the next are likely to be alike: it is tried
-        // ever less often.
+        // If rays are incoherent, or none is fast, the next ones are probably alike: try less and
+        // less often.
         let (mut left_out, mut leave_out) = (0, 0);
         for (window, rays) in self.rays.chunks(RAYS).enumerate() {
             let first = (window * RAYS) as u32;
@@ -122,15 +121,15 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
                 *number = first + i as u32;
             }
             packet.load(lanes, self.rays, rays.len(), rays);
-            // What is next comes near while these rays are on their way.
+            // Prefetch the next window while these rays are traced.
             if self.rays.len() > first as usize + RAYS {
                 for line in 0..RAYS / 2 {
                     lanes.prefetch(rays.as_ptr().wrapping_add(RAYS + 2 * line));
                 }
             }
             let signs = packet.signs(lanes);
-            // Usually all have the same key, and are where they should be; else those of each key
-            // are put together.
+            // Usually all rays have the same key and are in place already. Otherwise, gather the
+            // rays of each key.
             let mut left = all;
             while left != 0 {
                 let key = key_of(signs, left.trailing_zeros());
@@ -161,7 +160,7 @@ impl<A: FnMut(usize, Option<TriangleHit>), const ANY: bool> Kernel for Packets<'
     }
 }
 
-/// The key of a ray, by what [`PacketRays::signs`] says of all.
+/// Key of a ray, from the masks of [`PacketRays::signs`].
 #[inline(always)]
 fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
     let of = |set: u64| (set >> ray & 1) as usize;
@@ -169,7 +168,7 @@ fn key_of([x, y, z, first, second]: [u64; 5], ray: u32) -> usize {
     of(x) | of(y) << 1 | of(z) << 2 | longest << 3
 }
 
-/// Of rays those with a key.
+/// Mask of the rays with a key.
 #[inline(always)]
 fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
     let of = |set: u64, bit: usize| if key >> bit & 1 == 1 { set } else { !set };
@@ -178,8 +177,8 @@ fn with_key([x, y, z, first, second]: [u64; 5], key: usize) -> u64 {
 }
 
 impl Packet<'_> {
-    /// Takes the rays with the first numbers, and the last again where lanes are left. `in_order`
-    /// are rays of which it is known that they are the first.
+    /// Loads the first `count` numbered rays and repeats the last one in unused lanes. `in_order`
+    /// holds the same rays, if they are consecutive.
     #[inline(always)]
     fn load<L: Lanes>(&mut self, lanes: L, rays: &[Ray], count: usize, in_order: &[Ray]) {
         self.groups = count.div_ceil(WIDE);
@@ -201,7 +200,7 @@ impl Packet<'_> {
         }
     }
 
-    /// As [`PacketRays::signs`], for all.
+    /// Computes [`PacketRays::signs`] of all groups.
     #[inline(always)]
     fn signs<L: Lanes>(&self, lanes: L) -> [u64; 5] {
         let mut signs = [0; 5];
@@ -213,7 +212,7 @@ impl Packet<'_> {
         signs
     }
 
-    /// Prepares the rays, which have a key in common; says whether they go together.
+    /// Prepares rays with a common key. Returns true if they are coherent.
     #[inline(always)]
     fn prepare<L: Lanes>(&mut self, lanes: L, key: usize, count: usize) -> bool {
         self.axes = Axes::of_key(key);
@@ -228,7 +227,7 @@ impl Packet<'_> {
         self.alive == all && self.is_narrow(lanes)
     }
 
-    /// Whether rays are so near each other that they mostly meet the same boxes.
+    /// Returns true if the rays are so close together that they mostly hit the same boxes.
     #[inline(always)]
     fn is_narrow<L: Lanes>(&self, lanes: L) -> bool {
         let wide = lanes.wide();
@@ -242,7 +241,7 @@ impl Packet<'_> {
             && (self.is_point || extent!(origin[0]).max(extent!(origin[1])).max(extent!(origin[2])) <= apart)
     }
 
-    /// Whether all rays begin at the same point.
+    /// Returns true if all rays have the same origin.
     #[inline(always)]
     fn is_point<L: Lanes>(&self, lanes: L) -> bool {
         let wide = lanes.wide();
@@ -261,7 +260,7 @@ impl Packet<'_> {
         same & 0xffff == 0xffff
     }
 
-    /// Tells what so many rays have found.
+    /// Passes the hits of the first `count` rays to `tell`.
     #[inline(always)]
     fn answer<L: Lanes, const ANY: bool>(
         &self,
@@ -291,17 +290,18 @@ impl Packet<'_> {
         }
     }
 
-    /// By corner and coordinate, the triangles of eight meetings.
+    /// Triangles of eight meetings, by corner and axis.
     #[inline(always)]
     fn corners<L: Lanes>(&self, lanes: L, numbers: &[f32; WIDTH]) -> [[L::Floats; 3]; 3] {
         let [first, ..] = *numbers;
-        // Often they are the same; as integers, for as numbers they are next to nothing.
+        // The meetings are often the same. Compared as integers, since as floats they are
+        // subnormal.
         let (all, one) = (lanes.load(numbers), lanes.splat(first));
         if lanes.signs(lanes.before(all, one)) | lanes.signs(lanes.before(one, all)) == 0 {
             let [a, b, c] = self.meetings[first.to_bits() as usize].corners;
             return [lanes.splat3(a), lanes.splat3(b), lanes.splat3(c)];
         }
-        // Eight of the nine numbers of each at once, then the last.
+        // Load eight of the nine coordinates of each triangle at once, then the last.
         let (mut rows, mut lasts) = ([lanes.splat(0.0); WIDTH], [0.0; WIDTH]);
         for ((row, last), number) in rows.iter_mut().zip(&mut lasts).zip(numbers) {
             let [[a, b, c], [d, e, f], [g, h, i]] = self.meetings[number.to_bits() as usize].corners;

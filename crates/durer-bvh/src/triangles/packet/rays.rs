@@ -1,4 +1,4 @@
-//! Rays side by side.
+//! Packet rays in lanes.
 
 use super::shared::{Axes, Meeting};
 use crate::lanes::{Lanes, Numbers, WIDE, WIDTH, Wide};
@@ -8,40 +8,40 @@ use crate::triangles::leaf::{across, from_origin};
 use crate::watertight::{Exact, Plane, WatertightRay, uv_across};
 use glam::Vec3A;
 
-/// A number for each of sixteen rays.
+/// A value for each of sixteen rays.
 pub type PerRay = [f32; WIDE];
 
-/// Sixteen rays of one octant and one longest axis, prepared for boxes as in
-/// [`TraversalRay`](crate::traverse::TraversalRay), though with somewhat less padding, and for
-/// triangles as in [`WatertightRay`](crate::watertight::WatertightRay).
+/// Sixteen rays with the same octant and longest axis, prepared for box tests as in
+/// [`TraversalRay`](crate::traverse::TraversalRay), with slightly less padding, and for triangle
+/// tests as in [`WatertightRay`](crate::watertight::WatertightRay).
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
 pub struct PacketRays {
     pub origin: [PerRay; 3],
     pub dir: [PerRay; 3],
     pub inverse: [PerRay; 3],
-    /// Origins, moved outwards by the padding of boxes.
+    /// Origins moved outwards by the padding of boxes.
     pub near_from: [PerRay; 3],
     pub far_from: [PerRay; 3],
-    /// The same, times the inverse of the direction, and negated.
+    /// Padded origins times the inverse of the direction, negated.
     pub near_origin: [PerRay; 3],
     pub far_origin: [PerRay; 3],
     pub shear: [PerRay; 2],
-    /// 1 over the component of the direction along the longest axis.
+    /// 1 over the direction's component along the longest axis.
     inverse_z: [[f64; WIDTH]; 2],
     pub t_min: PerRay,
     pub t_max: PerRay,
-    /// The same; after a hit, its t.
+    /// Initially `t_max`; after a hit, its t.
     pub t_last: PerRay,
-    /// Heights lower than the first or above the second are outside the interval for sure; those
-    /// above the third and below the fourth are inside.
+    /// Heights below the first or above the second bound are certainly outside the interval.
+    /// Heights above the third and below the fourth are certainly inside.
     pub heights: [PerRay; 4],
-    /// Numbers of the meetings, as bits; 0 is none. Where any hit will do, they mean nothing.
+    /// Indices of the meetings as bits; 0 for none. Meaningless for any-hit rays.
     meetings: PerRay,
 }
 
 impl PacketRays {
-    /// Sets half of the rays, each given as origin, direction and interval.
+    /// Sets half of the rays, each given as origin, direction, and interval.
     #[inline(always)]
     pub fn set<L: Lanes>(&mut self, lanes: L, first: usize, rays: [L::Floats; WIDTH]) {
         let [x, y, z, u, v, w, t_min, t_max] = lanes.transpose(rays);
@@ -54,8 +54,8 @@ impl PacketRays {
         }
     }
 
-    /// By axis, a bit for each ray whose direction is negative there; and those of which the first,
-    /// or the second component is the longest.
+    /// Masks of the rays with negative directions along x, y, and z, and of those whose first or
+    /// second component is the longest.
     #[inline(always)]
     pub fn signs<L: Lanes>(&self, lanes: L) -> [u32; 5] {
         let wide = lanes.wide();
@@ -68,8 +68,8 @@ impl PacketRays {
         [negative[0], negative[1], negative[2], first, wide.lt(z, y) & !first]
     }
 
-    /// Prepares the rays for a tree with no coordinates greater than `most`; gives those that are
-    /// fast, a bit for each.
+    /// Prepares the rays for a tree whose coordinates are at most `most`. Returns a mask of the
+    /// fast rays.
     #[inline(always)]
     pub fn prepare<L: Lanes>(&mut self, lanes: L, axes: &Axes, most: f32) -> u32 {
         let wide = lanes.wide();
@@ -130,7 +130,7 @@ impl PacketRays {
         ];
     }
 
-    /// Sets that which bounds the last t, outside, after it has changed.
+    /// Updates the outer bound of heights that depends on `t_last`.
     #[inline(always)]
     pub fn bound_last<L: Lanes>(&mut self, lanes: L, axes: &Axes) {
         let wide = lanes.wide();
@@ -141,10 +141,9 @@ impl PacketRays {
         }
     }
 
-    /// Takes note of a triangle that the lines of some rays cross, of those who meet it in their
-    /// interval, and before others.
-    ///
-    /// It is the meeting of that `number`.
+    /// Records the triangle of meeting `number` as the closest hit of each ray in the mask
+    /// `crossed` that hits it within its interval and before any other triangle. Returns a mask of
+    /// these rays.
     #[inline(always)]
     pub fn intersect_node<L: Lanes>(
         &mut self,
@@ -183,7 +182,7 @@ impl PacketRays {
             halves[half] = lanes.singles(line.t(&plane)[0]);
         }
         let (t, t_last) = (lanes.join(halves), wide.load(&self.t_last));
-        // Also NaN is refused.
+        // Rejects NaN, too.
         let within = crossed & wide.lt(wide.load(&self.t_min), t) & wide.lt(t, wide.load(&self.t_max));
         let mut met = within & wide.lt(t, t_last);
         let mut same = within & wide.le(t, t_last) & !met;
@@ -197,7 +196,8 @@ impl PacketRays {
         met
     }
 
-    /// As [`PacketRays::intersect_node`] for a single ray, and a meeting that would be the next.
+    /// Tests a single ray as [`PacketRays::intersect_node`] does, with a meeting that would be
+    /// appended.
     #[inline(always)]
     pub fn meet_one(&mut self, axes: &Axes, meetings: &[Meeting], next: &Meeting, lane: usize) -> bool {
         let [x, y, z] = axes.turned();
@@ -213,7 +213,7 @@ impl PacketRays {
         met
     }
 
-    /// Barycentric coordinates for half of the rays, each in the triangle that it met.
+    /// Barycentric coordinates of the hits of half of the rays.
     #[inline(always)]
     pub fn uv<L: Lanes>(&self, lanes: L, axes: &Axes, half: usize, corners: [[L::Floats; 3]; 3]) -> [[f32; WIDTH]; 2] {
         macro_rules! half {
@@ -235,13 +235,13 @@ impl PacketRays {
         [lanes.store(lanes.singles(u)), lanes.store(lanes.singles(v))]
     }
 
-    /// The numbers of the meetings of half of the rays, as bits.
+    /// Indices of the meetings of half of the rays, as bits.
     #[inline(always)]
     pub fn meetings(&self, half: usize) -> &[f32; WIDTH] {
         part(&self.meetings, half)
     }
 
-    /// Of some rays those that cross a turned triangle, by the test that is always sure.
+    /// Mask of the rays that cross a triangle with permuted axes, by the exact test.
     #[cold]
     #[inline(never)]
     pub fn crossing(&self, mut rays: u32, corners: [Vec3A; 3]) -> u32 {
@@ -254,14 +254,14 @@ impl PacketRays {
         crossing
     }
 
-    /// One of the rays.
+    /// Extracts one ray.
     pub fn ray(&self, lane: usize) -> Ray {
         let at = |v: &[PerRay; 3]| Vec3::new(v[0][lane], v[1][lane], v[2][lane]);
         Ray { origin: at(&self.origin), dir: at(&self.dir), t_min: self.t_min[lane], t_max: self.t_max[lane] }
     }
 }
 
-/// The first or the second eight of the numbers.
+/// First or second half of the values.
 #[inline(always)]
 fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
     match numbers[WIDTH * half..].first_chunk() {
@@ -270,10 +270,10 @@ fn part(numbers: &PerRay, half: usize) -> &[f32; WIDTH] {
     }
 }
 
-/// By how much heights may be off by rounding.
+/// Bound on the rounding error of heights.
 #[inline(always)]
 fn slack<W: Wide>(wide: W, height: W::Floats) -> W::Floats {
     let slack = wide.add(wide.mul(wide.splat(8.0 * f32::EPSILON), wide.abs(height)), wide.splat(f32::MIN_POSITIVE));
-    // Infinity less infinity is no number.
+    // Infinity minus infinity is NaN.
     wide.min(slack, wide.splat(f32::MAX))
 }

@@ -1,42 +1,42 @@
-//! What the parts of a packet's way share: the axes and triangles of all its rays.
+//! Axes and hit triangles of a packet.
 
 use crate::watertight::{AxisOrder, Plane, turned_axes};
 use glam::Vec3A;
 
-/// What the rays of a packet have in common.
+/// Common axis order and signs of a packet's rays.
 #[derive(Clone, Copy)]
 pub struct Axes {
-    /// As those of [`WatertightRay`](crate::watertight::WatertightRay).
+    /// Axis order, as in [`WatertightRay`](crate::watertight::WatertightRay).
     pub turn: AxisOrder,
-    /// By axis: 1 where directions are negative, else 0.
+    /// 1 for axes along which directions are negative, else 0.
     pub negative: [usize; 3],
 }
 
 impl Axes {
-    /// A key is a longest axis and signs.
+    /// Decodes a key of signs and longest axis.
     pub fn of_key(key: usize) -> Self {
         let negative = [key & 1, key >> 1 & 1, key >> 2 & 1];
         let longest = key >> 3;
         Axes { turn: turned_axes(longest, negative[longest]), negative }
     }
 
-    /// Which axes are the first, second, and third of turned vectors.
+    /// Indices of the first, second, and third axis of permuted vectors.
     #[inline(always)]
     pub fn turned(&self) -> [usize; 3] {
         let [x, y, z, _] = self.turn;
         [x as usize, y as usize, z as usize]
     }
 
-    /// Whether directions are negative along their longest axis.
+    /// Returns true if directions are negative along their longest axis.
     #[inline(always)]
     pub fn is_down(&self) -> bool {
         self.negative[self.turned()[2]] == 1
     }
 }
 
-/// A triangle that some ray met.
+/// A triangle that some ray has hit.
 pub struct Meeting {
-    /// Turned, as the rays are.
+    /// Corners with permuted axes.
     pub corners: [[f32; 3]; 3],
     pub triangle: u32,
     pub plane: Plane<[f64; 3]>,

@@ -1,4 +1,4 @@
-//! The way of a packet through the tree.
+//! Traversal of the tree by a packet.
 
 use super::bundle::Packet;
 use super::rays::PacketRays;
@@ -7,18 +7,18 @@ use crate::node::{self, LEAF, PLACE, WideNode};
 use crate::traverse::end_of;
 use crate::triangles::fetch::{AND_SIBLINGS, Places};
 
-/// A node or leaf that is still to be visited.
+/// A node or leaf to visit.
 #[derive(Clone, Copy)]
 pub struct Entry {
-    /// The rays that met its parent.
+    /// Mask of the rays that hit the parent.
     rays: u64,
     child: u32,
-    /// Where its box is: the address of the node and the place among the eight, added.
+    /// Location of its box: the sum of the parent's offset and the slot.
     box_at: u32,
     near: f32,
 }
 
-/// Intervals around what nodes need of all rays.
+/// Intervals around all rays of a packet, for node tests.
 struct IntervalRay<L: Lanes> {
     inverse: [[L::Floats; 2]; 3],
     near_from: [L::Floats; 3],
@@ -28,10 +28,9 @@ struct IntervalRay<L: Lanes> {
 }
 
 impl<L: Lanes> IntervalRay<L> {
-    /// The children of a node that any ray may meet, a bit for each, and where the first enters
-    /// them.
+    /// Mask of the children that any ray may hit, and lower bounds of their entry distances.
     ///
-    /// Roundings are monotonic, so no bound is passed by what a single ray has.
+    /// Roundings are monotonic, so the intervals contain the results of single rays.
     #[inline(always)]
     fn intersect_node(&self, lanes: L, node: &WideNode, limit: L::Floats) -> (u32, L::Floats) {
         macro_rules! slab {
@@ -49,8 +48,8 @@ impl<L: Lanes> IntervalRay<L> {
         (lanes.le(enter, leave), enter)
     }
 
-    /// No ray enters anything before: 0, or, where rays begin behind their origins, where the first
-    /// of the root's children is entered.
+    /// Lower bound of all entry distances: 0, or, if `t_min` is negative, the least entry distance
+    /// of the root's children.
     #[inline(always)]
     fn start(&self, lanes: L, root: &WideNode, limit: f32) -> f32 {
         if lanes.store(self.t_min)[0] >= 0.0 {
@@ -62,9 +61,8 @@ impl<L: Lanes> IntervalRay<L> {
     }
 }
 
-/// Of children that are met, a bit for each, the place of the one that is entered first, nothing
-/// being entered before `start`. (By the order of the node, which is along one axis, rays along
-/// another met what is far before what is near.)
+/// Slot of the hit child with the least entry distance, none of which is below `start`. (Node order
+/// follows a single axis: along other axes, rays would visit far children before near ones.)
 #[inline(always)]
 fn nearest<L: Lanes>(lanes: L, node: &WideNode, met: u32, enter: L::Floats, start: f32) -> u32 {
     let nothing = lanes.splat(0.0);
@@ -111,16 +109,16 @@ impl Packet<'_> {
         intervals
     }
 
-    /// The last t of any ray.
+    /// Maximum `t` of all rays.
     #[inline(always)]
     pub(super) fn last<L: Lanes>(&self, lanes: L) -> f32 {
         let wide = lanes.wide();
         end!(self, wide, max, greatest, t_last)
     }
 
-    /// Shows the triangles of all leaves that a ray may meet to those rays, roughly from near to
-    /// far: of each node what is entered first, then the others in its order. Where `ANY` hit will
-    /// do, all are in the order of nodes for that.
+    /// Tests the triangles of all leaves with the rays that may hit them, roughly from near to far:
+    /// first the nearest child of each node, then the others in node order. With `ANY`, children
+    /// are visited in the order for any-hit rays.
     #[inline(always)]
     pub(super) fn traverse<L: Lanes, const ANY: bool>(&mut self, lanes: L, stack: &mut Vec<Entry>) {
         let bvh = self.bvh;
@@ -142,7 +140,7 @@ impl Packet<'_> {
                         true => end_of(met, from_last),
                         false => nearest(lanes, node, met, enter, start),
                     };
-                    // What is visited last is pushed first.
+                    // Push the child that is visited last first.
                     let (mut others, enter) = (met ^ 1 << next, lanes.store(enter));
                     while others != 0 {
                         let place = end_of(others, !from_last);
@@ -179,7 +177,7 @@ impl Packet<'_> {
         }
     }
 
-    /// Of some rays those that meet the box of a child.
+    /// Mask of the rays that hit the box of a child.
     #[inline(always)]
     fn inside<L: Lanes>(&self, lanes: L, node: &WideNode, place: usize, rays: u64) -> u64 {
         let wide = lanes.wide();
@@ -217,8 +215,8 @@ mod tests {
     use crate::lanes::{Available, Kernel, SimdLevel, WIDTH};
     use crate::math::{Aabb, Vec3};
 
-    /// Where children of a node are entered, those of them that are met, and before which nothing
-    /// is.
+    /// A node, entry distances of its children, a mask of the hit children, and a lower bound of
+    /// the distances.
     struct Nearest<'a>(&'a WideNode, [f32; WIDTH], u32, f32);
 
     impl Kernel for Nearest<'_> {

@@ -1,10 +1,11 @@
-//! Trees over landscapes against trees over the same triangles, and against brute force.
+//! Tests of trees over height grids against trees over the same triangles, and against brute force.
 
 use super::*;
 use crate::BuildError;
 use std::sync::Arc;
 
-/// A landscape with a triangle below each pair of its border's points, and the same as lists.
+/// A height grid with a triangle below each pair of neighbouring border points, and the same as a
+/// mesh.
 fn landscape(random: &mut Random, [columns, rows]: [usize; 2], scale: f32, offset: Vec3) -> (Arc<HeightGrid>, Mesh) {
     let line = |axis: usize, i: usize, count: usize| offset[axis] + scale * (2.0 * i as f32 / (count - 1) as f32 - 1.0);
     let heights = (0..columns * rows).map(|_| offset.y + scale * random.between(-0.3, 0.3)).collect();
@@ -75,7 +76,7 @@ fn a_landscape_is_hit_like_its_triangles() {
     assert!(found > 1_000, "{found}");
 }
 
-/// Neighbouring rays go through the tree together.
+/// Neighbouring rays form packets.
 #[test]
 fn packets_find_in_a_landscape_what_single_rays_find() {
     let both = landscape(&mut Random(6), [70, 50], 1.0, Vec3::ZERO);

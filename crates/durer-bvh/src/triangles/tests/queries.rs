@@ -1,15 +1,15 @@
-//! Filters, sides, corners and batches, against brute force.
+//! Tests of filters, sides, corners, and batches against brute force.
 
 use super::*;
 use crate::{BuildError, Facing};
 
-/// All crossings with their sides, by the normal in double precision.
+/// Crossings with their sides, by the normal in double precision.
 fn with_sides(mesh: &Mesh, ray: &Ray) -> Vec<(TriangleHit, Option<Facing>)> {
     let side = |hit: &TriangleHit| {
         let [a, b, c] = mesh.1[hit.triangle as usize].map(|i| mesh.0[i as usize].as_dvec3());
         let (normal, dir) = ((b - a).cross(c - a), ray.dir.as_dvec3());
         let cosine = normal.dot(dir) / (normal.length() * dir.length());
-        // Seen from its edge, double precision does not tell.
+        // Edge-on, double precision cannot decide.
         (cosine.abs() > 1e-6).then_some(if cosine < 0.0 { Facing::Front } else { Facing::Back })
     };
     brute_force(mesh, ray).into_iter().map(|hit| (hit, side(&hit))).collect()
@@ -26,13 +26,13 @@ fn sides_and_filters_are_as_brute_force_says() {
                 let ray = ray(&mesh, &mut random, 1.0, Vec3::ZERO);
                 let expected = with_sides(&mesh, &ray);
                 let sides = |hit: &TriangleHit| expected.iter().find(|(other, _)| other.triangle == hit.triangle);
-                // Sides are as the normals say.
+                // Sides agree with the normals.
                 bvh.occluded_where(&ray, |hit, facing| {
                     let side = sides(hit).unwrap_or_else(|| panic!("{hit:?} {ray:?}")).1;
                     assert!(side.is_none_or(|side| side == facing), "{hit:?} {ray:?}");
                     false
                 });
-                // Two of three triangles are let pass.
+                // Two of three triangles pass.
                 let keep = |hit: &TriangleHit| !(hit.triangle as usize + round).is_multiple_of(3);
                 let first = expected.iter().map(|(hit, _)| hit).find(|hit| keep(hit));
                 let found = bvh.closest_where(&ray, |hit, _| keep(hit));
@@ -47,12 +47,12 @@ fn sides_and_filters_are_as_brute_force_says() {
     assert!(met > 1_000, "{met}");
 }
 
-/// Through a closed mesh a ray meets fronts and backs in turn, also through edges and vertices.
+/// A ray crosses fronts and backs of a closed mesh in turn, even through edges and vertices.
 #[test]
 fn sides_of_a_closed_mesh_alternate() {
     let mut random = Random(22);
     for mesh in [torus(40, 20), cube(8)] {
-        // By the volume, which is negative where fronts look inwards.
+        // The signed volume is negative if fronts face inwards.
         let volume = |t: &[u32; 3]| {
             let [a, b, c] = t.map(|i| mesh.0[i as usize]);
             a.dot(b.cross(c))
@@ -70,8 +70,8 @@ fn sides_of_a_closed_mesh_alternate() {
             });
             sides.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
             sides.dedup();
-            // Into the mesh and out of it again; of crossings at nearly the same place, as at an
-            // edge, the order is not known.
+            // The ray enters and leaves the mesh in turn. The order of crossings at nearly the same
+            // place, as at an edge, is unknown.
             let mut depth = 0;
             for (i, side) in sides.iter().enumerate() {
                 depth += if side.2 == sides_in { 1 } else { -1 };

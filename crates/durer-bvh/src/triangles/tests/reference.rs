@@ -1,4 +1,4 @@
-//! The trees against a test of triangles in double precision that shares nothing with ours.
+//! Tests of the trees against an independent triangle test in double precision.
 
 use super::*;
 use crate::math::random::rounds;
@@ -6,18 +6,18 @@ use glam::DVec3;
 use rayon::prelude::*;
 use std::ops::AddAssign;
 
-/// What double precision says of a ray and a triangle.
+/// Result of the test in double precision.
 enum Verdict {
-    /// Crossed there, and by how much `t` may be off.
+    /// Crossed at `t`, with the tolerance of `t`.
     Crossed(f64, f64),
     Missed,
-    /// The ray passes an edge, or begins, nearer than single precision can tell.
+    /// The ray passes or starts too close to an edge for single precision.
     Unsure,
 }
 
-/// Signs of the volumes that the ray spans with each edge. A corner may be off by the rounding of
-/// its distance from the origin in each coordinate, and so is a volume by that times the area of
-/// the ray and the other corner.
+/// Tests the signs of the volumes that the ray spans with each edge. Each coordinate of a corner
+/// may be off by the rounding of its distance from the origin, and a volume by that times the area
+/// of the ray and the other corner.
 fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     let (o, d) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
     let [a, b, c] = corners.map(|p| p.as_dvec3() - o);
@@ -41,8 +41,7 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     if sides.contains(&0.0) || !t.is_finite() || (t * d.length()).abs() < 1e-3 * reach {
         return Verdict::Unsure;
     }
-    // Rounded once to single precision; double precision loses what a ray along the surface makes
-    // of it.
+    // One rounding to single precision, plus the loss of double precision for a grazing ray.
     let loss = 1e-14 * n.length() * (reach + t.abs() * d.length()) / volume.abs();
     match t > 0.0 {
         true => Verdict::Crossed(t, t * f64::from(f32::EPSILON) + loss),
@@ -50,7 +49,7 @@ fn verdict(corners: [Vec3; 3], ray: &Ray) -> Verdict {
     }
 }
 
-/// A dozen meshes of a few hundred triangles.
+/// Twelve meshes of a few hundred triangles.
 fn dozen() -> Vec<(&'static str, Mesh)> {
     let mut random = Random(21);
     let apart = |vertices: Vec<Vec3>| {
@@ -106,7 +105,7 @@ impl AddAssign for Tried {
     }
 }
 
-/// Random rays about a mesh, all hits and the first.
+/// Tests random rays around a mesh: all hits and the closest.
 fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
     let (vertices, triangles) = mesh;
     let tree = TriangleBvh::build(vertices, triangles, BuildQuality::Best);
@@ -135,7 +134,7 @@ fn try_rays(name: &str, mesh: &Mesh, seed: u64, rays: usize) -> Tried {
     tried
 }
 
-/// 10^5 rays a mesh; in the long run 10^7.
+/// Tests 10^5 rays per mesh; 10^7 in the long run.
 #[test]
 fn double_precision_says_the_same() {
     const AT_ONCE: usize = 10_000;

@@ -124,7 +124,7 @@ fn what_gltf_has_no_words_for_is_told_once() {
     ));
     let (after, told) = again(&before, "a.gltf");
     assert_eq!(told.len(), 3, "{told:?}");
-    assert!(told.iter().any(|line| line.contains("`Torus` is left out")));
+    assert!(told.iter().any(|line| line.contains("`Plane` is left out")));
     assert_eq!(after.assets.meshes.len(), 1);
 }
 

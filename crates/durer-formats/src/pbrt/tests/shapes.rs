@@ -1,6 +1,7 @@
 //! Shapes that become triangles, against closed forms.
 
 use super::*;
+use crate::testing::read_with_low_limits;
 use durer_scene::math::{Vec3, fp};
 use durer_scene::shape::MeshData;
 use std::f64::consts::PI;
@@ -204,12 +205,14 @@ fn nets_are_surfaces() {
 fn few_numbers_do_not_become_any_number_of_triangles() {
     // A ball in part has 128 x 64 x 2 triangles at most: of 20 some are left out, with the limit of tests.
     let text = "Shape \"sphere\" \"float phimax\" 359 ".repeat(20);
-    let (scene, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
+    let (scene, told) =
+        read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {text}"));
     assert!(told.len() == 1 && told[0].contains("triangles are left out"), "{told:?}");
     let triangles: usize = scene.unwrap().assets.meshes.values().map(|mesh| mesh.triangles.len()).sum();
     assert!(triangles <= 1 << 18 && triangles > 1 << 17, "{triangles}");
     let surface =
         "Shape \"loopsubdiv\" \"integer levels\" 16 \"point P\" [ 0 0 0 1 0 0 0 1 0 ] \"integer indices\" [ 0 1 2 ]";
-    let (_, told) = read(&format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
+    let (_, told) =
+        read_with_low_limits("a.pbrt", &format!("Film \"image\" Camera \"perspective\" WorldBegin {surface}"));
     assert!(told.len() == 1 && told[0].contains("triangles are too many: it is subdivided 7 times"), "{told:?}");
 }

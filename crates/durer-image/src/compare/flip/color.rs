@@ -2,10 +2,11 @@
 
 use durer_bvh::math::Vec3;
 
-/// X, Y and Z of white: those of red, green and blue together.
+/// XYZ of white, the sum of red, green, and blue.
 pub const WHITE: Vec3 = Vec3::new(0.950_428_55, 1.0, 1.088_900_4);
 
-/// CIE XYZ of linear Rec. 709, IEC 61966-2-1 with the fractions of the primaries kept.
+/// CIE XYZ of linear Rec. 709. The matrix is that of IEC 61966-2-1, with the exact fractions of the
+/// primaries.
 #[inline(always)]
 pub fn xyz_from_rgb(rgb: Vec3) -> Vec3 {
     const X: Vec3 = row(10_135_552.0, 8_788_810.0, 4_435_075.0, 24_577_794.0);
@@ -18,7 +19,7 @@ const fn row(r: f64, g: f64, b: f64, divisor: f64) -> Vec3 {
     Vec3::new((r / divisor) as f32, (g / divisor) as f32, (b / divisor) as f32)
 }
 
-/// The inverse of [`xyz_from_rgb`].
+/// Linear Rec. 709 of CIE XYZ: the inverse of [`xyz_from_rgb`].
 #[inline(always)]
 pub fn rgb_from_xyz(xyz: Vec3) -> Vec3 {
     const R: Vec3 = Vec3::new(3.241_003_3, -1.537_399, -0.498_615_86);
@@ -27,7 +28,7 @@ pub fn rgb_from_xyz(xyz: Vec3) -> Vec3 {
     Vec3::new(R.dot(xyz), G.dot(xyz), B.dot(xyz))
 }
 
-/// L*a*b* of XYZ relative to white, with the colourfulness that falls with the light (the Hunt
+/// L*a*b* of XYZ relative to white, with a colourfulness that decreases with lightness (the Hunt
 /// effect).
 #[inline(always)]
 pub fn hunt_lab(relative: Vec3) -> Vec3 {
@@ -41,7 +42,7 @@ pub fn hunt_lab(relative: Vec3) -> Vec3 {
     Vec3::new(lightness, 0.01 * lightness * 500.0 * (x - y), 0.01 * lightness * 200.0 * (y - z))
 }
 
-/// The distance of two colours: of lightness, and Euclidean of the rest.
+/// HyAB distance of two colours: difference of lightness plus Euclidean distance of chroma.
 ///
 /// Source: Abasi, Amani Tehran and Fairchild, *Distance metrics for very large color differences*,
 /// 2020.
@@ -51,9 +52,9 @@ pub fn hyab(a: Vec3, b: Vec3) -> f32 {
     d.x.abs() + (d.y * d.y + d.z * d.z).sqrt()
 }
 
-/// The cube root of a positive number, to about two units in the last place: a third of the
-/// exponent, and Halley's iteration twice. Unlike a library's, compilers make it work on several
-/// numbers at once.
+/// Cube root of a positive number, to about two units in the last place: a third of the exponent,
+/// followed by two iterations of Halley's method. Compilers can vectorise it, unlike library
+/// functions.
 #[inline(always)]
 fn cube_root(x: f32) -> f32 {
     let mut root = f32::from_bits(x.to_bits() / 3 + 0x2a51_37a0);

@@ -1,18 +1,18 @@
-//! FLIP for light of any range: the largest error over all exposures that show something.
+//! HDR-FLIP: the maximum FLIP error over all relevant exposures.
 
 use super::flip_of;
 use crate::LUMINANCE;
 use durer_bvh::math::{Vec3, fp};
 
-/// Coefficients of the tone curve (a x^2 + b x) / (c x^2 + d x + e), Narkowicz' fit to that of ACES
-/// with its exposure of 0.6.
+/// Coefficients of the tone curve (a x^2 + b x) / (c x^2 + d x + e), Narkowicz's fit of ACES with
+/// its exposure of 0.6.
 const CURVE: [f32; 5] = [0.36 * 2.51, 0.6 * 0.03, 0.36 * 2.43, 0.6 * 0.59, 0.14];
 
-/// What the curve makes of the brightest light in the first exposure, and of the median in the
-/// last. 2021, section 3.2.
+/// Display value of the brightest light in the first exposure, and of the median in the last. 2021,
+/// section 3.2.
 const TARGET: f32 = 0.85;
 
-/// The error of each pixel, from 0 to 1, between two pictures of linear light.
+/// Computes the error of each pixel, from 0 to 1, between two pictures of linear light.
 pub fn hdr_flip(width: usize, height: usize, reference: &[Vec3], test: &[Vec3]) -> Vec<f32> {
     let mut worst = vec![0.0f32; width * height];
     for exposure in exposures(reference) {
@@ -25,22 +25,22 @@ pub fn hdr_flip(width: usize, height: usize, reference: &[Vec3], test: &[Vec3]) 
 
 fn tone_map(light: Vec3) -> Vec3 {
     let [a, b, c, d, e] = CURVE;
-    // Beyond this the curve is 1 after cutting; squares stay finite.
+    // Beyond 1e15 the clamped curve is 1, and squares stay finite.
     light.map(|x| {
         let x = x.clamp(0.0, 1e15);
         ((a * x * x + b * x) / (c * x * x + d * x + e)).clamp(0.0, 1.0)
     })
 }
 
-/// Factors, about one stop apart, from one that shows the brightest light to one that shows the
-/// median. 2021, section 3.2.
+/// Exposure factors, about one stop apart, from one for the brightest light to one for the median.
+/// 2021, section 3.2.
 pub fn exposures(reference: &[Vec3]) -> Vec<f32> {
     let mut light: Vec<f32> = reference.iter().map(|pixel| pixel.max(Vec3::ZERO).dot(LUMINANCE)).collect();
     let brightest = light.iter().copied().fold(0.0, f32::max);
-    // The upper one of an even number, as the authors' program has it.
+    // The upper median of an even number, as in the authors' program.
     let middle = light.len() / 2;
     let median = *light.select_nth_unstable_by(middle, f32::total_cmp).1;
-    // The light that the curve makes the target of: the positive root of a quadratic equation.
+    // Light that the curve maps to the target: the positive root of a quadratic equation.
     let [a, b, c, d, e] = CURVE;
     let (p, q) = ((b - d * TARGET) / (a - c * TARGET), -e * TARGET / (a - c * TARGET));
     let shown = -0.5 * p + (0.25 * p * p - q).sqrt();

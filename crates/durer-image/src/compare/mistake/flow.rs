@@ -1,20 +1,20 @@
-//! Shifts by parts of a pixel, seen at edges.
+//! Detection of subpixel shifts at edges.
 //!
-//! Where a picture f is moved by s, the difference is about -s f'. Least squares over all edges
-//! give s even where edges are not smoothed: there a share s of the pixels changes sides. Source:
+//! If a picture f is shifted by s, the difference is about -s f'. Least squares over all edges
+//! yield s even without antialiasing: a share s of the edge pixels then changes sides. Source:
 //! Lucas and Kanade, *An Iterative Image Registration Technique*, 1981.
 
 use super::sample::{Sample, View};
 use durer_bvh::math::Vec3;
 
-/// Shifts below this part of a pixel are not told from chance.
+/// Smallest shift in pixels that is distinguishable from chance.
 const LEAST: f64 = 0.2;
 
-/// Why a picture may differ at edges, if the edges are moved.
+/// Explains differences at edges by a shift of the edges, if possible.
 pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     let [right, stretch_x, down, stretch_y] = flow(reference, at_edges)?;
     let moved = |amount: f64| amount.abs() > LEAST;
-    // Pixel i of n at i / (n - 1) instead of (i + 0.5) / n: half a pixel too far out at both
+    // Pixel i of n at i / (n - 1) instead of (i + 0.5) / n is half a pixel too far out at both
     // borders.
     let is_half = |stretch: f64| (0.3..0.75).contains(&stretch.abs());
     let is_stretched = moved(stretch_x.abs().max(stretch_y.abs()));
@@ -24,7 +24,7 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
             "{whose} rays go to i / (n - 1) of the picture's width and height, not through the middle of pixel i, (i + 0.5) / n"
         ));
     }
-    // What is stretched otherwise is seen by another camera: why cannot be told from the pictures.
+    // Other stretches come from a different camera; the pictures cannot show why.
     if is_stretched {
         return None;
     }
@@ -37,8 +37,8 @@ pub fn cause(reference: &View, at_edges: &[Sample]) -> Option<String> {
     (!ways.is_empty()).then(|| format!("it is shifted by about {}: {half}", ways.join(" and ")))
 }
 
-/// By how many pixels edges are moved to the right in the middle, and more so at the right border
-/// than there; the same down.
+/// Shift of edges in pixels: to the right in the middle, the additional shift at the right border,
+/// and likewise downwards.
 fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     let mut matrix = [[0.0; 5]; 4];
     let (half_width, half_height) = (reference.width as f64 / 2.0, reference.height as f64 / 2.0);
@@ -61,11 +61,11 @@ fn flow(reference: &View, at_edges: &[Sample]) -> Option<[f64; 4]> {
     solve(matrix)
 }
 
-/// Gauss' elimination; `None` where the solution is not determined.
+/// Gaussian elimination; `None` if the solution is not unique.
 fn solve(mut rows: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     let largest = (0..4).map(|i| rows[i][i]).fold(0.0, f64::max);
     for i in 0..4 {
-        // The matrix is symmetric and positive: its diagonal needs no exchange of rows.
+        // The matrix is symmetric and positive semidefinite, so pivots on the diagonal suffice.
         if rows[i][i] <= 1e-6 * largest {
             return None;
         }

@@ -1,26 +1,26 @@
-//! Mistakes that show in parts of a picture: where the difference is tells what it may come from.
+//! Detection of mistakes in parts of a picture: the location of the difference indicates its cause.
 
 use super::sample::{Sample, View};
 use super::{Finding, WELL, bytes, difference, flow};
 use crate::compare::picture::Scale;
 use durer_bvh::math::Vec3;
 
-/// Looks for one mistake in the reference, the picture and samples of both.
+/// A detector of one mistake, from the reference, the picture, and samples of both.
 type Detector = fn(&View, &View, &[Sample]) -> Option<Finding>;
-/// The vector that a colour shows.
+/// Converts a colour to the vector that it shows.
 type Decode = fn(Vec3) -> Vec3;
 
-/// Differences smaller than this are not seen: a little more than a 255th.
+/// Minimum visible difference: slightly more than 1/255.
 const SEEN: f32 = 1.5 / 255.0;
-/// An edge is where neighbours differ by more than this.
+/// Minimum difference between neighbours at an edge.
 const EDGE: f32 = 0.08;
-/// So much of the difference at edges must be of colours that are there.
+/// Minimum share of the difference at edges that mixtures of neighbouring colours must explain.
 const MIXED: f64 = 0.95;
-/// Squared steps between neighbours of a smoothed picture are less than this share of the other's:
-/// of an edge at a place in the pixel that may be any, two thirds are expected.
+/// Maximum ratio of squared steps between neighbours in a smoothed picture and in the other one.
+/// For an edge at a random position in the pixel, two thirds are expected.
 const SMOOTHER: f64 = 0.85;
 
-/// A picture that has one colour only.
+/// Detects a picture of a single colour.
 pub fn blank(reference: &View, test: &View) -> Option<Finding> {
     let one_color = |picture: &View| picture.pixels.iter().all(|&pixel| pixel == picture.pixels[0]);
     let what = |color: Vec3| {
@@ -35,33 +35,33 @@ pub fn blank(reference: &View, test: &View) -> Option<Finding> {
     Some(Finding { kind: "blank", words, explained: 1.0 })
 }
 
-/// The part of a picture that explains nearly all of the difference, if there is one.
+/// Finds the part of a picture that explains nearly all of the difference.
 pub fn finding(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let all: [Detector; 7] = [cut_normals, long_normals, saturated, speckles, edges, noise, shaded];
     all.iter().find_map(|part| part(reference, test, samples).filter(|finding| finding.explained >= WELL))
 }
 
-/// Samples of unit vectors shown as colours: absolute values, or from -1 to 1 mapped to 0 to 1.
-/// Gives the vector of each.
+/// Finds samples of unit vectors shown as colours, as absolute values or mapped from [-1, 1] to [0,
+/// 1]. Returns the decoding and the samples.
 fn unit_vectors(samples: &[Sample]) -> Option<(Decode, Vec<&Sample>)> {
     let decodings: [Decode; 2] = [|color| color, |color| 2.0 * color - 1.0];
     decodings.into_iter().find_map(|decode| {
         let unit: Vec<&Sample> =
             samples.iter().filter(|s| (decode(s.reference).length() - 1.0).abs() < 0.015).collect();
-        // The rest is background. Full red, green or blue are unit vectors by chance: others must
-        // be there too.
+        // The rest is background. Full red, green, or blue may be unit vectors by chance, so
+        // require other colours, too.
         let things = samples.iter().filter(|s| s.reference != Vec3::ZERO).count();
         let mixed = unit.iter().filter(|s| s.reference.max_element() < 0.98).count();
         (3 * unit.len() > things && 4 * mixed > unit.len() && !unit.is_empty()).then_some((decode, unit))
     })
 }
 
-/// Normals with negative components cut off instead of made positive.
+/// Detects normals whose negative components are clamped instead of made positive.
 fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (_, unit) = unit_vectors(samples)?;
     let cut = |s: &Sample| Vec3::from(std::array::from_fn(|c| if s.test[c] == 0.0 { 0.0 } else { s.reference[c] }));
     let rest: f64 = samples.iter().map(|s| f64::from((s.test - cut(s)).length_squared())).sum();
-    // A black pixel may be anything; single components that are missing are not.
+    // A black pixel may have any cause; single missing components do not.
     let some = |s: &&&Sample| cut(s) != s.reference && s.test != Vec3::ZERO;
     let explained = 1.0 - rest / difference(samples);
     let words =
@@ -73,7 +73,7 @@ fn cut_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Normals of the right direction whose length is not 1.
+/// Detects normals with the right direction but a length other than 1.
 fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (decode, unit) = unit_vectors(samples)?;
     let encode = |vector: Vec3| if decode(Vec3::ZERO) == Vec3::ZERO { vector } else { 0.5 * vector + 0.5 };
@@ -89,7 +89,7 @@ fn long_normals(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     (20 * wrong > unit.len()).then(|| Finding { kind: "normals-not-normalised", words: words.into(), explained })
 }
 
-/// Differences where the reference is as bright as can be.
+/// Detects differences only where the reference is saturated.
 fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let (mut full, mut there, mut total) = (0, 0.0, 0.0);
     for sample in samples.iter().filter(|_| reference.scale == Scale::Display) {
@@ -104,7 +104,7 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
     }
     let words = "it differs only where channels of the reference are full (255): values beyond 1 wrap around there \
                  instead of being cut off";
-    // What wraps around may be anything: also black.
+    // A value that wraps around may become anything, including black.
     let wrapped = |s: &&Sample| (0..3).any(|c| s.reference[c] >= 0.998 && s.test[c] < 0.5);
     let some = samples.iter().filter(wrapped).count();
     (full > 0 && full < 2 * samples.len() && some * 12 > full).then(|| Finding {
@@ -114,7 +114,7 @@ fn saturated(reference: &View, _: &View, samples: &[Sample]) -> Option<Finding> 
     })
 }
 
-/// Whether a pixel or its neighbours differ much among each other.
+/// Returns true if a pixel and its neighbours differ strongly from each other.
 fn at_edge(picture: &View, s: &Sample) -> bool {
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
     let around = around.map(|(x, y)| picture.at(x, y));
@@ -122,12 +122,12 @@ fn at_edge(picture: &View, s: &Sample) -> bool {
     (high - low).max_element() > EDGE
 }
 
-/// Differences at edges, from the places of samples in pixels or the averaging of samples.
+/// Detects differences at edges, from different sample positions or different averaging.
 fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let at_edges: Vec<Sample> = samples.iter().filter(|s| at_edge(reference, s) || at_edge(test, s)).copied().collect();
     let share = at_edges.len() as f64 / samples.len() as f64;
     let explained = difference(&at_edges) / difference(samples);
-    // Smoothing makes one large step between neighbours two or more small ones.
+    // Smoothing splits one large step between neighbours into several small ones.
     let roughness = |picture: &View| -> f64 {
         let steps = |s: &Sample| {
             let here = picture.at(s.x, s.y);
@@ -137,8 +137,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
         at_edges.iter().map(steps).sum()
     };
     let (own, others) = (roughness(test), roughness(reference));
-    // Of an edge that is sampled otherwise, one side gains what the other loses; of one that is
-    // moved it need not.
+    // If an edge is sampled differently, one side gains what the other loses; if it is moved, this
+    // need not hold.
     let (sum, all) = at_edges.iter().fold((0.0, 0.0), |(sum, all), s| {
         let by = (s.test - s.reference).element_sum();
         (sum + by, all + by.abs())
@@ -162,8 +162,8 @@ fn edges(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// The share of the squared difference in pixels that show nothing but what is beside them: other
-/// samples of a pixel see what its neighbours see, other shading does not.
+/// Share of the squared difference in pixels whose colours lie between those of their neighbours.
+/// Different samples of a pixel show what its neighbours show, but different shading does not.
 fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     let between = |value: Vec3, picture: &View, s: &Sample| {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| picture.at(s.x + dx, s.y + dy)));
@@ -174,8 +174,8 @@ fn mixed(reference: &View, test: &View, at_edges: &[Sample]) -> f64 {
     difference(&at_edges.iter().filter(is_between).copied().collect::<Vec<_>>()) / difference(at_edges).max(1e-12)
 }
 
-/// Whether there are equal parts on both sides of the edges that differ: a thing so thin that all
-/// of it is edge tells nothing.
+/// Returns true if equal areas lie on both sides of the differing edges. An object so thin that all
+/// its pixels are at edges shows nothing.
 fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     let differing: Vec<&Sample> = at_edges.iter().filter(seen).collect();
     let sides = |s: &&&Sample| {
@@ -189,7 +189,7 @@ fn has_equal_sides(reference: &View, test: &View, at_edges: &[Sample]) -> bool {
     differing.iter().filter(sides).count() * 8 > differing.len()
 }
 
-/// How many of a pixel's eight neighbours do not differ as it does.
+/// Number of a pixel's eight neighbours whose difference is not similar.
 fn lonely(reference: &View, test: &View, s: &Sample) -> usize {
     let own = s.test - s.reference;
     let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (s.x + dx, s.y + dy)));
@@ -204,10 +204,10 @@ fn brighter(s: &Sample) -> bool {
     (s.test - s.reference).element_sum() > 0.0
 }
 
-/// Single pixels that are all darker, or all brighter.
+/// Detects isolated pixels that are all darker or all brighter.
 fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
-    // Single pixels at edges differ because edges have moved.
+    // Isolated pixels at edges differ because edges have moved.
     let alone = seen.iter().filter(|s| lonely(reference, test, s) >= 7 && !at_edge(reference, s)).count();
     let share = seen.len() as f64 / samples.len() as f64;
     let (up, down): (Vec<Sample>, Vec<Sample>) = seen.iter().copied().copied().partition(brighter);
@@ -221,13 +221,13 @@ fn speckles(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding
     (2 * alone > seen.len() && share < 0.5).then_some(Finding { kind, words, explained })
 }
 
-/// Differences without a pattern.
+/// Detects differences without a pattern.
 fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     let seen: Vec<&Sample> = samples.iter().filter(seen).collect();
     let alone: usize = seen.iter().map(|s| lonely(reference, test, s)).sum();
     let explained = difference(&seen.iter().copied().copied().collect::<Vec<_>>()) / difference(samples);
     let words = "it differs from pixel to pixel without a pattern: noise, from few samples or other random numbers";
-    // Moved edges of a fine pattern look like noise; noise is also where nothing else is.
+    // Moved edges of a fine pattern look like noise, but noise also occurs away from edges.
     let smooth = seen.iter().filter(|s| !at_edge(reference, s)).count();
     (alone > 5 * seen.len() && 10 * seen.len() > samples.len() && 2 * smooth > seen.len()).then(|| Finding {
         kind: "noise",
@@ -236,7 +236,7 @@ fn noise(reference: &View, test: &View, samples: &[Sample]) -> Option<Finding> {
     })
 }
 
-/// Parts that are darker or brighter while the rest is equal.
+/// Detects parts that are darker or brighter while the rest is equal.
 fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     let total = difference(samples);
     let (bright, dark): (Vec<Sample>, Vec<Sample>) = samples.iter().filter(seen).copied().partition(brighter);
@@ -246,7 +246,7 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
     if part.is_empty() || explained < WELL {
         return None;
     }
-    // How well one factor fits the whole part.
+    // Fit one factor to the whole part.
     let (sum, squares) = part.iter().fold((0.0, 0.0), |(sum, squares), s| {
         (sum + f64::from(s.test.dot(s.reference)), squares + f64::from(s.reference.length_squared()))
     });
@@ -258,11 +258,11 @@ fn shaded(_: &View, _: &View, samples: &[Sample]) -> Option<Finding> {
         false if fits && factor < 0.02 => ("black-parts", "black"),
         false => ("darker-parts", "darker"),
     };
-    // Shadows, lights, highlights, rays: all of them look like this.
+    // Shadows, lights, highlights, and missing rays all look like this.
     let cause = "why cannot be told from the pictures; with `--scene` the usual mistakes are tried";
     let by = if fits && kind != "black-parts" { format!(" by the factor {factor:.3}") } else { String::new() };
     let share = part.len() as f64 / samples.len() as f64;
-    // What is nearly everywhere and follows no rule is not a part.
+    // A difference nearly everywhere that follows no rule is not a part.
     if share > 0.75 && !fits {
         return None;
     }

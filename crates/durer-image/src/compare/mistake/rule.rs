@@ -1,10 +1,10 @@
-//! Mistakes that are made everywhere in a picture by one rule.
+//! Rules: mistakes that affect the whole picture.
 
 use super::sample::{Sample, View};
 use crate::compare::picture::{Scale, linear_to_srgb, srgb_to_linear};
 use durer_bvh::math::{Vec3, fp};
 
-/// Which of columns and rows run backwards, and whether they are exchanged first.
+/// Mirroring of columns and rows, after an optional transposition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Turn {
     pub exchange: bool,
@@ -12,7 +12,7 @@ pub struct Turn {
     pub rows_back: bool,
 }
 
-/// All of them but the one that changes nothing.
+/// Transformations other than the identity.
 pub const TURNS: [Turn; 7] = [
     turn(false, true, false),
     turn(false, false, true),
@@ -32,7 +32,7 @@ impl Turn {
         self.exchange
     }
 
-    /// The pixel of the reference that comes to a place.
+    /// Pixel of the reference that moves to a position.
     fn source(self, picture: &View, x: isize, y: isize) -> (isize, isize) {
         let x = if self.columns_back { picture.width as isize - 1 - x } else { x };
         let y = if self.rows_back { picture.height as isize - 1 - y } else { y };
@@ -40,48 +40,48 @@ impl Turn {
     }
 }
 
-/// A rule that makes a mistake of a reference.
+/// A rule that transforms a reference like a mistake.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Rule {
     Turned(Turn),
-    /// Pixels to the right and down.
+    /// Shift in pixels to the right and down.
     Shifted(isize, isize),
-    /// For each channel the one of the reference that it shows.
+    /// Source channel of the reference for each channel.
     Channels([usize; 3]),
     Grey,
-    /// Channels of which black and white are exchanged.
+    /// Flags for the channels in which black and white are exchanged.
     Inverted([bool; 3]),
-    /// All channels, but black stays black.
+    /// Inverts all channels, but keeps black.
     ThingsInverted,
     CurveOnceMore,
     CurveOnceLess,
     Power(f32),
-    /// Of the stored values.
+    /// Factor on the stored values.
     Factor(f32),
-    /// Of the light that the values stand for.
+    /// Factor on the linear light of the values.
     LightFactor(f32),
     Factors(Vec3),
     Added(f32),
     AddedEach(Vec3),
-    /// A factor, and what is added after it.
+    /// Factor and offset.
     Affine(f32, f32),
     Recolored(Vec3, Vec3),
     Blurred,
 }
 
 impl Rule {
-    /// What this rule leaves of the difference at a pixel.
+    /// Difference at a pixel that this rule leaves.
     pub fn rest(&self, reference: &View, sample: &Sample) -> Vec3 {
         sample.test - self.pixel(reference, sample.x, sample.y)
     }
 
-    /// The reference with this mistake.
+    /// Applies the rule to the reference.
     pub fn made(&self, reference: &View) -> Vec<Vec3> {
         let width = reference.width as isize;
         (0..reference.pixels.len() as isize).map(|i| self.pixel(reference, i % width, i / width)).collect()
     }
 
-    /// A pixel of the reference with this mistake.
+    /// Applies the rule to a pixel of the reference.
     fn pixel(&self, reference: &View, x: isize, y: isize) -> Vec3 {
         let value = reference.at(x, y);
         let scale = reference.scale;
@@ -93,7 +93,7 @@ impl Rule {
             Rule::Shifted(dx, dy) => {
                 let inside = (0..reference.width as isize).contains(&(x - dx))
                     && (0..reference.height as isize).contains(&(y - dy));
-                // Nothing is known of what comes in over the edge.
+                // Pixels that enter at the edge are unknown.
                 if inside { reference.at(x - dx, y - dy) } else { value }
             }
             Rule::Channels(order) => order.map(|channel| value[channel]).into(),
@@ -129,18 +129,18 @@ impl Rule {
         scale.clamp(made)
     }
 
-    /// Whether pixels come to other places.
+    /// Returns true if the rule moves pixels.
     pub fn moves(&self) -> bool {
         matches!(self, Rule::Turned(_) | Rule::Shifted(..))
     }
 
-    /// Whether it has numbers that were fitted to the pictures.
+    /// Returns true if the rule has parameters that were fitted to the pictures.
     pub fn is_fitted(&self) -> bool {
         use Rule::{Added, AddedEach, Affine, Factor, Factors, LightFactor, Power};
         matches!(self, Affine(..) | Power(_) | Factor(_) | LightFactor(_) | Factors(_) | Added(_) | AddedEach(_))
     }
 
-    /// Its keyword.
+    /// Keyword of the rule.
     pub fn kind(&self) -> &'static str {
         match self {
             Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {
@@ -165,12 +165,12 @@ impl Rule {
     }
 }
 
-/// Whether two colours are equal but for rounding.
+/// Returns true if two colours are equal except for rounding.
 pub fn same_color(a: Vec3, b: Vec3) -> bool {
     (a - b).abs().max_element() <= 1e-4
 }
 
-/// Whether a channel's value is cut off at an end of the scale, so that what it was is not known.
+/// Returns true if a value is clamped at an end of the scale, so that its original is unknown.
 pub fn cut_off(scale: Scale, value: f32) -> bool {
     value <= 0.0 || scale == Scale::Display && value >= 0.998
 }

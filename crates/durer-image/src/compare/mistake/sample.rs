@@ -1,12 +1,12 @@
-//! Pictures as mistakes see them.
+//! Samples of two pictures for the detection of mistakes.
 
 use crate::compare::picture::{Pair, Scale};
 use durer_bvh::math::Vec3;
 
-/// The most pixels that are looked at for each mistake.
+/// Maximum number of pixels that are sampled.
 const MOST: usize = 100_000;
 
-/// The pixels of a picture.
+/// Pixels of a picture.
 #[derive(Clone, Copy)]
 pub struct View<'p> {
     pub width: usize,
@@ -20,13 +20,13 @@ impl<'p> View<'p> {
         View { width: pair.width, height: pair.height, scale: pair.scale, pixels }
     }
 
-    /// A pixel, or the nearest one at the edge.
+    /// Pixel at a position, clamped to the edge.
     pub fn at(&self, x: isize, y: isize) -> Vec3 {
         let (x, y) = (x.clamp(0, self.width as isize - 1), y.clamp(0, self.height as isize - 1));
         self.pixels[y as usize * self.width + x as usize]
     }
 
-    /// A pixel and its eight neighbours with the weights 1, 2, 1 along each axis.
+    /// Mean of a pixel and its eight neighbours with weights 1, 2, 1 along each axis.
     pub fn blurred(&self, x: isize, y: isize) -> Vec3 {
         let row = |y| self.at(x - 1, y) + 2.0 * self.at(x, y) + self.at(x + 1, y);
         (row(y - 1) + 2.0 * row(y) + row(y + 1)) / 16.0
@@ -42,13 +42,13 @@ pub struct Sample {
     pub test: Vec3,
 }
 
-/// All pixels, or many that are spread evenly but follow no pattern.
+/// Samples all pixels, or an evenly spread subset without a regular pattern.
 pub fn samples(reference: &View, test: &View) -> Vec<Sample> {
     let pixels = reference.pixels.len();
     let count = pixels.min(MOST);
     let place = |i: usize| {
-        // One pixel of each of `count` equal parts, at the place that multiples of the golden ratio
-        // give.
+        // One pixel from each of `count` equal intervals, at an offset given by multiples of the
+        // golden ratio.
         let part = if pixels > MOST { (i as f64 * 0.618_033_988_749_895).fract() } else { 0.0 };
         (((i as f64 + part) * pixels as f64 / count as f64) as usize).min(pixels - 1)
     };

@@ -1,14 +1,14 @@
-//! By how many pixels a picture is shifted: sought in small versions of the pictures first.
+//! Detection of whole-pixel shifts, coarse to fine.
 
 use super::sample::View;
 use durer_bvh::math::Vec3;
 
-/// The smallest version has at most so many pixels along a side.
+/// Maximum side of the coarsest level in pixels.
 const SMALLEST: usize = 48;
-/// The most places at which a shift is tried.
+/// Maximum number of positions at which a shift is tested, roughly.
 const PLACES: usize = 20_000;
 
-/// A picture of brightness.
+/// A greyscale picture.
 struct Grey {
     width: usize,
     height: usize,
@@ -21,7 +21,7 @@ impl Grey {
         Grey { width: picture.width, height: picture.height, values }
     }
 
-    /// The version of half the size, of means of two by two pixels.
+    /// Half-size version from means of two by two pixels.
     fn half(&self) -> Grey {
         let (width, height) = (self.width / 2, self.height / 2);
         let at = |x: usize, y: usize| self.values[y * self.width + x];
@@ -30,13 +30,13 @@ impl Grey {
         Grey { width, height, values }
     }
 
-    /// The mean squared difference to a picture that is this one shifted, over what both show.
+    /// Mean squared difference to a picture, assuming it is this one shifted, over the common area.
     fn difference(&self, shifted: &Grey, (dx, dy): (isize, isize)) -> f64 {
         let step = (self.values.len() as f64 / PLACES as f64).sqrt().ceil().max(1.0) as usize;
         let range = |d: isize, size: usize| d.max(0) as usize..(size as isize + d.min(0)).max(0) as usize;
         let (mut sum, mut count) = (0.0, 0usize);
         for y in range(dy, self.height).step_by(step) {
-            // Columns are displaced from row to row, so that no pattern is missed.
+            // Displace columns from row to row, so that regular patterns are not missed.
             for x in range(dx, self.width).skip(y * 7 % step).step_by(step) {
                 let source = (y as isize - dy) as usize * self.width + (x as isize - dx) as usize;
                 let difference = f64::from(shifted.values[y * self.width + x] - self.values[source]);
@@ -48,8 +48,8 @@ impl Grey {
     }
 }
 
-/// Pixels to the right and down by which the picture is most likely shifted, up to a quarter of its
-/// size; `None` for none.
+/// Most likely shift of the picture in pixels to the right and down, up to a quarter of its size;
+/// `None` if it is zero.
 pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let mut levels = vec![(Grey::of(reference), Grey::of(test))];
     while let Some((a, b)) = levels.last()
@@ -61,7 +61,7 @@ pub fn shift(reference: &View, test: &View) -> Option<(isize, isize)> {
     let best = |(a, b): &(Grey, Grey), middle: (isize, isize), (rx, ry): (isize, isize)| {
         let around = |m: isize, r: isize| m - r..=m + r;
         let shifts = around(middle.1, ry).flat_map(|dy| around(middle.0, rx).map(move |dx| (dx, dy)));
-        // Of equal ones the smallest.
+        // Of equally good shifts, choose the smallest.
         let cost = |s: (isize, isize)| (a.difference(b, s), s.0.abs() + s.1.abs());
         shifts.min_by(|&s, &t| {
             let ((s, s_size), (t, t_size)) = (cost(s), cost(t));

@@ -1,4 +1,4 @@
-//! Mistakes made in pictures, and found again.
+//! Tests that find mistakes made in pictures.
 
 use super::*;
 use crate::compare::picture::{Picture, Scale, linear_to_srgb, srgb_to_linear};
@@ -9,7 +9,7 @@ const SIDE: usize = 96;
 
 type Paint = dyn Fn(usize, usize) -> Vec3;
 
-/// A picture with 255ths as values, as files have them.
+/// A picture with values in 255ths, as in files.
 fn picture(paint: &Paint) -> Picture {
     let paint = |i: usize| paint(i % SIDE, i / SIDE);
     let round = |value: f32| decode_linear((value.clamp(0.0, 1.0) * 255.0).round() as u8);
@@ -17,7 +17,7 @@ fn picture(paint: &Paint) -> Picture {
     Picture { image: Image::from_pixels(SIDE as u32, SIDE as u32, pixels).unwrap(), scale: Scale::Display }
 }
 
-/// A shaded ball and a smaller one before a dark background, without symmetry.
+/// A shaded ball and a smaller one in front of a dark background, without symmetry.
 fn scene(x: usize, y: usize) -> Vec3 {
     let ball = |cx: f32, cy: f32, radius: f32, color: Vec3| {
         let (dx, dy) = ((x as f32 - cx) / radius, (y as f32 - cy) / radius);
@@ -40,7 +40,7 @@ fn findings(reference: &Paint, test: &Paint) -> Vec<Finding> {
     explain(&Pair::new(&picture(reference), &picture(test), Transfer::Srgb).unwrap())
 }
 
-/// The kind of the first finding, which must explain at least nine tenths.
+/// Checks the kind of the first finding, which must explain more than nine tenths.
 #[track_caller]
 fn finds(kind: &str, words: &str, reference: &Paint, test: &Paint) {
     let found = findings(reference, test);
@@ -129,7 +129,7 @@ fn parts_of_a_picture() {
         &scene,
     );
     finds("black-parts", "black", &scene, &move |x, y| if within(x, y) { Vec3::ZERO } else { scene(x, y) });
-    // One pixel in about ten, at no regular places.
+    // About one pixel in ten, at irregular positions.
     let speckle = |x: usize, y: usize| (x * 7919 + y * 104_729 + x * y * 31) % 31 < 3;
     finds("dark-speckles", "acne", &scene, &move |x, y| scene(x, y) * if speckle(x, y) { 0.2 } else { 1.0 });
     finds("not-clamped", "wrap", &|x, y| scene(x, y) * 2.0, &|x, y| {
@@ -143,7 +143,7 @@ fn parts_of_a_picture() {
     });
 }
 
-/// Discs seen at places of the pixels that differ by parts of a pixel.
+/// Discs sampled at different subpixel positions.
 #[test]
 fn samples_at_other_places() {
     let disc = |x: f32, y: f32| {
@@ -174,11 +174,11 @@ fn two_mistakes_behind_each_other() {
 
 #[test]
 fn what_is_no_usual_mistake_is_none() {
-    // Another picture.
+    // An unrelated picture.
     let other = |x: usize, y: usize| Vec3::new(((x * x + 3 * y) % 97) as f32, ((y * y + x) % 89) as f32, 40.0) / 100.0;
     let found = findings(&scene, &other);
     assert!(found.iter().all(|finding| finding.explained < 0.9), "{found:?}");
-    // Noise is not taken for anything with a cause.
+    // Noise is not mistaken for anything with a cause.
     let noise = |x: usize, y: usize| ((x * 7919 + y * 104_729 + x * x * 31 + y * y * 17) % 255) as f32 / 255.0 - 0.5;
     let found = findings(&scene, &move |x, y| scene(x, y) + 0.1 * noise(x, y));
     assert!(found.iter().all(|f| f.kind == "noise"), "{found:?}");

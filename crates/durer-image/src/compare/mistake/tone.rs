@@ -1,4 +1,4 @@
-//! Mistakes of brightness and colour, with their numbers fitted to the samples by least squares.
+//! Rules of brightness and colour, with parameters fitted to the samples by least squares.
 
 use super::rule::{Rule, cut_off, same_color};
 use super::sample::Sample;
@@ -6,7 +6,7 @@ use crate::compare::picture::Scale;
 use durer_bvh::math::{Vec3, fp};
 use std::collections::BTreeMap;
 
-/// Values of both pictures in one channel, without those that are cut off in either.
+/// Values of both pictures in one channel, without those that are clamped in either.
 fn values(scale: Scale, samples: &[Sample], channel: usize) -> impl Iterator<Item = (f64, f64)> {
     samples
         .iter()
@@ -52,7 +52,7 @@ impl Sums {
     }
 }
 
-/// Mistakes with one number, then those with more.
+/// Rules with one parameter, then those with more.
 pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     let each: [Sums; 3] = std::array::from_fn(|channel| Sums::of(values(scale, samples, channel)));
     let all = Sums::of((0..3).flat_map(|channel| values(scale, samples, channel)));
@@ -66,7 +66,7 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
         let sums = Sums::of((0..3).flat_map(|channel| values(scale, &light, channel)));
         rules.push(Rule::LightFactor(sums.factor()));
     }
-    // An exponent is the slope of a line through the origin between logarithms.
+    // An exponent is the slope of a line through the origin in log-log space.
     let logarithms = (0..3).flat_map(|channel| values(scale, samples, channel));
     let ln = |value: f64| f64::from(fp::ln(value as f32));
     rules.push(Rule::Power(Sums::of(logarithms.map(|(a, b)| (ln(a), ln(b)))).factor()));
@@ -79,13 +79,14 @@ pub fn fitted(scale: Scale, samples: &[Sample]) -> Vec<Rule> {
     rules
 }
 
-/// The colour that most often differs, as the background may, and what it most often is in the
-/// picture.
+/// Finds the colour that most often differs, such as the background, and its most frequent
+/// replacement.
 fn recolored(samples: &[Sample]) -> Option<Rule> {
     let differing = || samples.iter().filter(|s| !same_color(s.reference, s.test));
     let from = most_frequent(differing().map(|s| s.reference))?;
     let to = most_frequent(differing().filter(|s| same_color(s.reference, from)).map(|s| s.test))?;
-    // Where the new colour is one of the reference's things, light is another, not the background.
+    // If the new colour occurs in the reference, the cause is different lighting, not the
+    // background.
     let known = samples.iter().filter(|s| same_color(s.reference, to)).count();
     (100 * known < samples.len()).then_some(Rule::Recolored(from, to))
 }

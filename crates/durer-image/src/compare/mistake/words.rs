@@ -1,9 +1,9 @@
-//! Rules in words about the picture.
+//! Descriptions of rules.
 
 use super::bytes;
 use super::rule::Rule;
 
-/// What a rule says of the picture.
+/// Describes how a rule changes the picture.
 pub fn of(rule: &Rule) -> String {
     match *rule {
         Rule::Turned(turn) => match (turn.exchange, turn.columns_back, turn.rows_back) {

@@ -1,9 +1,10 @@
 //! Light that comes straight from the scene's lights.
 
-use super::Whitted;
+use super::{Lit, Shaded, Whitted};
 use crate::integrator::spawn::{spawn_ray, to_light};
 use crate::integrator::trace::{NodeId, Shadow, TermKind, TraceListener};
 use crate::world::{HighlightModel, Hit, Material, Phong, TOGETHER};
+use durer_bvh::internal::{PlainKernel, run_plain};
 use durer_scene::light::Illumination;
 use durer_scene::math::{Color, Ray64, Vec3, fp, gamma, reflect};
 use durer_scene::shape::Surface;
@@ -77,33 +78,126 @@ impl Whitted<'_> {
     }
 }
 
-/// Diffuse term and highlight of one light, if nothing is in the way. `parent`: the light's node in
-/// the trace.
-#[inline(always)]
-pub(super) fn direct<T: TraceListener>(
-    phong: &Phong,
+/// Terms of one light at a point, if nothing is in the way.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Direct {
+    /// Cosine between the normal and the direction to the light.
+    cosine: f32,
+    /// Base of the highlight's power: a cosine, less than 0 where there is none. `None`: no highlight.
+    base: Option<f32>,
+    /// The highlight's power, once [`take_powers`] has taken it.
+    strength: f32,
     diffuse: Color,
-    n: Vec3,
-    view: Vec3,
-    seen: &Illumination,
-    parent: NodeId,
-    tally: &mut T,
-) -> Color {
-    let cosine = n.dot(seen.to_light);
-    let matte = cosine.max(0.0) * diffuse;
-    let node = tally.begin(parent, || TermKind::Diffuse { cosine });
-    tally.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
-    let shines = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
-    let Some((specular, exponent, model)) = phong.highlight.filter(|highlight| shines(highlight.2)) else {
-        return matte * seen.color;
-    };
-    let base = match model {
-        // Cosine of the angle between the normal and the direction halfway between light and eye.
-        HighlightModel::Blinn => n.dot((seen.to_light - view).normalize_or_zero()),
-        HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
-    };
-    let strength = fp::pow(base.max(0.0), exponent);
-    let node = tally.begin(parent, || TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
-    tally.end(node, Color::splat(strength), Color::ONE, specular);
-    (matte + strength * specular) * seen.color
+}
+
+impl Direct {
+    /// Works out the terms up to the highlight's power.
+    #[inline(always)]
+    pub(super) fn of(phong: &Phong, diffuse: Color, n: Vec3, view: Vec3, seen: &Illumination) -> Self {
+        let cosine = n.dot(seen.to_light);
+        let shines = |model| cosine > 0.0 || model == HighlightModel::Phong { behind: true };
+        let highlight = phong.highlight.filter(|highlight| shines(highlight.2));
+        let base = highlight.map(|(_, _, model)| match model {
+            // Cosine of the angle between the normal and the direction halfway between light and eye.
+            HighlightModel::Blinn => n.dot((seen.to_light - view).normalize_or_zero()),
+            HighlightModel::Phong { .. } => reflect(view, n).dot(seen.to_light),
+        });
+        Direct { cosine, base, strength: 0.0, diffuse: cosine.max(0.0) * diffuse }
+    }
+
+    /// Whether both terms are 0, whatever light arrives.
+    #[inline(always)]
+    pub(super) fn is_dark(&self, phong: &Phong) -> bool {
+        let highlight = |(specular, exponent, _)| {
+            // A power of exponent 0 is 1.
+            specular != Color::ZERO && (self.base.is_some_and(|base| base > 0.0) || exponent <= 0.0)
+        };
+        self.diffuse == Color::ZERO && !(self.base.is_some() && phong.highlight.is_some_and(highlight))
+    }
+
+    /// Light that is scattered against the ray.
+    #[inline(always)]
+    pub(super) fn color(&self, phong: &Phong, seen: &Illumination) -> Color {
+        match (self.base, phong.highlight) {
+            (Some(_), Some((specular, ..))) => (self.diffuse + self.strength * specular) * seen.color,
+            _ => self.diffuse * seen.color,
+        }
+    }
+
+    /// Reports both terms. `parent` is the light's node in the trace.
+    pub(super) fn tell<T: TraceListener>(&self, phong: &Phong, diffuse: Color, parent: NodeId, tally: &mut T) {
+        let cosine = self.cosine;
+        let node = tally.begin(parent, || TermKind::Diffuse { cosine });
+        tally.end(node, Color::splat(cosine.max(0.0)), Color::ONE, diffuse);
+        if let (Some(base), Some((specular, exponent, model))) = (self.base, phong.highlight) {
+            let node =
+                tally.begin(parent, || TermKind::Highlight { model: TermKind::highlight(model), base, exponent });
+            tally.end(node, Color::splat(self.strength), Color::ONE, specular);
+        }
+    }
+}
+
+/// Takes the powers of the highlights of some points, several side by side.
+pub(super) fn take_powers(points: &[Shaded], parts: &mut [Lit], some: impl Iterator<Item = usize>) {
+    let mut powers = Powers { bases: [0.0; TOGETHER], exponents: [1.0; TOGETHER], count: 0 };
+    let mut places = [0; TOGETHER];
+    for point in some.map(|i| &points[i]) {
+        for place in point.first_part..point.first_part + point.parts {
+            let Lit { part, direct, .. } = &mut parts[place];
+            let (Some(base), Some((_, exponent, _))) = (direct.base, part.phong.highlight) else { continue };
+            if base.is_nan() || base <= 0.0 {
+                direct.strength = if exponent > 0.0 { 0.0 } else { fp::pow(0.0, exponent) };
+                continue;
+            }
+            let at = powers.count;
+            (powers.bases[at], powers.exponents[at], places[at]) = (base, exponent, place);
+            powers.count += 1;
+            if powers.count == TOGETHER {
+                powers.give(&places, parts);
+            }
+        }
+    }
+    powers.give(&places, parts);
+}
+
+/// Powers that are taken together.
+struct Powers {
+    bases: [f32; TOGETHER],
+    exponents: [f32; TOGETHER],
+    count: usize,
+}
+
+impl Powers {
+    /// Takes the powers, writes them to their places, and begins anew.
+    fn give(&mut self, places: &[usize; TOGETHER], parts: &mut [Lit]) {
+        let count = std::mem::take(&mut self.count);
+        if count == 0 {
+            return;
+        }
+        let powers = run_plain(PowerKernel(self, count));
+        for (i, &place) in places[..count].iter().enumerate() {
+            let power = powers[i];
+            // Unusual numbers are left to the function for one.
+            let power = if power.is_nan() { fp::pow(self.bases[i], self.exponents[i]) } else { power };
+            parts[place].direct.strength = power;
+        }
+    }
+}
+
+struct PowerKernel<'p>(&'p Powers, usize);
+
+impl PlainKernel for PowerKernel<'_> {
+    type Output = [f32; TOGETHER];
+
+    #[inline(always)]
+    fn run(self) -> [f32; TOGETHER] {
+        let PowerKernel(Powers { bases, exponents, .. }, count) = self;
+        let mut powers = [0.0; TOGETHER];
+        for start in (0..count).step_by(8) {
+            for i in start..start + 8 {
+                powers[i] = fp::usual_pow(bases[i], exponents[i]);
+            }
+        }
+        powers
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::{Explanation, explain};
 use crate::film::Filter;
+use crate::film::course::CourseFilter;
 use crate::integrator::TraceNode;
-use crate::render::course::CourseFilter;
 use crate::render::{Control, Job, RenderError, Sampling, render};
 use crate::world::World;
 use durer_scene::math::Color;

@@ -1,8 +1,8 @@
 //! The sub-pixels of Fall 2012, assignment 5: three by three to a pixel, moved at random, blurred,
 //! averaged.
 
-use super::jitter::{average_3x3, blur, jittered_position};
-use crate::render::{Crop, Job, raster};
+use super::{Crop, Job, raster};
+use crate::film::course::{average_3x3, blur, jittered_position};
 use crate::world::World;
 use durer_scene::camera::Raster;
 use durer_scene::math::{Color, Vec2};
@@ -24,7 +24,7 @@ pub struct SubPixels {
 }
 
 impl SubPixels {
-    pub(in crate::render) fn new(job: &Job, part: Crop, jitter: bool, blurred: bool) -> Self {
+    pub(super) fn new(job: &Job, part: Crop, jitter: bool, blurred: bool) -> Self {
         let scale = if jitter { 3 } else { 1 };
         let scaled = |crop: Crop| Crop {
             left: crop.left * scale,
@@ -38,34 +38,34 @@ impl SubPixels {
     }
 
     /// The sub-pixels on the square that a world's camera covers.
-    pub(in crate::render) fn raster(&self, world: &World) -> Raster {
+    pub(super) fn raster(&self, world: &World) -> Raster {
         raster(world, self.whole.width, self.whole.height)
     }
 
     /// How many there are across a pixel.
-    pub(in crate::render) fn scale(&self) -> u32 {
+    pub(super) fn scale(&self) -> u32 {
         if self.jitter { 3 } else { 1 }
     }
 
     /// The pixel of one of them.
-    pub(in crate::render) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
+    pub(super) fn pixel(&self, (x, y): (u32, u32)) -> (u32, u32) {
         (x / self.scale(), y / self.scale())
     }
 
     /// The number of a sub-pixel in its pixel.
-    pub(in crate::render) fn number(&self, (x, y): (u32, u32)) -> u32 {
+    pub(super) fn number(&self, (x, y): (u32, u32)) -> u32 {
         y % self.scale() * self.scale() + x % self.scale()
     }
 
     /// Where the ray of one goes, in sub-pixels from the upper left corner of the picture.
-    pub(in crate::render) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
+    pub(super) fn place(&self, seed: u64, (x, y): (u32, u32)) -> Vec2 {
         let corner = if self.jitter { jittered_position(seed, x, y) } else { Vec2::new(x as f32, y as f32) };
         corner + 0.5
     }
 
     /// The pixels of the part, from the colours of all sub-pixels that count for it, in reading
     /// order.
-    pub(in crate::render) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
+    pub(super) fn develop(&self, mut colors: Vec<Color>) -> Vec<Color> {
         let (inner, around) = (self.inner, self.around);
         if self.blurred {
             colors = blur(&colors, around.width, around.height);

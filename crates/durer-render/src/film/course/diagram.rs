@@ -3,7 +3,7 @@
 //!
 //! Both enlarge each pixel to `zoom` times `zoom` pixels.
 
-use super::film::{CourseFilter, StoredSamples};
+use super::stored::{CourseFilter, StoredSamples};
 use durer_scene::math::{Color, Vec2, Vec3};
 
 #[cfg(test)]

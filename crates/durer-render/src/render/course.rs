@@ -1,12 +1,12 @@
 //! The course's ways of sampling: samples that count for other pixels too, in Fall 2004 and 2012.
 
-use super::film::{CourseFilter, StoredSample, StoredSamples};
+use super::aim::PixelSample;
+use super::error::MAX_KEPT;
+use super::samples::{SampleCursor, Samples, Stopped};
 use super::sub_pixels::SubPixels;
+use super::{Control, Crop, Job, RenderError, Sampling};
+use crate::film::course::{CourseFilter, StoredSample, StoredSamples};
 use crate::integrator::Integrate;
-use crate::render::aim::PixelSample;
-use crate::render::error::MAX_KEPT;
-use crate::render::samples::{SampleCursor, Samples, Stopped};
-use crate::render::{Control, Crop, Job, RenderError, Sampling};
 use crate::threads;
 use crate::world::World;
 use durer_bvh::RayCount;
@@ -38,7 +38,7 @@ pub fn sample_diagram(world: &World, job: &Job, control: &Control) -> Result<Sto
 }
 
 /// Bytes of the samples that are kept at once for a tile, where samples count for other pixels too.
-pub(in crate::render) fn kept_bytes(job: &Job, side: u32) -> u64 {
+pub(super) fn kept_bytes(job: &Job, side: u32) -> u64 {
     match job.sampling {
         Sampling::Course2004 { sampler, samples, filter: Some(filter) } => {
             let across = u64::from(side) + 2 * u64::from(filter.support());
@@ -62,14 +62,14 @@ struct Show {
 
 /// The share of a pixel that is seen, of what is shown white where the camera sees. Sums of a
 /// filter's weights are a little off: what is nearly all is all.
-pub(in crate::render) fn share(white: Color) -> f32 {
+pub(super) fn share(white: Color) -> f32 {
     if white.x > 1.0 - 1e-6 { 1.0 } else { white.x.max(0.0) }
 }
 
 impl Samples<'_> {
     /// The finished pixels of a part with their coverage, for samplings whose samples count for
     /// other pixels too. Samples around the part that are needed for it are taken for it alone.
-    pub(in crate::render) fn finished(
+    pub(super) fn finished(
         &self,
         part: Crop,
         at: &SampleCursor,

@@ -1,11 +1,11 @@
 //! Pixels that are made of their neighbours' samples too, as the course's assignments have them.
 
-use super::film::CourseFilter;
-use super::sampling::share;
-use super::sub_pixels::SubPixels;
+use super::{Mean, SampleAccount};
+use crate::film::course::CourseFilter;
 use crate::render::aim::PixelSample;
-use crate::render::explain::{Mean, SampleAccount};
+use crate::render::course::share;
 use crate::render::samples::Samples;
+use crate::render::sub_pixels::SubPixels;
 use crate::render::{Crop, Job};
 use crate::world::World;
 use durer_scene::math::{Color, Vec3};
@@ -13,7 +13,7 @@ use durer_scene::sampler::Sampler;
 use glam::DVec3;
 
 /// The samples of Fall 2004: all within the filter's support, each with its weight in this pixel.
-pub(in crate::render) fn around(
+pub(super) fn around(
     source: &Samples,
     job: &Job,
     here: (u32, u32),
@@ -36,7 +36,7 @@ pub(in crate::render) fn around(
 }
 
 /// The sub-pixels of Fall 2012.
-pub(in crate::render) fn sub_pixels(
+pub(super) fn sub_pixels(
     source: &Samples,
     world: &World,
     grid: SubPixels,
@@ -55,7 +55,7 @@ pub(in crate::render) fn sub_pixels(
 }
 
 /// The finished pixel and its coverage.
-pub(in crate::render) fn finished(
+pub(super) fn finished(
     mean: &Mean,
     samples: &[SampleAccount],
     light: impl Fn(&SampleAccount) -> Option<Color>,

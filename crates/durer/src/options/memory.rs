@@ -1,18 +1,28 @@
-//! How much memory may be taken.
+//! Limits of memory: bytes, or a share of the machine.
 
 use sysinfo::System;
 
-/// What `--memory` says.
+/// A limit of memory. The default is 80 percent of the machine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Memory {
-    /// So many bytes.
+    /// Bytes.
     Bytes(u64),
-    /// Percent of what the machine has, or the control group that the program is in.
+    /// Percent of the memory of the machine, or of the control group of the process.
     Percent(f64),
+}
+
+impl Default for Memory {
+    fn default() -> Self {
+        Memory::Percent(80.0)
+    }
 }
 
 impl Memory {
     /// Reads `80%`, `8G`, `512M`, or a number of bytes.
+    ///
+    /// # Errors
+    ///
+    /// A sentence, if the text is something else.
     pub fn parse(text: &str) -> Result<Self, String> {
         let wrong = || "say it as 8G, 512M or 80%".to_string();
         if let Some(percent) = text.strip_suffix('%') {
@@ -32,7 +42,7 @@ impl Memory {
         Ok(Memory::Bytes((number * (1_u64 << shift) as f64) as u64))
     }
 
-    /// Bytes; `None` where the system does not tell how many it has.
+    /// Bytes; `None` where the system does not tell how much memory it has.
     pub fn bytes(self) -> Option<u64> {
         let percent = match self {
             Memory::Bytes(bytes) => return Some(bytes),

@@ -1,13 +1,13 @@
 //! A quirk of Fall 2012: on a texture, ambient light is that of the pixel shaded before with the
 //! same material, in rows from the bottom.
 
-use crate::render::{Job, Sampling, center_ray};
+use super::{Job, Sampling, center_ray};
 use crate::world::{Material, World};
 use durer_scene::camera::Raster;
 use durer_scene::math::Color;
 
 /// Whether a job has the quirk: one ray a pixel, in a world whose rules have it.
-pub(in crate::render) fn applies(world: &World, job: &Job) -> bool {
+pub(super) fn applies(world: &World, job: &Job) -> bool {
     job.sampling == Sampling::Center && world.shading_rules().stale_texels
 }
 
@@ -30,12 +30,7 @@ fn texel(world: &World, raster: &Raster, pixel: (u32, u32)) -> Option<Texel> {
 
 /// What the quirk adds to each pixel of the whole picture. `stops` is asked before each pixel; once
 /// it says so, the rest is 0.
-pub(in crate::render) fn differences(
-    world: &World,
-    job: &Job,
-    raster: &Raster,
-    stops: impl Fn() -> bool,
-) -> Vec<Color> {
+pub(super) fn differences(world: &World, job: &Job, raster: &Raster, stops: impl Fn() -> bool) -> Vec<Color> {
     let mut last: Vec<Option<Color>> = vec![None; world.materials().len()];
     let mut differences = vec![Color::ZERO; job.whole().pixels() as usize];
     for (y, x) in (0..job.height).rev().flat_map(|y| (0..job.width).map(move |x| (y, x))) {
@@ -50,7 +45,7 @@ pub(in crate::render) fn differences(
 }
 
 /// What the quirk adds to one pixel.
-pub(in crate::render) fn difference(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
+pub(super) fn difference(world: &World, job: &Job, raster: &Raster, (x, y): (u32, u32)) -> Option<Color> {
     let own = texel(world, raster, (x, y))?;
     // In rows from the bottom: first those of this row to the left, from right to left, then the
     // rows below.

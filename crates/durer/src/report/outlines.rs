@@ -1,23 +1,23 @@
-//! What a scene looks like in lines, to be drawn in space.
+//! Line drawings of a scene, for a view of it in space.
 
-use durer::light::{Emitter, Light};
-use durer::math::{Aabb, Vec3};
-use durer::shape::Shape;
-use durer::world::{Geometry, Object, World};
+use durer_render::world::{Geometry, Object, World};
+use durer_scene::light::{Emitter, Light};
+use durer_scene::math::{Aabb, Vec3};
+use durer_scene::shape::Shape;
 use serde_json::{Value, json};
 
-/// At most so many objects are drawn: more hide each other.
-const MOST: usize = 400;
-/// And so many triangles of a mesh.
+/// Objects drawn at most: more would hide each other.
+const MAX_OBJECTS: usize = 400;
+/// Triangles drawn of a mesh at most.
 const MAX_TRIANGLES: usize = 600;
 
-/// The outlines of all objects, each a row of points.
+/// Polylines that outline the objects, in world space.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
     let ends = world.bounds().union(Aabb::around([world.camera_frame().eye]));
-    world.objects().iter().take(MOST).flat_map(|object| outline(object, &ends)).collect()
+    world.objects().iter().take(MAX_OBJECTS).flat_map(|object| outline(object, &ends)).collect()
 }
 
-/// The lights that have a place, and where the others come from.
+/// Lights by name, each with its position; of directional lights, a point from where they shine.
 pub fn lights(world: &World) -> Vec<Value> {
     let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
     let reach = 0.6 * bounds.size().length();
@@ -30,7 +30,8 @@ pub fn lights(world: &World) -> Vec<Value> {
     world.lights().iter().enumerate().take(16).map(one).collect()
 }
 
-fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
+/// Polylines that outline one object in world space; where it has no end, within a box.
+pub fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
     let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
     let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];
     let boxed = || object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds));

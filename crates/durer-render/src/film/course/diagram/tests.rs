@@ -1,7 +1,7 @@
 //! Comparison with the official pictures. `DURER_CORPUS` names the folder that holds them.
 
-use super::super::film::StoredSample;
 use super::*;
+use crate::film::course::StoredSample;
 use durer_scene::math::fp;
 use durer_scene::sampler::Sampler;
 use glam::{DVec2, DVec3};

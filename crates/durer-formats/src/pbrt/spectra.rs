@@ -1,4 +1,4 @@
-//! The spectrum of a parameter: a colour, a black body, numbers, a name or a file.
+//! Spectra of parameters: a colour, a black body, numbers, a name or a file.
 
 use super::language::Language;
 use super::named;
@@ -10,8 +10,16 @@ use durer_scene::math::Vec3;
 use durer_scene::spectrum::SpectrumSource;
 use durer_scene::spectrum::space::color_of_xyz;
 
-/// The spectrum of a parameter. Those of pbrt-v3 are three numbers from the beginning on.
-pub(super) fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
+impl Params<'_> {
+    /// Reads a colour or spectrum that is not a texture.
+    pub fn spectrum(&self, name: &'static str) -> Option<SpectrumSource> {
+        let kinds = [Kind::Rgb, Kind::Xyz, Kind::Blackbody, Kind::Spectrum];
+        spectrum_of(self.of(name, &kinds, "rgb, a spectrum or a blackbody")?, self)
+    }
+}
+
+/// Reads the spectrum of a parameter; of pbrt-v3 as RGB.
+fn spectrum_of(param: &Param, params: &Params) -> Option<SpectrumSource> {
     let found = written(param, params)?;
     if params.language == Language::Fourth {
         return Some(found);

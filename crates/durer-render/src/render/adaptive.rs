@@ -1,0 +1,45 @@
+//! Adaptive sampling: divides the samples of a render among its pixels once the pilot is there.
+
+use super::Crop;
+use super::allocation::{around, divided};
+use super::part::PartialRender;
+use std::sync::Arc;
+
+impl PartialRender {
+    /// Decides how many samples each pixel gets, once all pixels have those of the pilot. Returns whether it is
+    /// decided.
+    pub(super) fn allocate(&self) -> bool {
+        let (samples, window) = (self.job.sampling.samples(), self.job.window());
+        let blocks = self.state().samples.clone();
+        if blocks.iter().all(|block| block.targets.is_some()) {
+            return true;
+        }
+        let mut variances = vec![0.0; window.pixels() as usize];
+        for (index, block) in blocks.iter().enumerate() {
+            let Some(own) = &block.variances else { return false };
+            let places = self.blocks.rect(index).places();
+            places.zip(own.iter()).for_each(|((x, y), &variance)| variances[window.index(x, y)] = variance);
+        }
+        let mut deviations = around(&variances, window.width as usize);
+        deviations.iter_mut().for_each(|variance| *variance = variance.sqrt());
+        let mut targets = vec![0; deviations.len()];
+        for color in 0..2 {
+            let is_of_color = |&(x, y): &(u32, u32)| (x ^ y) & 1 == color;
+            let pixels: Vec<usize> = window.places().filter(is_of_color).map(|(x, y)| window.index(x, y)).collect();
+            let own: Vec<f32> = pixels.iter().map(|&pixel| deviations[pixel]).collect();
+            pixels.iter().zip(divided(&own, samples)).for_each(|(&pixel, target)| targets[pixel] = target);
+        }
+        let of_block = |rect: Crop| -> Arc<[u32]> { rect.places().map(|(x, y)| targets[window.index(x, y)]).collect() };
+        for (index, block) in self.state().samples.iter_mut().enumerate() {
+            block.targets = Some(of_block(self.blocks.rect(index)));
+        }
+        true
+    }
+
+    /// How many samples a pixel of its window gets, where that was decided.
+    pub(super) fn target(&self, x: u32, y: u32) -> Option<u32> {
+        let (state, index) = (self.state(), self.blocks.at(x, y));
+        let pixel = self.blocks.rect(index).places().position(|place| place == (x, y))?;
+        Some(state.samples.get(index)?.targets.as_ref()?[pixel])
+    }
+}

@@ -1,0 +1,42 @@
+//! JSON of diagnostics and of the findings of a check.
+
+use durer_diag::{Files, Severity, Span};
+use durer_teach::check::Finding;
+use serde_json::{Value, json};
+
+/// Makes the list of findings in the document of `durer check --json`.
+pub fn findings(found: &[Finding], files: &Files) -> Value {
+    found.iter().map(|found| finding(found, files)).collect()
+}
+
+/// Makes the entry of a finding in the document of `durer check --json`.
+pub fn finding(finding: &Finding, files: &Files) -> Value {
+    let d = &finding.diagnostic;
+    json!({
+        "code": if d.code.is_empty() { "syntax" } else { d.code },
+        "severity": match d.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+            Severity::Note => "note",
+        },
+        "whole": finding.whole,
+        "message": d.message,
+        "label": d.label,
+        "effect": d.effect,
+        "help": d.help,
+        "place": d.span.map(|span| place(files, span)),
+        "related": d.related.as_ref().map(|(span, what)| json!({ "place": place(files, *span), "what": what })),
+        "fix": d.fix.iter().map(|edit| json!({ "place": place(files, edit.span), "text": edit.text })).collect::<Vec<_>>(),
+    })
+}
+
+/// Makes the entry of a place in a file: lines and columns from 1, bytes from 0.
+pub fn place(files: &Files, span: Span) -> Value {
+    let end = Span { start: span.end, ..span };
+    let ((line, column), (end_line, end_column)) =
+        (files.position(span).unwrap_or_default(), files.position(end).unwrap_or_default());
+    json!({
+        "file": files.name(span.file), "line": line, "column": column, "end_line": end_line, "end_column": end_column,
+        "start": span.start, "end": span.end,
+    })
+}

@@ -1,0 +1,259 @@
+//! `cargo xtask prose`: finds sentences that an engineer of the field would not write.
+//!
+//! It reads comments, messages (string literals of several words) and documents, joins their lines, and looks for the words of
+//! `xtask/prose.txt`. Comments are also held to 100 columns.
+
+use anyhow::{Context, Result};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Columns that a comment may have.
+const MAX_COLUMNS: usize = 100;
+/// Ends a line of code that must keep a listed word.
+const KEEP: &str = "// prose: keep";
+
+/// A word or phrase to avoid.
+struct Rule {
+    phrase: String,
+    instead: String,
+    /// Found at the beginning of doc comments only.
+    begin: bool,
+}
+
+/// Text between blank lines, with the line of each of its bytes.
+struct Paragraph {
+    text: String,
+    /// Byte offset where each line starts, with its number.
+    lines: Vec<(usize, usize)>,
+    /// Whether it begins a doc comment.
+    begins: bool,
+}
+
+impl Paragraph {
+    fn line(&self, at: usize) -> usize {
+        self.lines.iter().rev().find(|line| line.0 <= at).map_or(0, |line| line.1)
+    }
+}
+
+/// Prints what is found and the counts; fails if there is anything.
+pub fn run(arguments: &[String]) -> Result<ExitCode> {
+    let root = crate::root()?;
+    let list = std::fs::read_to_string(root.join("xtask/prose.txt"))?;
+    let rules = rules(&list).context("xtask/prose.txt")?;
+    let only: Vec<&String> = arguments.iter().filter(|argument| !argument.starts_with("--")).collect();
+    let quiet = arguments.iter().any(|argument| argument == "--count");
+    let mut counts: BTreeMap<String, usize> = BTreeMap::new();
+    for path in sources(&root)? {
+        let name = path.strip_prefix(&root)?.to_string_lossy().into_owned();
+        if !only.is_empty() && !only.iter().any(|part| name.contains(part.as_str())) {
+            continue;
+        }
+        let text = std::fs::read_to_string(&path).with_context(|| name.clone())?;
+        for (line, message, rule) in found(&text, name.ends_with(".md"), &rules) {
+            *counts.entry(rule).or_default() += 1;
+            if !quiet {
+                println!("{name}:{line}: {message}");
+            }
+        }
+    }
+    let mut counts: Vec<(String, usize)> = counts.into_iter().collect();
+    counts.sort_by_key(|row| std::cmp::Reverse(row.1));
+    counts.iter().for_each(|(rule, count)| println!("{count:6} {rule}"));
+    let all: usize = counts.iter().map(|row| row.1).sum();
+    println!("{all:6} in all");
+    Ok(if all == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+fn rules(list: &str) -> Result<Vec<Rule>> {
+    let (mut rules, mut begin) = (Vec::new(), None);
+    for line in list.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#')) {
+        match line {
+            "[begin]" => begin = Some(true),
+            "[phrase]" => begin = Some(false),
+            _ => {
+                let (phrase, instead) = line.split_once('|').context("a row is `phrase | instead`")?;
+                let begin = begin.context("a row stands below [begin] or [phrase]")?;
+                rules.push(Rule { phrase: phrase.trim().to_lowercase(), instead: instead.trim().into(), begin });
+            }
+        }
+    }
+    Ok(rules)
+}
+
+/// Rust sources and documents, in order. Lists of words and texts of others are left out.
+fn sources(root: &Path) -> Result<Vec<PathBuf>> {
+    let (mut all, mut folders) = (Vec::new(), vec![root.to_path_buf()]);
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder)? {
+            let path = entry?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if path.is_dir() && !name.starts_with('.') && name != "target" && name != "node_modules" {
+                folders.push(path);
+            } else if name.ends_with(".rs") || name.ends_with(".md") {
+                all.push(path);
+            }
+        }
+    }
+    all.sort();
+    Ok(all)
+}
+
+/// Lines, messages and rules of what is found in a file.
+fn found(text: &str, is_document: bool, rules: &[Rule]) -> Vec<(usize, String, String)> {
+    let mut all = Vec::new();
+    for (number, line) in text.lines().enumerate() {
+        let is_comment = !is_document && line.trim_start().starts_with("//");
+        if is_comment && line.chars().count() > MAX_COLUMNS && !line.contains("http") {
+            all.push((
+                number + 1,
+                format!("{} columns", line.chars().count()),
+                format!("more than {MAX_COLUMNS} columns"),
+            ));
+        }
+    }
+    let paragraphs = if is_document { document(text) } else { code(text) };
+    for paragraph in &paragraphs {
+        let lower = paragraph.text.to_lowercase();
+        for rule in rules {
+            for at in places(&lower, rule, paragraph.begins) {
+                let message = match rule.instead.as_str() {
+                    "" => format!("`{}`", rule.phrase),
+                    instead => format!("`{}`: write {instead}", rule.phrase),
+                };
+                let kind = if rule.begin { "begins: " } else { "" };
+                all.push((paragraph.line(at), message, format!("{kind}{}", rule.phrase)));
+            }
+        }
+    }
+    all.sort();
+    all
+}
+
+/// Byte offsets at which a rule matches whole words of a lower-case text.
+fn places(lower: &str, rule: &Rule, begins: bool) -> Vec<usize> {
+    let (phrase, open) = rule.phrase.strip_suffix('*').map_or((rule.phrase.as_str(), false), |phrase| (phrase, true));
+    let is_word = |c: Option<char>| c.is_some_and(|c| c.is_alphanumeric() || c == '_');
+    let whole = |&at: &usize| {
+        let end = at + phrase.len();
+        !is_word(lower[..at].chars().next_back()) && (open || !is_word(lower[end..].chars().next()))
+    };
+    if rule.begin {
+        return if begins && lower.starts_with(phrase) && whole(&0) { vec![0] } else { Vec::new() };
+    }
+    lower.match_indices(phrase).map(|found| found.0).filter(whole).collect()
+}
+
+/// Paragraphs of a document, without its code blocks and code spans.
+fn document(text: &str) -> Vec<Paragraph> {
+    let (mut all, mut fenced) = (vec![Paragraph::empty(false)], false);
+    for (number, line) in text.lines().enumerate() {
+        fenced ^= line.trim_start().starts_with("```");
+        if fenced || line.trim().is_empty() || line.starts_with("    ") || line.trim_start().starts_with("```") {
+            all.push(Paragraph::empty(false));
+        } else if let Some(last) = all.last_mut() {
+            last.push(number + 1, &without_code(line));
+        }
+    }
+    all
+}
+
+/// Comments and messages of Rust code.
+fn code(text: &str) -> Vec<Paragraph> {
+    let mut all: Vec<Paragraph> = Vec::new();
+    // Whether the line before is a comment, and of which kind.
+    let mut before = None;
+    for (number, line) in text.lines().enumerate() {
+        let trimmed = line.trim_start();
+        if trimmed.starts_with("//") {
+            let is_doc = trimmed.starts_with("///") || trimmed.starts_with("//!");
+            let content = trimmed.trim_start_matches(['/', '!']).trim();
+            if before != Some(is_doc) || content.is_empty() {
+                all.push(Paragraph::empty(is_doc && before != Some(true)));
+            }
+            if let Some(last) = all.last_mut() {
+                last.push(number + 1, &without_code(content));
+            }
+            before = Some(is_doc);
+            continue;
+        }
+        before = None;
+        if line.ends_with(KEEP) {
+            continue;
+        }
+        for literal in literals(line).into_iter().filter(|literal| literal.trim().contains(' ')) {
+            let mut paragraph = Paragraph::empty(false);
+            paragraph.push(number + 1, &without_code(&literal));
+            all.push(paragraph);
+        }
+    }
+    all
+}
+
+impl Paragraph {
+    fn empty(begins: bool) -> Self {
+        Paragraph { text: String::new(), lines: Vec::new(), begins }
+    }
+
+    fn push(&mut self, number: usize, line: &str) {
+        if !self.text.is_empty() {
+            self.text.push(' ');
+        }
+        self.lines.push((self.text.len(), number));
+        self.text.push_str(line.trim());
+    }
+}
+
+/// A line whose code spans are replaced by a mark.
+fn without_code(line: &str) -> String {
+    line.split('`').enumerate().map(|(i, part)| if i % 2 == 0 { part } else { "§" }).collect()
+}
+
+/// Contents of the string literals that a line holds or goes on with, as far as the line tells.
+fn literals(line: &str) -> Vec<String> {
+    let (mut all, mut current, mut escaped) = (Vec::new(), None::<String>, false);
+    for c in line.chars() {
+        match (&mut current, c) {
+            (None, '"') => current = Some(String::new()),
+            (None, _) => {}
+            (Some(_), '"') if !escaped => all.extend(current.take()),
+            (Some(text), _) => text.push(c),
+        }
+        escaped = c == '\\' && !escaped;
+    }
+    // A literal that goes on below is as good as its beginning.
+    all.extend(current);
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn messages(text: &str, is_document: bool) -> Vec<(usize, String)> {
+        let rules =
+            rules("[begin]\nwhat | a noun\n[phrase]\nno number | NaN\nlamp | light\nreckon* | compute").unwrap();
+        found(text, is_document, &rules).into_iter().map(|(line, _, rule)| (line, rule)).collect()
+    }
+
+    #[test]
+    fn beginnings_of_doc_comments_are_found() {
+        assert_eq!(messages("/// What it is.\nfn a() {}\n// What follows.\n", false), [(1, "begins: what".into())]);
+        assert_eq!(messages("/// A thing.\n///\n/// What else.\n", false), []);
+    }
+
+    #[test]
+    fn phrases_are_found_across_lines_and_in_messages() {
+        assert_eq!(messages("// It is no\n// number.\n", false), [(1, "no number".into())]);
+        assert_eq!(messages("let a = say(\"two lamp posts\"); // x\n", false), [(1, "lamp".into())]);
+        assert_eq!(messages("let lamp = \"lamp\"; // `lamp`\n", false), []);
+        assert_eq!(messages("A lamp.\n\n    lamp\n\n```\nlamp\n```\nIt reckons.\n", true).len(), 2);
+        assert_eq!(messages("let a = \"a lamp here\"; // prose: keep\n", false), []);
+    }
+
+    #[test]
+    fn long_comments_are_found() {
+        let long = format!("// {}\n", "a ".repeat(60));
+        assert_eq!(messages(&long, false), [(1, "more than 100 columns".into())]);
+    }
+}
