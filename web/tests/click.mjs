@@ -109,7 +109,14 @@ await test("settings", wide, async (page) => {
   await finished(page);
   await page.getByRole("tab", { name: "Camera and render" }).click();
   await page.getByRole("tab", { name: "Normals", exact: true }).click();
-  await finished(page);
+  // The picture turns from red, yellow and blue to that of upward normals.
+  await page.waitForFunction(() => {
+    const canvas = document.querySelector(".picture canvas");
+    const [r, g, b] = canvas
+      .getContext("2d")
+      .getImageData(0.1 * canvas.width, 0.98 * canvas.height, 1, 1).data;
+    return g > 200 && r < 160 && b < 160;
+  });
   await shot(page, "settings");
 });
 
