@@ -47,6 +47,7 @@ export function Explain({ store }: { store: Store }) {
             <strong>Click a pixel</strong> to see its ray, what the ray hits, and every term of its colour.
           </p>
           <p>Drag to go around, scroll to come nearer, hold Shift to slide.</p>
+          <p>In the text, drag a number with Alt held, and click a square to pick its colour.</p>
         </div>
       )}
     </div>
