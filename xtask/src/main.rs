@@ -14,6 +14,7 @@ mod hashes;
 mod lamps;
 mod long;
 mod manual;
+mod page;
 mod peers;
 mod prose;
 mod sheet;
@@ -88,6 +89,12 @@ const USAGE: &str = "Commands:
       pictures there.
   cargo xtask sheet [--samples 32] [--front] [--only TEXT] [--keep FOLDER]
       The sample models, rendered without any option, or from the front, beside the pictures that came with them, as sheets.
+  cargo xtask page [--check]
+      Build the page of `durer live` from web/ (Node and npm), which is committed in web/dist. --check: is it what the
+      sources build?
+  cargo xtask playground -o FOLDER
+      The same page as static files, over WebAssembly. It takes the target wasm32-unknown-unknown and the command
+      wasm-bindgen, of the version in crates/durer-wasm/Cargo.toml.
   cargo xtask manual
       Write the reference of the language, docs/language and its pictures, and the grammar for editors.
   cargo xtask prose [--count] [PATH ...]
@@ -124,6 +131,8 @@ fn main() -> anyhow::Result<ExitCode> {
         Some("lamps") => lamps::run(),
         Some("peers") => peers::run(&arguments[1..]),
         Some("manual") => manual::run(),
+        Some("page") => page::run(&arguments[1..]),
+        Some("playground") => page::playground(&arguments[1..]),
         Some("prose") => prose::run(&arguments[1..]),
         _ => {
             println!("{USAGE}");

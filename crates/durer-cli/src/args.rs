@@ -8,6 +8,7 @@ use crate::explain::ExplainArgs;
 use crate::farm::FarmArgs;
 use crate::info::InfoArgs;
 use crate::lesson::LessonArgs;
+use crate::live::LiveArgs;
 use crate::measure::MeasureArgs;
 use crate::merge::MergeArgs;
 use crate::photo::PhotoArgs;
@@ -37,6 +38,7 @@ pub enum Command {
     Render(Box<RenderCommand>),
     Explain(Box<ExplainArgs>),
     Lesson(Box<LessonArgs>),
+    Live(LiveArgs),
     Check(Box<CheckArgs>),
     Farm(FarmArgs),
     Merge(MergeArgs),

@@ -18,6 +18,7 @@ mod job;
 mod keep;
 mod large;
 mod lesson;
+mod live;
 mod manual;
 mod measure;
 mod merge;
@@ -75,6 +76,7 @@ pub fn run(words: Vec<OsString>, end: terminal::End) -> u8 {
             Command::Verify(args) => verify::run(&args),
             Command::Explain(args) => explain::run(&args),
             Command::Lesson(args) => lesson::run(&args),
+            Command::Live(args) => live::run(&args),
             Command::Course(args) => course::run(args.arguments, None),
             Command::Check(args) => check::run(&args),
             Command::Info(args) => info::run(&args),

@@ -32,7 +32,8 @@ fn commands(page: &str) -> Vec<String> {
     let text = std::fs::read_to_string(root().join(page)).unwrap();
     let lines = text.lines().filter_map(|line| line.strip_prefix("    "));
     let commands = lines.filter_map(|line| line.strip_prefix("cargo ").unwrap_or(line).strip_prefix("durer "));
-    commands.map(str::to_string).collect()
+    // A server runs until it is stopped; `durer-live` has own tests.
+    commands.filter(|command| !command.starts_with("live ")).map(str::to_string).collect()
 }
 
 /// Files of the reader that pages name but do not provide; `scene.txt` and `model.glb` are made

@@ -41,7 +41,7 @@ pub mod error;
 #[doc(hidden)]
 pub mod fuzz;
 pub mod job;
-#[cfg(feature = "fs")]
+#[cfg(feature = "load")]
 pub mod load;
 #[cfg(feature = "options")]
 pub mod options;
@@ -64,6 +64,6 @@ pub use durer_scene::{
 pub use durer_teach::{check, lesson, mistakes};
 pub use error::{Error, SceneError};
 pub use job::RenderJob;
-#[cfg(feature = "fs")]
+#[cfg(feature = "load")]
 pub use load::{LoadOptions, Loaded, load, load_text};
 pub use renderer::{Canceller, Picture, Renderer};

@@ -7,6 +7,7 @@ use durer_image::{Image, Layer};
 #[cfg(feature = "fs")]
 use durer_image::{Transfer, WriteOptions, format_for, save};
 use durer_render::render::{Control, Progress, ProgressiveRender, RenderError};
+use durer_render::world::World;
 use durer_scene::math::Color;
 #[cfg(feature = "fs")]
 use std::path::Path;
@@ -17,7 +18,8 @@ use std::sync::atomic::Ordering::Relaxed;
 /// [`Progress`].
 #[derive(Debug)]
 pub struct Renderer<'w> {
-    render: ProgressiveRender<'w>,
+    world: &'w World,
+    render: ProgressiveRender,
     control: Arc<Control>,
 }
 
@@ -49,7 +51,8 @@ impl<'w> Renderer<'w> {
     /// Those of [`Renderer::new`].
     pub fn with_control(scene: &'w CompiledScene, options: RenderJob, control: Control) -> Result<Self, Error> {
         let job = scene.job(&options)?;
-        Ok(Renderer { render: ProgressiveRender::new(scene.world(), &job)?, control: Arc::new(control) })
+        let (world, control) = (scene.world(), Arc::new(control));
+        Ok(Renderer { world, render: ProgressiveRender::new(world, &job)?, control })
     }
 
     /// Renders the next pass over all pixels; `None` once the picture is finished. Passes double
@@ -59,7 +62,7 @@ impl<'w> Renderer<'w> {
     ///
     /// [`Error::Render`], for example if the render was cancelled. Earlier passes are kept.
     pub fn next_pass(&mut self) -> Result<Option<Progress>, Error> {
-        Ok(self.render.next_pass(&self.control)?)
+        Ok(self.render.next_pass(self.world, &self.control)?)
     }
 
     /// Renders the remaining passes, and returns the picture.

@@ -354,14 +354,14 @@ pub(super) fn film_of(part: Crop) -> Film {
     Film::window(part.left, part.top, part.width, part.height)
 }
 
-/// Returns the passes of a shard, by their ends. With photons, each sample is a pass, since it
-/// traces its own photons.
-pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + use<>> {
+/// The passes of a shard, by the ends of their samples. Photons are made anew for each sample, and
+/// so each is a pass.
+pub(super) fn passes_of(job: &Job, shard: Shard) -> Passes<impl Iterator<Item = u32> + Send + use<>> {
     let samples = job.sampling.samples();
     let (from, to) = shard.range(samples);
     let singly = job.method.prepares() && job.sampling.is_local();
     let decides = job.adaptive.then(|| [half(samples), pilot(samples)]);
-    let ends: Box<dyn Iterator<Item = u32>> = match decides {
+    let ends: Box<dyn Iterator<Item = u32> + Send> = match decides {
         _ if singly => Box::new(1..=samples),
         Some([half, pilot]) => {
             let rest = passes::ends(samples).filter(move |&end| end > pilot);

@@ -18,29 +18,31 @@ pub struct Progress {
     pub rays: u64,
 }
 
-/// A render pass by pass, with the passes and the bits of [`PartialRender::render`].
-pub struct ProgressiveRender<'w> {
-    world: &'w World,
+/// A picture that is made pass by pass. Its passes are those of [`PartialRender::render`], and so are
+/// its bits.
+pub struct ProgressiveRender {
     part: PartialRender,
-    ends: Box<dyn Iterator<Item = u32> + 'w>,
+    ends: Box<dyn Iterator<Item = u32> + Send>,
+    /// Where the pass ends that was stopped.
+    stopped: Option<u32>,
     is_over: bool,
 }
 
-impl std::fmt::Debug for ProgressiveRender<'_> {
+impl std::fmt::Debug for ProgressiveRender {
     fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
         f.debug_struct("ProgressiveRender").field("job", self.part.job()).finish_non_exhaustive()
     }
 }
 
-impl<'w> ProgressiveRender<'w> {
-    /// Starts a render.
+impl ProgressiveRender {
+    /// Begins with a picture of which nothing is made.
     ///
     /// # Errors
     ///
     /// Those of [`PartialRender::new`].
-    pub fn new(world: &'w World, job: &Job) -> Result<Self, RenderError> {
+    pub fn new(world: &World, job: &Job) -> Result<Self, RenderError> {
         let part = PartialRender::new(world, job, Shard::WHOLE)?;
-        Ok(ProgressiveRender { world, part, ends: Box::new(passes_of(job, Shard::WHOLE)), is_over: false })
+        Ok(ProgressiveRender { part, ends: Box::new(passes_of(job, Shard::WHOLE)), stopped: None, is_over: false })
     }
 
     /// Renders the next pass; `None` once the picture is finished, or a pass took longer than
@@ -48,17 +50,17 @@ impl<'w> ProgressiveRender<'w> {
     ///
     /// # Errors
     ///
-    /// [`RenderError::Cancelled`] once [`Control::cancel`] is set, [`RenderError::Memory`], and
-    /// [`RenderError::Panic`]. Earlier work is kept, and a later call continues it.
-    pub fn next_pass(&mut self, control: &Control) -> Result<Option<Progress>, RenderError> {
+    /// [`RenderError::Cancelled`] once [`Control::cancel`] is set or [`Control::most_tiles`] are made,
+    /// [`RenderError::OtherScene`], [`RenderError::Memory`], and [`RenderError::Panic`]. What was made before is kept, and a later call goes on with it.
+    pub fn next_pass(&mut self, world: &World, control: &Control) -> Result<Option<Progress>, RenderError> {
         if self.is_over {
             return Ok(None);
         }
-        let Some(samples) = self.ends.next() else {
+        let Some(samples) = self.stopped.take().or_else(|| self.ends.next()) else {
             self.is_over = true;
             return Ok(None);
         };
-        let outcome = self.part.render_to(self.world, control, &mut |_, _| {}, Until::Pass(samples));
+        let outcome = self.part.render_to(world, control, &mut |_, _| {}, Until::Pass(samples));
         let failed = match outcome? {
             RenderOutcome::Finished => {
                 let all_samples = self.part.job().sampling.samples();
@@ -71,9 +73,8 @@ impl<'w> ProgressiveRender<'w> {
             RenderOutcome::Cancelled => RenderError::Cancelled,
             RenderOutcome::Panicked(panicked) => panicked.into(),
         };
-        // Repeat the pass for the blocks that lack it.
-        let rest = std::mem::replace(&mut self.ends, Box::new(std::iter::empty()));
-        self.ends = Box::new(std::iter::once(samples).chain(rest));
+        // The pass is repeated for the blocks that lack it.
+        self.stopped = Some(samples);
         Err(failed)
     }
 

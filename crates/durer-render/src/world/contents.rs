@@ -70,7 +70,16 @@ impl World {
         &mut self.contents
     }
 
-    /// Returns the hash of the contents. For a world as compiled, it is the hash of its sources:
+    /// Puts another camera into its place. The hash of the world is then that of the former with the
+    /// camera's: no object is looked at.
+    pub fn look_through(&mut self, camera: Camera) {
+        let text = format!("{} {camera:?}", self.digest());
+        self.contents.frame = CameraBasis::of(&camera, self.contents.camera_rules);
+        self.contents.camera = camera;
+        (self.source, self.edited) = (Digest::of(text.as_bytes()), false);
+    }
+
+    /// The hash of all that it holds. As it was compiled, that is the hash of what it was made of:
     /// description, files, rules.
     pub fn digest(&self) -> Digest {
         if !self.edited {

@@ -31,7 +31,8 @@ pub fn lights(world: &World) -> Vec<Value> {
     world.lights().iter().enumerate().take(16).map(one).collect()
 }
 
-fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
+/// Polylines that outline one object in world space; where it has no end, within a box.
+pub fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
     let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
     let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];
     let boxed = || object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds));

@@ -1,0 +1,93 @@
+//! One connection: a file, or a WebSocket.
+
+use crate::head::{self, Head};
+use crate::{Shared, page, socket};
+use std::io::{self, Read, Write};
+use std::net::{Shutdown, TcpStream};
+use std::time::Duration;
+
+/// How long a client may take for its head, and for taking what it asked for.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// Time and bytes for which a client is heard after its answer.
+const LINGER: Duration = Duration::from_secs(1);
+const MAX_REST: u64 = 1 << 20;
+
+/// Rights of pages, a header of every answer.
+const POLICY: &str = "default-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
+                      connect-src 'self' ws://127.0.0.1:* ws://localhost:*; worker-src 'self'; base-uri 'none'; \
+                      form-action 'none'; frame-ancestors 'none'";
+
+/// Says that there are too many connections.
+pub(crate) fn refuse(mut stream: &TcpStream) {
+    // Nobody waits for what a client does with it.
+    let _ = stream.set_nonblocking(true);
+    let _ = stream.write_all(b"HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n");
+}
+
+/// Answers the one request of a connection.
+pub(crate) fn serve(mut stream: TcpStream, shared: &Shared) {
+    // Whatever goes wrong, the client is gone or not worth an answer.
+    let _ = answer(&mut stream, shared);
+}
+
+fn answer(stream: &mut TcpStream, shared: &Shared) -> io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_nodelay(true)?;
+    stream.set_read_timeout(Some(PATIENCE))?;
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let head = match head::read(stream) {
+        Ok(head) => head,
+        Err(error) if error.kind() == io::ErrorKind::InvalidData => {
+            return send(stream, "400 Bad Request", "text/plain", b"this is no request\n");
+        }
+        Err(error) => return Err(error),
+    };
+    if !head.is_local() {
+        return send(stream, "403 Forbidden", "text/plain", b"this server answers pages of its own machine alone\n");
+    }
+    let Some(path) = head.path_behind(&shared.token) else {
+        return send(stream, "404 Not Found", "text/plain", b"there is nothing here\n");
+    };
+    if head.method != "GET" {
+        return send(stream, "405 Method Not Allowed", "text/plain", b"\n");
+    }
+    if path == "socket" {
+        return upgrade(stream, &head, shared);
+    }
+    match page::file(path) {
+        Some((_, kind)) if path.is_empty() || path == "index.html" => send(stream, "200 OK", kind, &page::index()),
+        Some((bytes, kind)) => send(stream, "200 OK", kind, bytes),
+        None => send(stream, "404 Not Found", "text/plain", b"there is nothing here\n"),
+    }
+}
+
+fn upgrade(stream: &mut TcpStream, head: &Head, shared: &Shared) -> io::Result<()> {
+    // Scripts of other pages always send an origin; programs without one are not pages.
+    let (true, Some(key), Some(_)) = (head.upgrade, &head.key, &head.origin) else {
+        return send(stream, "426 Upgrade Required", "text/plain", b"this is a WebSocket\n");
+    };
+    let accept = tungstenite::handshake::derive_accept_key(key.as_bytes());
+    let answer = format!(
+        "HTTP/1.1 101 Switching Protocols\r\nUpgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Accept: {accept}\r\n\r\n"
+    );
+    stream.write_all(answer.as_bytes())?;
+    socket::serve(stream.try_clone()?, head.rest.clone(), shared);
+    Ok(())
+}
+
+fn send(stream: &mut TcpStream, status: &str, kind: &str, body: &[u8]) -> io::Result<()> {
+    let head = format!(
+        "HTTP/1.1 {status}\r\nContent-Type: {kind}\r\nContent-Length: {}\r\nCache-Control: no-store\r\n\
+         X-Content-Type-Options: nosniff\r\nReferrer-Policy: no-referrer\r\nContent-Security-Policy: {POLICY}\r\n\
+         Connection: close\r\n\r\n",
+        body.len()
+    );
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(body)?;
+    stream.flush()?;
+    // Bytes that nobody has read would reset the connection, and the answer would be lost with it.
+    stream.shutdown(Shutdown::Write)?;
+    stream.set_read_timeout(Some(LINGER))?;
+    io::copy(&mut stream.take(MAX_REST), &mut io::sink()).map(|_| ())
+}

@@ -1,0 +1,135 @@
+//! The head of a request, and whether it may be answered.
+
+use std::io::{self, Read};
+use std::net::TcpStream;
+
+/// The most bytes of a head.
+const MAX_HEAD: usize = 8 << 10;
+
+/// A request without its body, of which none is read.
+#[derive(Debug, Default, PartialEq)]
+pub(crate) struct Head {
+    pub method: String,
+    pub path: String,
+    pub host: Option<String>,
+    pub origin: Option<String>,
+    pub upgrade: bool,
+    pub key: Option<String>,
+    /// Bytes that came behind the head.
+    pub rest: Vec<u8>,
+}
+
+/// Reads the head of a request.
+pub(crate) fn read(stream: &mut TcpStream) -> io::Result<Head> {
+    let (mut bytes, mut some) = (Vec::new(), [0_u8; 1024]);
+    loop {
+        let count = stream.read(&mut some)?;
+        if count == 0 {
+            return Err(io::ErrorKind::UnexpectedEof.into());
+        }
+        bytes.extend_from_slice(&some[..count]);
+        if let Some(head) = parse(&bytes)? {
+            return Ok(head);
+        }
+        if bytes.len() > MAX_HEAD {
+            return Err(io::Error::new(io::ErrorKind::InvalidData, "the head is too long"));
+        }
+    }
+}
+
+/// A head, if all of it is there.
+pub(crate) fn parse(bytes: &[u8]) -> io::Result<Option<Head>> {
+    let invalid = |error| io::Error::new(io::ErrorKind::InvalidData, error);
+    let mut headers = [httparse::EMPTY_HEADER; 64];
+    let mut request = httparse::Request::new(&mut headers);
+    let httparse::Status::Complete(length) = request.parse(bytes).map_err(invalid)? else { return Ok(None) };
+    let mut head = Head {
+        method: request.method.unwrap_or_default().into(),
+        path: request.path.unwrap_or_default().into(),
+        rest: bytes[length..].to_vec(),
+        ..Head::default()
+    };
+    for header in request.headers {
+        let value = String::from_utf8_lossy(header.value).into_owned();
+        match header.name.to_ascii_lowercase().as_str() {
+            // One who sends two wants to be misunderstood.
+            "host" if head.host.is_some() => return Err(io::ErrorKind::InvalidData.into()),
+            "host" => head.host = Some(value),
+            "origin" => head.origin = Some(value),
+            "upgrade" => head.upgrade = value.eq_ignore_ascii_case("websocket"),
+            "sec-websocket-key" => head.key = Some(value),
+            _ => {}
+        }
+    }
+    Ok(Some(head))
+}
+
+impl Head {
+    /// Returns true if it comes from a page of this machine: a page of another name may be resolved to the
+    /// loopback
+    /// interface, but still sends its own name. The port differs behind `ssh -L`.
+    pub fn is_local(&self) -> bool {
+        let Some(host) = &self.host else { return false };
+        let same = |origin: &String| origin.strip_prefix("http://").is_some_and(|origin| origin == host);
+        is_loopback(host) && self.origin.as_ref().is_none_or(same)
+    }
+
+    /// The path behind the token; `None` for another token.
+    pub fn path_behind(&self, token: &str) -> Option<&str> {
+        let path = self.path.split(['?', '#']).next()?.strip_prefix('/')?;
+        let (found, rest) = path.split_once('/')?;
+        // All bytes are compared, so that time tells nothing.
+        let differ = found.bytes().zip(token.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+        (found.len() == token.len() && differ == 0).then_some(rest)
+    }
+}
+
+fn is_loopback(host: &str) -> bool {
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if !port.is_empty() && port.bytes().all(|digit| digit.is_ascii_digit()) => name,
+        _ => host,
+    };
+    ["localhost", "127.0.0.1", "[::1]"].contains(&name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn head(lines: &str) -> Head {
+        parse(format!("GET /secret/socket HTTP/1.1\r\n{lines}\r\n").as_bytes()).unwrap().unwrap()
+    }
+
+    #[test]
+    fn only_pages_of_this_machine_are_answered() {
+        assert!(head("Host: 127.0.0.1:8000\r\n").is_local());
+        assert!(head("Host: localhost:9\r\nOrigin: http://localhost:9\r\n").is_local());
+        for lines in [
+            "",
+            "Host: evil.example\r\n",
+            "Host: localhost.evil.example\r\n",
+            "Host: 127.0.0.1:8000\r\nOrigin: http://evil.example\r\n",
+            "Host: 127.0.0.1:8000\r\nOrigin: http://127.0.0.1:8001\r\n",
+            "Host: 127.0.0.1:8000\r\nOrigin: null\r\n",
+            "Host: 127.0.0.1.evil.example:80\r\n",
+        ] {
+            assert!(!head(lines).is_local(), "{lines:?}");
+        }
+    }
+
+    #[test]
+    fn a_path_needs_the_whole_token() {
+        let head = head("Host: localhost\r\n");
+        assert_eq!(head.path_behind("secret"), Some("socket"));
+        for token in ["secre", "secret1", "sfcret", ""] {
+            assert_eq!(head.path_behind(token), None, "{token:?}");
+        }
+    }
+
+    #[test]
+    fn heads_that_are_none_are_refused() {
+        assert_eq!(parse(b"GET / HTTP/1.1\r\nHost: a").unwrap(), None);
+        assert!(parse(b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03").is_err());
+        assert!(parse(b"GET / HTTP/1.1\r\nHost: a\r\nHost: b\r\n\r\n").is_err());
+    }
+}

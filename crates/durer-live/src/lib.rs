@@ -1,0 +1,116 @@
+//! A server for one who looks at a scene: the page, and a WebSocket to a [`durer_session::Host`].
+//!
+//! It listens on the loopback interface alone. Every path begins with a random token, `Host` and
+//! `Origin` must
+//! name the loopback interface, and no file but those of the page can be had.
+
+mod connection;
+mod head;
+mod page;
+mod socket;
+
+use durer_session::Start;
+use std::io;
+use std::net::{Ipv4Addr, SocketAddr, TcpListener};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering::Relaxed};
+use std::time::Duration;
+
+/// Maximum number of open connections.
+const MAX_CONNECTIONS: usize = 48;
+/// How often it is looked whether to stop.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A server that listens.
+#[derive(Debug)]
+pub struct Server {
+    listener: TcpListener,
+    shared: Arc<Shared>,
+}
+
+/// State shared by the connections.
+#[derive(Debug)]
+pub(crate) struct Shared {
+    pub token: String,
+    pub start: Start,
+    pub open: AtomicUsize,
+    pub stop: AtomicBool,
+}
+
+impl Server {
+    /// Listens on a port, or on any if it is 0, with a file to open.
+    ///
+    /// # Errors
+    ///
+    /// The port is taken, or the system gives no random numbers.
+    pub fn bind(port: u16, file: Option<PathBuf>) -> io::Result<Server> {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, port))?;
+        listener.set_nonblocking(true)?;
+        let mut random = [0_u8; 16];
+        getrandom::fill(&mut random).map_err(io::Error::other)?;
+        let token = random.iter().map(|byte| format!("{byte:02x}")).collect();
+        let shared = Shared { token, start: Start { file }, open: AtomicUsize::new(0), stop: AtomicBool::new(false) };
+        Ok(Server { listener, shared: Arc::new(shared) })
+    }
+
+    /// Address of the page.
+    ///
+    /// # Errors
+    ///
+    /// The system does not tell the port.
+    pub fn address(&self) -> io::Result<String> {
+        let SocketAddr::V4(address) = self.listener.local_addr()? else { return Err(io::ErrorKind::Other.into()) };
+        Ok(format!("http://{address}/{}/", self.shared.token))
+    }
+
+    /// Serves until `stop` says so.
+    ///
+    /// # Errors
+    ///
+    /// Errors of the listener.
+    pub fn run(&self, stop: impl Fn() -> bool) -> io::Result<()> {
+        while !stop() {
+            match self.listener.accept() {
+                Ok((stream, _)) => {
+                    let shared = self.shared.clone();
+                    let held = Held::new(&shared);
+                    if held.is_none() {
+                        connection::refuse(&stream);
+                        continue;
+                    }
+                    // Without a thread the connection is dropped, and the browser tries again.
+                    let _ =
+                        std::thread::Builder::new().name("durer-live".into()).stack_size(64 << 20).spawn(move || {
+                            let _held = held;
+                            connection::serve(stream, &shared);
+                        });
+                }
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => {
+                    std::thread::sleep(LOOK.min(Duration::from_millis(5)))
+                }
+                // One that was reset before it was accepted.
+                Err(error) if error.kind() == io::ErrorKind::ConnectionAborted => {}
+                Err(error) => return Err(error),
+            }
+        }
+        self.shared.stop.store(true, Relaxed);
+        Ok(())
+    }
+}
+
+/// A place among the open connections.
+struct Held(Arc<Shared>);
+
+impl Held {
+    fn new(shared: &Arc<Shared>) -> Option<Held> {
+        let held = Held(shared.clone());
+        (shared.open.fetch_add(1, Relaxed) < MAX_CONNECTIONS).then_some(held)
+    }
+}
+
+impl Drop for Held {
+    fn drop(&mut self) {
+        self.0.open.fetch_sub(1, Relaxed);
+    }
+}

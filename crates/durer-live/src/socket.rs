@@ -1,0 +1,82 @@
+//! A WebSocket to a host of sessions.
+
+use crate::Shared;
+use durer_session::{Clock, Host};
+use std::io;
+use std::net::TcpStream;
+use std::sync::Arc;
+use std::sync::atomic::Ordering::Relaxed;
+use std::time::{Duration, Instant};
+use tungstenite::protocol::{Role, WebSocketConfig};
+use tungstenite::{Error, Message, WebSocket};
+
+/// The largest message of a page: a model that is dropped.
+const MAX_MESSAGE: usize = 360 << 20;
+/// How long it is waited for a message when there is nothing to do.
+const IDLE: Duration = Duration::from_millis(250);
+/// How long a page may take to read a message before it counts as gone.
+const PATIENCE: Duration = Duration::from_secs(20);
+
+/// Answers messages, and works in between, until the page is gone.
+pub(crate) fn serve(stream: TcpStream, rest: Vec<u8>, shared: &Shared) {
+    // A connection that ends is expected.
+    let _ = talk(stream, rest, shared);
+}
+
+fn talk(stream: TcpStream, rest: Vec<u8>, shared: &Shared) -> Result<(), Error> {
+    stream.set_write_timeout(Some(PATIENCE))?;
+    let config = WebSocketConfig::default().max_message_size(Some(MAX_MESSAGE)).max_frame_size(Some(MAX_MESSAGE));
+    let mut socket = WebSocket::from_partially_read(stream, rest, Role::Server, Some(config));
+    let start = Instant::now();
+    let clock: Clock = Arc::new(move || 1000.0 * start.elapsed().as_secs_f64());
+    let mut host = Host::new(shared.start.clone(), clock);
+    let mut looked = Instant::now();
+    while !shared.stop.load(Relaxed) {
+        let mut failed = None;
+        while let Some(message) = next(&mut socket, host.is_busy())? {
+            match message {
+                Message::Text(text) => host.receive(text.as_str(), &mut |bytes| send(&mut socket, bytes, &mut failed)),
+                Message::Close(_) => return Ok(()),
+                _ => {}
+            }
+            if let Some(error) = failed {
+                return Err(error);
+            }
+        }
+        host.step(&mut |bytes| send(&mut socket, bytes, &mut failed));
+        if looked.elapsed() > IDLE {
+            looked = Instant::now();
+            host.look_at_disk(&mut |bytes| send(&mut socket, bytes, &mut failed));
+        }
+        if let Some(error) = failed {
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+/// The next message, if there is one, or if one comes soon.
+fn next(socket: &mut WebSocket<TcpStream>, at_once: bool) -> Result<Option<Message>, Error> {
+    if at_once {
+        socket.get_ref().set_nonblocking(true)?;
+    } else {
+        socket.get_ref().set_read_timeout(Some(IDLE))?;
+    }
+    let read = socket.read();
+    if at_once {
+        socket.get_ref().set_nonblocking(false)?;
+    }
+    match read {
+        Ok(message) => Ok(Some(message)),
+        Err(Error::Io(error)) if matches!(error.kind(), io::ErrorKind::WouldBlock | io::ErrorKind::TimedOut) => {
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
+}
+
+fn send(socket: &mut WebSocket<TcpStream>, bytes: Vec<u8>, failed: &mut Option<Error>) {
+    if failed.is_none() {
+        *failed = socket.send(Message::Binary(bytes.into())).err();
+    }
+}

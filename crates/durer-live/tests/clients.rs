@@ -1,0 +1,201 @@
+//! Clients of all kinds: pages, programs that are none, and those that mean harm.
+
+use durer_live::Server;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
+use std::thread::JoinHandle;
+use std::time::Duration;
+use tungstenite::client::IntoClientRequest;
+use tungstenite::{Message, WebSocket};
+
+/// A server that runs while this lives.
+struct Running {
+    address: String,
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Running {
+    fn new(file: Option<PathBuf>) -> Running {
+        let server = Server::bind(0, file).unwrap();
+        let (address, stop) = (server.address().unwrap(), Arc::new(AtomicBool::new(false)));
+        let stopped = stop.clone();
+        let thread = Some(std::thread::spawn(move || server.run(|| stopped.load(Relaxed)).unwrap()));
+        Running { address, stop, thread }
+    }
+
+    fn host(&self) -> &str {
+        self.address["http://".len()..].split('/').next().unwrap()
+    }
+
+    fn path(&self) -> &str {
+        &self.address["http://".len() + self.host().len()..]
+    }
+
+    /// The answer to some bytes.
+    fn raw(&self, request: &[u8]) -> String {
+        let mut stream = TcpStream::connect(self.host()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(20))).unwrap();
+        // Those that are refused early hear no more.
+        let _ = stream.write_all(request);
+        let mut answer = Vec::new();
+        let _ = stream.read_to_end(&mut answer);
+        String::from_utf8_lossy(&answer).into_owned()
+    }
+
+    fn get(&self, path: &str, headers: &str) -> String {
+        self.raw(format!("GET {path} HTTP/1.1\r\n{headers}\r\n").as_bytes())
+    }
+
+    fn connect(&self, origin: &str) -> Result<WebSocket<TcpStream>, String> {
+        let address = format!("ws://{}{}socket", self.host(), self.path());
+        let mut request = address.into_client_request().unwrap();
+        request.headers_mut().insert("Origin", origin.parse().unwrap());
+        let stream = TcpStream::connect(self.host()).unwrap();
+        stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
+        tungstenite::client(request, stream).map(|found| found.0).map_err(|error| error.to_string())
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.stop.store(true, Relaxed);
+        let _ = self.thread.take().map(JoinHandle::join);
+    }
+}
+
+/// The next answer of a kind.
+fn hear(socket: &mut WebSocket<TcpStream>, kind: &str) -> serde_json::Value {
+    loop {
+        let Message::Binary(bytes) = socket.read().unwrap() else { continue };
+        let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
+        let answer: serde_json::Value = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+        if answer["event"]["kind"] == kind {
+            return answer["event"].clone();
+        }
+    }
+}
+
+fn ask(socket: &mut WebSocket<TcpStream>, request: serde_json::Value) {
+    let ask = serde_json::json!({ "session": 1, "id": 1, "request": request });
+    socket.send(Message::text(ask.to_string())).unwrap();
+}
+
+#[test]
+fn the_page_is_served_behind_its_token_alone() {
+    let server = Running::new(None);
+    let host = format!("Host: {}\r\n", server.host());
+    let page = server.get(server.path(), &host);
+    assert!(page.starts_with("HTTP/1.1 200 OK") && page.contains("durer-server"), "{page}");
+    assert!(page.contains("Content-Security-Policy: default-src 'self'"));
+    let path = server.path().to_string();
+    for (path, headers, status) in [
+        ("/", host.clone(), "404"),
+        ("/00000000000000000000000000000000/", host.clone(), "404"),
+        (&path[..path.len() - 1], host.clone(), "404"),
+        (&format!("{path}../Cargo.toml"), host.clone(), "404"),
+        (&format!("{path}..%2fCargo.toml"), host.clone(), "404"),
+        (&format!("{path}/etc/passwd"), host.clone(), "404"),
+        (&path, "Host: evil.example\r\n".into(), "403"),
+        (&path, String::new(), "403"),
+        (&path, format!("{host}Origin: http://evil.example\r\n"), "403"),
+        (&format!("{path}socket"), host.clone(), "426"),
+    ] {
+        let answer = server.get(path, &headers);
+        assert!(answer.starts_with(&format!("HTTP/1.1 {status}")), "{path} {headers}: {answer}");
+    }
+    assert!(server.raw(b"POST / HTTP/1.1\r\nHost: localhost\r\n\r\n").starts_with("HTTP/1.1 404"));
+    assert!(server.raw(b"\x16\x03\x01\x00\xff\x01\r\n\r\n").starts_with("HTTP/1.1 400"));
+    assert!(server.raw(&[b'a'; 20_000]).starts_with("HTTP/1.1 400"));
+}
+
+#[test]
+fn a_page_opens_edits_and_saves_its_scene_and_hears_of_conflicts() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("scene.txt");
+    let text = "PerspectiveCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }\n\
+                Materials { PhongMaterial { diffuseColor 1 0 0 } }\nGroup { MaterialIndex 0 Sphere { center 0 0 0 radius 1 } }\n";
+    std::fs::write(&file, text).unwrap();
+    let server = Running::new(Some(file.clone()));
+    let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
+    ask(&mut socket, serde_json::json!({ "kind": "open", "name": "", "text": null }));
+    assert_eq!(hear(&mut socket, "opened")["text"], text);
+    assert_eq!(hear(&mut socket, "picture")["head"]["full_width"], 512);
+    let blue = text.replace("1 0 0 } }", "0 0 1 } }");
+    ask(&mut socket, serde_json::json!({ "kind": "edit", "text": blue }));
+    ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
+    hear(&mut socket, "saved");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
+    // Another program writes.
+    std::fs::write(&file, format!("# mine\n{text}")).unwrap();
+    let changed = hear(&mut socket, "text");
+    assert_eq!(
+        (changed["from_disk"].as_bool(), changed["text"].as_str()),
+        (Some(true), Some(&*format!("# mine\n{text}")))
+    );
+    ask(&mut socket, serde_json::json!({ "kind": "save", "force": false }));
+    hear(&mut socket, "conflict");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), format!("# mine\n{text}"));
+    ask(&mut socket, serde_json::json!({ "kind": "save", "force": true }));
+    hear(&mut socket, "saved");
+    assert_eq!(std::fs::read_to_string(&file).unwrap(), blue);
+}
+
+#[test]
+fn scenes_of_pages_read_no_file_outside_the_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("secret.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let inner = folder.path().join("inner");
+    std::fs::create_dir(&inner).unwrap();
+    let file = inner.join("scene.txt");
+    std::fs::write(&file, "").unwrap();
+    let server = Running::new(Some(file));
+    let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
+    ask(&mut socket, serde_json::json!({ "kind": "open", "name": "", "text": null }));
+    hear(&mut socket, "scene");
+    for name in ["../secret.obj", folder.path().join("secret.obj").to_str().unwrap()] {
+        let text = format!(
+            "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }}\nGroup {{ TriangleMesh {{ obj_file {name} }} }}\n"
+        );
+        ask(&mut socket, serde_json::json!({ "kind": "edit", "text": text }));
+        let scene = hear(&mut socket, "scene");
+        assert!(scene["contents"].is_null(), "{name}: {scene}");
+        // Nor does another name of the scene lead there.
+        let elsewhere = folder.path().join("scene.txt");
+        ask(&mut socket, serde_json::json!({ "kind": "open", "name": elsewhere, "text": text.replace("../", "") }));
+        let scene = hear(&mut socket, "scene");
+        assert!(scene["contents"].is_null(), "{name}: {scene}");
+    }
+}
+
+#[test]
+fn foreign_origins_and_wrong_tokens_get_no_socket() {
+    let server = Running::new(None);
+    assert!(server.connect("http://evil.example").is_err());
+    assert!(server.connect("null").is_err());
+    let mut socket = server.connect(&format!("http://{}", server.host())).unwrap();
+    // Nonsense is answered, and the socket stays.
+    socket.send(Message::text("{")).unwrap();
+    hear(&mut socket, "refused");
+    socket.send(Message::binary(vec![1, 2, 3])).unwrap();
+    ask(&mut socket, serde_json::json!({ "kind": "language" }));
+    assert!(hear(&mut socket, "language")["words"].as_array().unwrap().len() > 30);
+}
+
+#[test]
+fn many_idle_connections_keep_nobody_out_for_long() {
+    let server = Running::new(None);
+    let host = format!("Host: {}\r\n", server.host());
+    let idle: Vec<TcpStream> = (0..200).filter_map(|_| TcpStream::connect(server.host()).ok()).collect();
+    // It is refused, or reset before it hears so.
+    assert!(!server.get(server.path(), &host).starts_with("HTTP/1.1 200"));
+    drop(idle);
+    let answered = (0..100).any(|_| {
+        std::thread::sleep(Duration::from_millis(20));
+        server.get(server.path(), &host).starts_with("HTTP/1.1 200")
+    });
+    assert!(answered);
+}

@@ -1,0 +1,20 @@
+//! From light to the pixels of a page.
+
+use durer::image::{Display, Layer, Tone, Transfer};
+
+/// How light becomes eight bits: as the command does it with `--exposure` and `--tone`.
+pub(crate) fn display(stops: f32, tone: &str) -> Display {
+    let tone = Tone::from_name(tone).unwrap_or_default();
+    Display { exposure: durer::math::fp::pow(2.0, stops), tone, transfer: Transfer::Srgb }
+}
+
+/// Four bytes a pixel: red, green, blue, coverage.
+pub(crate) fn pixels(layer: &Layer, display: &Display) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(4 * layer.image.pixels.len());
+    let alpha = |i: usize| layer.coverage.as_ref().map_or(255, |coverage| (255.0 * coverage[i] + 0.5) as u8);
+    for (i, color) in layer.image.pixels.iter().enumerate() {
+        let [r, g, b] = display.encode_pixel(*color);
+        bytes.extend([r, g, b, alpha(i)]);
+    }
+    bytes
+}

@@ -1,0 +1,84 @@
+//! Several sessions behind one line.
+
+use crate::protocol::{Answer, Ask, Event, Request};
+use crate::session::{Clock, Session, Start};
+use std::collections::BTreeMap;
+
+/// Maximum number of sessions; each has a scene in memory.
+const MAX_SESSIONS: usize = 64;
+
+/// The sessions of a page.
+pub struct Host {
+    start: Start,
+    clock: Clock,
+    sessions: BTreeMap<u32, Session>,
+    /// The session that was asked last: its coarse pictures come first.
+    latest: u32,
+    /// The session that worked last: the others have their turns before it.
+    worked: u32,
+}
+
+impl Host {
+    /// A host without sessions.
+    pub fn new(start: Start, clock: Clock) -> Self {
+        Host { start, clock, sessions: BTreeMap::new(), latest: 0, worked: 0 }
+    }
+
+    /// Answers a message, which is the JSON of an [`Ask`].
+    pub fn receive(&mut self, message: &str, send: &mut dyn FnMut(Vec<u8>)) {
+        let Ask { session, id, request } = match serde_json::from_str(message) {
+            Ok(ask) => ask,
+            Err(error) => {
+                let event = Event::Refused { why: format!("this is not a request: {error}") };
+                return send(Answer { session: 0, id: 0, event }.encode(&[]));
+            }
+        };
+        if matches!(request, Request::Close) {
+            self.sessions.remove(&session);
+            return;
+        }
+        let mut say = |(event, payload): (Event, Vec<u8>)| send(Answer { session, id, event }.encode(&payload));
+        if !self.sessions.contains_key(&session) && self.sessions.len() >= MAX_SESSIONS {
+            return say((Event::Refused { why: "there are too many sessions".into() }, Vec::new()));
+        }
+        self.latest = session;
+        let (start, clock) = (&self.start, &self.clock);
+        let found = self.sessions.entry(session).or_insert_with(|| Session::new(start.clone(), clock.clone()));
+        #[cfg(feature = "fs")]
+        if let Request::Edit { text } = &request {
+            found.take_over(text);
+        }
+        found.handle(request, &mut say);
+    }
+
+    /// Returns true if there is work for [`Host::step`].
+    pub fn is_busy(&self) -> bool {
+        self.sessions.values().any(Session::is_busy)
+    }
+
+    /// Does some milliseconds of work: for a session of which nothing is seen yet, best the one
+    /// that was asked last;
+    /// else for each in turn.
+    pub fn step(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
+        let Some(session) = self.next() else { return };
+        self.worked = session;
+        let Some(found) = self.sessions.get_mut(&session) else { return };
+        found.step(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
+    }
+
+    /// The session whose turn it is.
+    fn next(&self) -> Option<u32> {
+        let urgent = |id: &u32| self.sessions.get(id).is_some_and(Session::is_urgent);
+        let first = [self.latest].into_iter().chain(self.sessions.keys().copied()).find(urgent);
+        let turns = self.sessions.range(self.worked.saturating_add(1)..).chain(self.sessions.range(..=self.worked));
+        first.or_else(|| turns.filter(|(_, session)| session.is_busy()).map(|(id, _)| *id).next())
+    }
+
+    /// Tells pages of files that were changed on disk.
+    #[cfg(feature = "fs")]
+    pub fn look_at_disk(&mut self, send: &mut dyn FnMut(Vec<u8>)) {
+        for (&session, found) in &mut self.sessions {
+            found.look_at_disk(&mut |(event, payload)| send(Answer { session, id: 0, event }.encode(&payload)));
+        }
+    }
+}

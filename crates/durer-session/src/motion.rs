@@ -1,0 +1,169 @@
+//! Moving a camera.
+
+use crate::protocol::{CameraState, FieldState, Motion};
+use durer::camera::{Camera, Projection};
+use durer::describe::{DescribedList, Field, Rule, Value};
+use durer::dialect::Dialect;
+use durer::math::{Aabb, Vec3};
+use durer::world::World;
+use glam::Quat;
+
+/// How near to its axis a camera that orbits may come, in radians.
+const POLE: f32 = 0.02;
+
+/// Distance of what a camera looks at.
+pub(crate) fn distance(world: &World) -> f32 {
+    let frame = world.camera_frame();
+    let ray = durer::math::Ray::new(frame.eye, frame.forward);
+    let bounds = world.bounds();
+    let center = if bounds.is_empty() { 1.0 } else { (bounds.center() - frame.eye).dot(frame.forward) };
+    let hit = world.closest(&ray, &mut ()).map(|hit| hit.t).filter(|t| t.is_finite());
+    // A floor at the horizon is nothing to go around.
+    let size = if bounds.is_empty() { f32::INFINITY } else { bounds.size().length() };
+    let near = hit.filter(|&t| t <= center.max(0.0) + size);
+    near.unwrap_or(center).max(1e-3 * frame.eye.length().max(1.0))
+}
+
+/// Number of the field of a name in code.
+fn field(camera: &Camera, name: &str) -> Option<usize> {
+    camera.fields().iter().position(|field| field.name == name)
+}
+
+fn set(camera: &mut Camera, name: &str, value: Vec3) {
+    if let Some(at) = field(camera, name) {
+        camera.set(at, Value::Vec3(value));
+    }
+}
+
+/// The camera after a motion, and the distance of what it looks at.
+pub(crate) fn moved(world: &World, written: &Camera, mut distance: f32, motion: Motion) -> (Camera, f32) {
+    let frame = world.camera_frame();
+    let (mut eye, mut forward) = (frame.eye, frame.forward.normalize_or(Vec3::NEG_Z));
+    let axis = world.camera().pose().up.normalize_or(Vec3::Y);
+    let (right, up) = (frame.right.normalize_or(Vec3::X), frame.up.normalize_or(Vec3::Y));
+    let target = eye + distance * forward;
+    let height = 2.0 * distance * frame.half_width.min(4.0) as f32;
+    match motion {
+        Motion::Orbit { right: x, up: y } => {
+            forward = turned(forward, axis, right, -x, -y);
+            eye = target - distance * forward;
+        }
+        Motion::Turn { right: x, up: y } => forward = turned(forward, axis, right, -x, y),
+        Motion::Pan { right: x, up: y } => eye -= height * (x * right + y * up),
+        Motion::Dolly { factor } => {
+            distance *= factor.clamp(0.01, 100.0);
+            eye = target - distance * forward;
+        }
+        Motion::Walk { forward: z, right: x, up: y } => {
+            eye += distance.min(10.0 * height) * (z * forward + x * right + y * up);
+        }
+        Motion::Home => {
+            return (written.clone(), distance);
+        }
+        Motion::Frame => {
+            let bounds = world.bounds();
+            if !bounds.is_empty() {
+                distance = reach(&bounds) / frame.half_width.clamp(0.05, 1.0) as f32;
+                eye = bounds.center() - distance * forward;
+            }
+        }
+    }
+    let mut camera = world.camera().clone();
+    if eye.is_finite() && forward.is_finite() {
+        set(&mut camera, "center", eye);
+        set(&mut camera, "direction", forward);
+    }
+    (camera, distance)
+}
+
+fn reach(bounds: &Aabb) -> f32 {
+    0.55 * bounds.size().length().max(1e-3)
+}
+
+/// A direction turned about an axis, and towards or away from it.
+fn turned(forward: Vec3, axis: Vec3, right: Vec3, around: f32, towards: f32) -> Vec3 {
+    let angle = forward.angle_between(axis);
+    let limit = std::f32::consts::PI - POLE;
+    // A camera that looks along its axis already stays where it is.
+    let wanted = (angle - towards).clamp(POLE.min(angle), limit.max(angle));
+    let pitched = Quat::from_axis_angle(right, angle - wanted) * forward;
+    (Quat::from_axis_angle(axis, around) * pitched).normalize_or(forward)
+}
+
+/// Sets the numbers of a field, by its word in the scene language.
+pub(crate) fn set_field(camera: &mut Camera, word: &str, numbers: &[f32]) -> Result<(), String> {
+    let fields = camera.fields();
+    let at = fields.iter().position(|field| spelled(field) == word).ok_or_else(|| format!("no field `{word}`"))?;
+    let value = match (camera.get(at), numbers) {
+        (Some(Value::Vec3(_)), &[x, y, z]) => Value::Vec3(Vec3::new(x, y, z)),
+        (Some(Value::Int(_)), &[x]) if x >= 0.0 => Value::Int(x as u32),
+        (_, &[x]) => Value::Float(x),
+        _ => return Err(format!("`{word}` has another form")),
+    };
+    fields[at].rule.validate(&value).map_err(|wrong| format!("`{word}` {wrong}"))?;
+    let mut changed = camera.clone();
+    changed.set(at, value);
+    changed.validate()?;
+    *camera = changed;
+    Ok(())
+}
+
+fn spelled(field: &Field) -> &'static str {
+    field.spelling(Dialect::Durer).unwrap_or(field.name)
+}
+
+/// The state of a camera, for the page.
+pub(crate) fn state(world: &World, written: &Camera, dialect: Dialect, distance: f32) -> CameraState {
+    let (camera, frame) = (world.camera(), world.camera_frame());
+    CameraState {
+        keyword: camera.keyword(dialect).into(),
+        eye: frame.eye.into(),
+        forward: frame.forward.into(),
+        right: frame.right.into(),
+        up: frame.up.into(),
+        half_width: frame.half_width,
+        distance,
+        fields: camera.fields().iter().enumerate().map(|(i, field)| told(field, camera.get(i))).collect(),
+        statement: statement(camera, dialect),
+        moved: camera != written,
+    }
+}
+
+fn told(field: &Field, value: Option<Value>) -> FieldState {
+    let (least, most) = match field.rule {
+        Rule::Between(low, high) | Rule::From(low, high) => (Some(low), Some(high)),
+        Rule::Positive | Rule::NonNegative => (Some(0.0), None),
+        Rule::Share => (Some(0.0), Some(1.0)),
+        Rule::UpTo(most) => (Some(0.0), Some(most)),
+        _ => (None, None),
+    };
+    let values = match &value {
+        Some(Value::Float(x)) => vec![*x],
+        Some(Value::Int(i)) => vec![*i as f32],
+        Some(Value::Vec3(v)) => v.to_array().to_vec(),
+        _ => Vec::new(),
+    };
+    let text = match value {
+        Some(Value::Word(word)) => word,
+        Some(Value::Path(name)) => name.path,
+        _ => String::new(),
+    };
+    FieldState { name: spelled(field).into(), doc: field.doc.trim().into(), values, text, least, most }
+}
+
+/// The camera as a statement of the scene language.
+pub(crate) fn statement(camera: &Camera, dialect: Dialect) -> String {
+    let fields = camera.fields().iter().enumerate().filter_map(|(i, field)| {
+        let word = field.spelling(dialect)?;
+        let value = match camera.get(i)? {
+            Value::Float(x) => x.to_string(),
+            Value::Int(i) => i.to_string(),
+            Value::Vec3(v) => format!("{} {} {}", v.x, v.y, v.z),
+            Value::Word(word) => word,
+            Value::Path(name) => name.path,
+            Value::Rows(_) => return None,
+        };
+        Some(format!("{word} {value}"))
+    });
+    format!("{} {{ {} }}", camera.keyword(dialect), fields.collect::<Vec<_>>().join(" "))
+}

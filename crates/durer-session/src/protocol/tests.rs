@@ -1,0 +1,67 @@
+use super::*;
+use std::path::Path;
+use ts_rs::TS;
+
+/// The types in TypeScript, in the order of this file.
+fn typescript() -> String {
+    macro_rules! declarations {
+        ($($type:ty),+ $(,)?) => { [$(<$type>::decl()),+] };
+    }
+    let all = declarations![
+        Ask,
+        Answer,
+        Request,
+        Event,
+        Setting,
+        Motion,
+        Choice,
+        Place,
+        Severity,
+        Finding,
+        Change,
+        Contents,
+        JobState,
+        Thing,
+        CameraState,
+        FieldState,
+        PictureHead,
+        Row,
+        Segment,
+        Role,
+        Term,
+        PixelAccount,
+        Verdict,
+        ObjectTest,
+        CastAccount,
+        HitAccount,
+        Outline,
+        Lamp,
+        Word,
+        WordField,
+    ];
+    let head = "// Written by `DURER_WRITE=1 cargo test -p durer-session` from crates/durer-session/src/protocol.rs.\n";
+    let types: Vec<String> = all.iter().map(|declaration| format!("export {declaration}\n")).collect();
+    format!("{head}\n{}", types.join("\n"))
+}
+
+#[test]
+fn the_types_of_the_page_are_those_of_the_session() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/src/protocol.ts");
+    let wanted = typescript();
+    if std::env::var_os("DURER_WRITE").is_some() {
+        std::fs::write(&path, &wanted).unwrap();
+    }
+    let there = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(there == wanted, "web/src/protocol.ts is stale: DURER_WRITE=1 cargo test -p durer-session");
+}
+
+#[test]
+fn an_answer_is_its_length_its_json_and_its_bytes() {
+    let answer = Answer { session: 3, id: 7, event: Event::Saved };
+    let bytes = answer.encode(&[1, 2, 3]);
+    let length = u32::from_le_bytes(bytes[..4].try_into().unwrap()) as usize;
+    let read: Answer = serde_json::from_slice(&bytes[4..4 + length]).unwrap();
+    assert_eq!((read.session, read.id), (3, 7));
+    assert!(matches!(read.event, Event::Saved));
+    assert_eq!(&bytes[4 + length..], [1, 2, 3]);
+}

@@ -1,0 +1,476 @@
+//! One scene and one who looks at it.
+
+use crate::document::{Compiled, Document};
+use crate::motion::{distance, moved, set_field, state};
+use crate::outlines::{lamps, outlines};
+use crate::protocol::{CameraState, Choice, Contents, Event, Finding, JobState, Motion, Request, Thing};
+use crate::viewer::{Shown, Viewer};
+use crate::{candidates, language, terms};
+use durer::camera::{Camera, PerspectiveCamera, Projection};
+use durer::describe::DescribedList;
+use durer::film::aov::AOVS;
+use durer::image::Tone;
+use durer::integrator::Method;
+use durer::math::{Ray, Vec3};
+use durer::render::explain::explain_of;
+use durer::world::Geometry;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Tells the time in milliseconds from any moment on.
+pub type Clock = Arc<dyn Fn() -> f64 + Send + Sync>;
+
+/// Maximum number of objects that are listed.
+const MAX_THINGS: usize = 2000;
+/// The largest text or file that a page may send.
+const MAX_BYTES: usize = 256 << 20;
+
+/// Starting state of a session.
+#[derive(Clone, Debug, Default)]
+pub struct Start {
+    /// The file that is opened where a page names none, and is saved.
+    pub file: Option<PathBuf>,
+}
+
+/// A message to the page, and bytes that belong to it.
+pub(crate) type Message = (Event, Vec<u8>);
+
+/// One scene, its camera and its picture.
+pub struct Session {
+    start: Start,
+    clock: Clock,
+    document: Option<Document>,
+    viewer: Viewer,
+    /// Distance of what the camera looks at.
+    distance: f32,
+    /// True until the scene is checked.
+    unchecked: bool,
+    paused: bool,
+    /// Stamp of the scene's file when it was read or saved.
+    #[cfg(feature = "fs")]
+    stamp: Option<durer::source::Stamp>,
+    /// Its stamp when the page last heard of a change.
+    #[cfg(feature = "fs")]
+    told: Option<durer::source::Stamp>,
+    /// True if the document is the server's file.
+    on_disk: bool,
+}
+
+impl Session {
+    /// A session without a scene.
+    pub fn new(start: Start, clock: Clock) -> Self {
+        Session {
+            start,
+            clock,
+            document: None,
+            viewer: Viewer::new(),
+            distance: 1.0,
+            unchecked: false,
+            paused: false,
+            #[cfg(feature = "fs")]
+            stamp: None,
+            #[cfg(feature = "fs")]
+            told: None,
+            on_disk: false,
+        }
+    }
+
+    /// Returns true if there is work for [`Session::step`].
+    pub fn is_busy(&self) -> bool {
+        !self.paused && (self.viewer.is_busy() || self.unchecked)
+    }
+
+    /// Returns true if no picture shows the last change yet.
+    pub(crate) fn is_urgent(&self) -> bool {
+        !self.paused && self.viewer.is_urgent()
+    }
+
+    /// Answers a request at once.
+    pub(crate) fn handle(&mut self, request: Request, say: &mut dyn FnMut(Message)) {
+        if let Err(why) = self.answer(request, say) {
+            say((Event::Refused { why }, Vec::new()));
+        }
+    }
+
+    fn answer(&mut self, request: Request, say: &mut dyn FnMut(Message)) -> Result<(), String> {
+        let mut tell = |event| say((event, Vec::new()));
+        match request {
+            Request::Open { name, text } => self.open(name, text, &mut tell)?,
+            Request::Give { name, base64, opens } => self.give(name, &base64, opens, &mut tell)?,
+            Request::Edit { text } => self.edit(text, &mut tell)?,
+            Request::Size { width, height } => {
+                self.viewer.set_size(width, height);
+                self.restart();
+            }
+            Request::Show { picture, stops, tone } => {
+                let same = self.viewer.picture == picture;
+                if picture != "color" && !AOVS.iter().any(|aov| aov.name == picture) {
+                    return Err(format!("unknown picture `{picture}`"));
+                }
+                (self.viewer.picture, self.viewer.stops, self.viewer.tone) = (picture, stops.clamp(-40.0, 40.0), tone);
+                match self.viewer.again(&*self.clock).filter(|_| same) {
+                    Some((head, bytes)) => say((Event::Picture { head }, bytes)),
+                    None => self.restart(),
+                }
+            }
+            Request::Options { options } => {
+                self.viewer.set_options(&options)?;
+                self.viewer.forget();
+                self.restart();
+            }
+            Request::Move { motion, moving } => {
+                let (world, written, far) = {
+                    let distance = self.distance;
+                    let compiled = self.compiled()?;
+                    (&mut compiled.world, &compiled.written, distance)
+                };
+                let (camera, now) = moved(world, written, far, motion);
+                world.look_through(camera);
+                self.distance = now;
+                if matches!(motion, Motion::Home) {
+                    self.distance = distance(&self.compiled()?.world);
+                }
+                tell(self.looked(moving)?);
+            }
+            Request::Field { name, values, moving } => {
+                let world = &mut self.compiled()?.world;
+                let mut camera = world.camera().clone();
+                set_field(&mut camera, &name, &values)?;
+                world.look_through(camera);
+                tell(self.looked(moving)?);
+            }
+            Request::Look { center, direction, up, angle, moving } => {
+                let [center, direction, up] = [center, direction, up].map(Vec3::from);
+                let camera = Camera::from(PerspectiveCamera { center, direction, up, angle });
+                self.place(camera)?;
+                tell(self.looked(moving)?);
+            }
+            Request::WriteCamera => {
+                let text = self.write_camera()?;
+                tell(Event::Text { text: text.clone(), from_disk: false });
+                self.edit(text, &mut tell)?;
+            }
+            Request::Explain { x, y, sample } => {
+                let explained = self.explain(x, y, sample)?;
+                tell(explained);
+            }
+            Request::Cast { origin, direction, t_max } => {
+                let ray = Ray::new(origin.into(), direction.into());
+                if !(ray.origin.is_finite() && ray.dir.is_finite() && ray.dir != Vec3::ZERO) {
+                    return Err("a ray needs finite numbers, and a direction that is not 0 0 0".into());
+                }
+                let ray = Ray { t_max: t_max.unwrap_or(f32::INFINITY), ..ray };
+                let cast = candidates::cast(self.compiled()?, &ray);
+                tell(Event::Cast { cast });
+            }
+            Request::Outlines => {
+                let compiled = self.compiled()?;
+                tell(Event::Outlines { outlines: outlines(&compiled.names()), lamps: lamps(compiled) });
+            }
+            Request::Language => tell(Event::Language { words: language::words() }),
+            Request::Export { name } => {
+                let bytes = self.viewer.export(&name)?;
+                say((Event::Exported { name }, bytes));
+            }
+            Request::Save { force } => {
+                let saved = self.save(force)?;
+                tell(saved);
+            }
+            Request::Pause { pause } => self.paused = pause,
+            Request::Close => self.document = None,
+        }
+        Ok(())
+    }
+
+    fn compiled(&mut self) -> Result<&mut Compiled, String> {
+        let compiled = self.document.as_mut().and_then(|document| document.compiled.as_mut());
+        compiled.ok_or_else(|| "the scene has errors".into())
+    }
+
+    fn open(&mut self, name: String, text: Option<String>, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        let (path, bytes) = match (text, &self.start.file) {
+            (Some(text), _) => {
+                self.on_disk = false;
+                (self.beside(&name), text.into_bytes().into())
+            }
+            (None, Some(file)) => {
+                let path = file.clone();
+                let bytes = read(&path)?;
+                self.on_disk = true;
+                #[cfg(feature = "fs")]
+                {
+                    self.stamp = durer::format::folder::stamp_of(&path);
+                }
+                (path, bytes)
+            }
+            (None, None) => return Err("the server has no file to open".into()),
+        };
+        self.begin(path, bytes, tell)
+    }
+
+    /// The path of a scene that a page gives: in the folder of the server's file, and nowhere else,
+    /// so that it can
+    /// name the files there and no others.
+    fn beside(&self, name: &str) -> PathBuf {
+        let folder = self.start.file.as_deref().and_then(Path::parent).unwrap_or(Path::new(""));
+        let name = name.rsplit(['/', '\\']).next().filter(|name| !["", ".", ".."].contains(name));
+        folder.join(name.unwrap_or("scene.txt"))
+    }
+
+    fn begin(&mut self, path: PathBuf, bytes: Arc<[u8]>, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        let given = self.document.take().map(|document| document.options.given).unwrap_or_default();
+        let mut document = Document::new(path, bytes);
+        document.options.given = given;
+        self.viewer.forget();
+        let choice = |(name, doc): (&str, &str)| Choice { name: name.into(), doc: doc.into() };
+        let name = document.path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        tell(Event::Opened {
+            version: env!("CARGO_PKG_VERSION").into(),
+            name,
+            text: document.text().map(Into::into),
+            saves: self.on_disk && document.text().is_some(),
+            pictures: std::iter::once(("color", "the light that comes to each pixel"))
+                .chain(AOVS.iter().map(|aov| (aov.name, aov.doc)))
+                .map(choice)
+                .collect(),
+            tones: Tone::ALL.iter().map(|(name, _)| (*name).into()).collect(),
+            integrators: Method::kinds().iter().map(|kind| choice((kind.own_keyword(), kind.doc()))).collect(),
+        });
+        self.document = Some(document);
+        self.read(true, tell)
+    }
+
+    fn give(&mut self, name: String, base64: &str, opens: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        if base64.len() > MAX_BYTES {
+            return Err(format!("`{name}` is too large"));
+        }
+        let bytes: Arc<[u8]> = decode(base64).ok_or_else(|| format!("`{name}` did not arrive whole"))?.into();
+        if opens {
+            self.on_disk = false;
+            let path = self.beside(&name);
+            return self.begin(path, bytes, tell);
+        }
+        let document = self.document.get_or_insert_with(|| Document::new("scene.txt".into(), Arc::from([])));
+        document.options.given.retain(|known| known.0 != name);
+        document.options.given.push((name, bytes));
+        if document.bytes.is_empty() { Ok(()) } else { self.read(false, tell) }
+    }
+
+    fn edit(&mut self, text: String, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        if text.len() > MAX_BYTES {
+            return Err("the text is too long".into());
+        }
+        self.document.as_mut().ok_or("no scene is open")?.bytes = text.into_bytes().into();
+        self.read(false, tell)
+    }
+
+    /// Reads and compiles the text. A camera that was moved stays where it is, unless the text
+    /// moves it too.
+    fn read(&mut self, anew: bool, tell: &mut dyn FnMut(Event)) -> Result<(), String> {
+        let start = (self.clock)();
+        let document = self.document.as_mut().ok_or("no scene is open")?;
+        let before = document.compiled.as_ref().filter(|_| !anew);
+        let held = before.map(|compiled| (compiled.written.clone(), compiled.world.camera().clone()));
+        let (ok, findings) = document.compile();
+        let ms = (self.clock)() - start;
+        if !ok {
+            tell(Event::Scene { findings, contents: None, ms });
+            return Ok(());
+        }
+        if let (Some((written, now)), Some(compiled)) = (held, &mut document.compiled) {
+            if compiled.written == written && now != written {
+                compiled.world.look_through(now);
+            } else {
+                self.distance = distance(&compiled.world);
+            }
+        } else if let Some(compiled) = &document.compiled {
+            self.distance = distance(&compiled.world);
+        }
+        self.restart();
+        self.unchecked = true;
+        let contents = Some(self.contents()?);
+        tell(Event::Scene { findings, contents, ms });
+        Ok(())
+    }
+
+    fn contents(&mut self) -> Result<Contents, String> {
+        let far = self.distance;
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
+        let (world, names) = (&compiled.world, compiled.names());
+        let thing = |name: String, span| Thing { name, place: compiled.place(span) };
+        let objects = world.objects().iter().enumerate().take(MAX_THINGS);
+        let lights = compiled.scene().lights.iter().flatten().enumerate();
+        let triangles = world.objects().iter().map(|object| match &object.geometry {
+            Geometry::Mesh(tree) => tree.mesh.len() as f64,
+            _ => 0.0,
+        });
+        let bounds = world.bounds();
+        let job = self.viewer.job_of(compiled, "color")?;
+        let natural = durer::RenderJob::default().resolve(&compiled.job_context(), None)?;
+        Ok(Contents {
+            dialect: compiled.dialect().name().into(),
+            camera: state(world, &compiled.written, compiled.dialect(), far),
+            objects: objects.map(|(i, object)| thing(names.short_object(i as u32), object.span)).collect(),
+            object_count: world.objects().len() as u32,
+            triangles: triangles.sum(),
+            lights: lights.map(|(i, light)| thing(compiled.light(i), light.span)).collect(),
+            bounds: match bounds.is_empty() {
+                true => [[-1.0; 3], [1.0; 3]],
+                false => [bounds.min.into(), bounds.max.into()],
+            },
+            job: JobState {
+                size: [natural.width, natural.height],
+                integrator: job.method.name().into(),
+                samples: job.sampling.samples(),
+                bounces: job.settings.bounces,
+                words: self.viewer.spelled(compiled, &job),
+            },
+        })
+    }
+
+    fn place(&mut self, camera: Camera) -> Result<(), String> {
+        for (i, field) in camera.fields().iter().enumerate() {
+            if let Some(value) = camera.get(i) {
+                field.rule.validate(&value).map_err(|wrong| format!("`{}` {wrong}", field.name))?;
+            }
+        }
+        camera.validate()?;
+        let compiled = self.compiled()?;
+        compiled.world.look_through(camera);
+        Ok(())
+    }
+
+    fn looked(&mut self, moving: bool) -> Result<Event, String> {
+        self.viewer.moving = moving;
+        self.restart();
+        Ok(Event::Camera { camera: self.camera()? })
+    }
+
+    fn camera(&mut self) -> Result<CameraState, String> {
+        let far = self.distance;
+        let compiled = self.compiled()?;
+        Ok(state(&compiled.world, &compiled.written, compiled.dialect(), far))
+    }
+
+    fn write_camera(&mut self) -> Result<String, String> {
+        let statement = self.camera()?.statement;
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let (start, end) =
+            document.camera_statement().ok_or("the camera of this file cannot be replaced in its text")?;
+        let text = document.text().ok_or("this file is not text")?;
+        Ok(format!("{}{statement}{}", &text[..start], &text[end..]))
+    }
+
+    fn explain(&mut self, x: u32, y: u32, sample: Option<u32>) -> Result<Event, String> {
+        let document = self.document.as_ref().ok_or("no scene is open")?;
+        let compiled = document.compiled.as_ref().ok_or("the scene has errors")?;
+        let job = self.viewer.job_of(compiled, "color")?;
+        let explanation = explain_of(&compiled.world, &job, (x, y), None).map_err(|error| error.to_string())?;
+        Ok(Event::Explained { pixel: terms::account(compiled, &job, &explanation, sample) })
+    }
+
+    fn restart(&mut self) {
+        let now = (self.clock)();
+        self.viewer.restart(now);
+    }
+
+    /// Does some milliseconds of work.
+    pub(crate) fn step(&mut self, say: &mut dyn FnMut(Message)) {
+        let Some(compiled) = self.document.as_ref().and_then(|document| document.compiled.as_ref()) else {
+            self.viewer.rest();
+            self.unchecked = false;
+            return;
+        };
+        if self.viewer.is_busy() {
+            match self.viewer.step(compiled, &*self.clock) {
+                Ok(Some(shown)) => say(picture(shown)),
+                Ok(None) => {}
+                Err(why) => say((Event::Refused { why }, Vec::new())),
+            }
+        } else if std::mem::take(&mut self.unchecked) {
+            let findings: Vec<Finding> = match self.viewer.job_of(compiled, "color") {
+                Ok(job) => compiled.check(&job),
+                Err(_) => return,
+            };
+            say((Event::Checked { findings }, Vec::new()));
+        }
+    }
+
+    #[cfg(feature = "fs")]
+    fn save(&mut self, force: bool) -> Result<Event, String> {
+        use durer::format::folder::stamp_of;
+        let document = self.document.as_ref().filter(|_| self.on_disk).ok_or("this scene is in no file")?;
+        if !force && stamp_of(&document.path) != self.stamp {
+            return Ok(Event::Conflict);
+        }
+        durer::image::save(&document.path, &document.bytes).map_err(|error| error.to_string())?;
+        self.stamp = stamp_of(&document.path);
+        Ok(Event::Saved)
+    }
+
+    #[cfg(not(feature = "fs"))]
+    fn save(&mut self, _: bool) -> Result<Event, String> {
+        Err("files cannot be saved here".into())
+    }
+
+    /// Reads the scene's file again if it was changed. A text that was edited here stays: the page
+    /// hears of the conflict when it saves.
+    #[cfg(feature = "fs")]
+    pub(crate) fn look_at_disk(&mut self, say: &mut dyn FnMut(Message)) {
+        let Some(document) = self.document.as_ref().filter(|_| self.on_disk) else { return };
+        let stamp = durer::format::folder::stamp_of(&document.path);
+        if stamp == self.stamp || stamp == self.told || stamp.is_none() {
+            return;
+        }
+        let Ok(bytes) = read(&document.path) else { return };
+        if bytes != document.bytes {
+            let Ok(text) = std::str::from_utf8(&bytes) else { return };
+            say((Event::Text { text: text.into(), from_disk: true }, Vec::new()));
+            self.told = stamp;
+        } else {
+            self.stamp = stamp;
+        }
+    }
+
+    /// Takes over what is in the scene's file now.
+    #[cfg(feature = "fs")]
+    pub(crate) fn take_over(&mut self, text: &str) {
+        if let Some(document) = self.document.as_ref().filter(|_| self.on_disk)
+            && read(&document.path).is_ok_and(|bytes| *bytes == *text.as_bytes())
+        {
+            self.stamp = durer::format::folder::stamp_of(&document.path);
+        }
+    }
+}
+
+fn picture((head, bytes): Shown) -> Message {
+    (Event::Picture { head }, bytes)
+}
+
+fn read(path: &Path) -> Result<Arc<[u8]>, String> {
+    let bytes = std::fs::read(path).map_err(|error| format!("{}: {error}", path.display()))?;
+    Ok(bytes.into())
+}
+
+/// The bytes of a text in base64, with or without padding.
+fn decode(text: &str) -> Option<Vec<u8>> {
+    let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
+    let (mut bits, mut count) = (0_u32, 0);
+    for letter in text.trim_end_matches('=').bytes() {
+        let six = match letter {
+            b'A'..=b'Z' => letter - b'A',
+            b'a'..=b'z' => letter - b'a' + 26,
+            b'0'..=b'9' => letter - b'0' + 52,
+            b'+' => 62,
+            b'/' => 63,
+            _ => return None,
+        };
+        (bits, count) = (bits << 6 | u32::from(six), count + 6);
+        if count >= 8 {
+            count -= 8;
+            bytes.push((bits >> count) as u8);
+        }
+    }
+    Some(bytes)
+}

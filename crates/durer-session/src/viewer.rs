@@ -1,0 +1,263 @@
+//! A picture that comes from coarse to fine, in steps that take some milliseconds each.
+
+use crate::display::{display, pixels};
+use crate::document::Compiled;
+use crate::export::export;
+use crate::protocol::{PictureHead, Setting};
+use durer::RenderJob;
+use durer::job::View;
+use durer::render::{Control, Job, ProgressiveRender, RenderError, Sampling};
+
+/// Milliseconds that a coarse picture may take: while the camera moves, and else.
+const MOVING: f64 = 24.0;
+const RESTING: f64 = 45.0;
+/// Milliseconds after which a step ends, so that messages are heard.
+const STEP: f64 = 12.0;
+/// Milliseconds between pictures of one render.
+const BETWEEN: f64 = 160.0;
+/// Sides of a coarse picture's pixels, in pixels.
+const DIVISORS: [u32; 9] = [1, 2, 3, 4, 5, 6, 8, 12, 16];
+/// The largest side of a picture.
+const LARGEST: u32 = 8192;
+
+/// The picture of a session.
+pub(crate) struct Viewer {
+    pub width: u32,
+    pub height: u32,
+    pub picture: String,
+    pub stops: f32,
+    pub tone: String,
+    pub moving: bool,
+    options: RenderJob,
+    stage: Stage,
+    /// Milliseconds for a pixel with one sample, as far as known.
+    cost: Option<f64>,
+    tiles: u64,
+    changed: f64,
+    told: f64,
+    /// The picture last made, for who shows it otherwise or saves it.
+    shown: Option<ProgressiveRender>,
+    rays: u64,
+}
+
+/// Stage of the picture.
+enum Stage {
+    /// There is nothing to do.
+    Rest,
+    /// A coarse picture comes first.
+    Coarse,
+    /// The picture itself, once a pass over it is made.
+    Fine(Box<ProgressiveRender>, Option<u32>),
+}
+
+/// A picture for the page.
+pub(crate) type Shown = (PictureHead, Vec<u8>);
+
+impl Viewer {
+    pub fn new() -> Self {
+        Viewer {
+            width: 512,
+            height: 512,
+            picture: "color".into(),
+            stops: 0.0,
+            tone: "none".into(),
+            moving: false,
+            options: RenderJob::default(),
+            stage: Stage::Rest,
+            cost: None,
+            tiles: 4,
+            changed: 0.0,
+            told: 0.0,
+            shown: None,
+            rays: 0,
+        }
+    }
+
+    /// Sets the options of the job.
+    pub fn set_options(&mut self, settings: &[Setting]) -> Result<(), String> {
+        let mut options = RenderJob::default();
+        for Setting { name, value } in settings {
+            options.set(name, value).map_err(|wrong| format!("{name}: {wrong}"))?;
+        }
+        self.options = options;
+        Ok(())
+    }
+
+    pub fn set_size(&mut self, width: u32, height: u32) {
+        (self.width, self.height) = (width.clamp(1, LARGEST), height.clamp(1, LARGEST));
+    }
+
+    /// Restarts the picture after a change.
+    pub fn restart(&mut self, now: f64) {
+        (self.stage, self.changed, self.rays) = (Stage::Coarse, now, 0);
+    }
+
+    /// Forgets how long pixels take: another scene was opened.
+    pub fn forget(&mut self) {
+        (self.cost, self.shown) = (None, None);
+    }
+
+    /// Returns true if no picture shows the last change yet.
+    pub fn is_urgent(&self) -> bool {
+        matches!(self.stage, Stage::Coarse)
+    }
+
+    /// Leaves the picture as it is.
+    pub fn rest(&mut self) {
+        self.stage = Stage::Rest;
+    }
+
+    pub fn is_busy(&self) -> bool {
+        !matches!(self.stage, Stage::Rest)
+    }
+
+    /// The job of the picture that is shown.
+    pub fn job(&self, compiled: &Compiled) -> Result<Job, String> {
+        self.job_of(compiled, &self.picture)
+    }
+
+    /// The job of a picture.
+    pub fn job_of(&self, compiled: &Compiled, picture: &str) -> Result<Job, String> {
+        let options = self.options.clone().size((self.width, self.height));
+        options.resolve(&compiled.job_context(), Some(&View { crop: None, show: vec![picture.into()] }))
+    }
+
+    /// Options that differ from the scene's defaults.
+    pub fn spelled(&self, compiled: &Compiled, job: &Job) -> Vec<String> {
+        RenderJob::of(job, &compiled.job_context()).spelled()
+    }
+
+    /// Does a part of the work.
+    pub fn step(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
+        match std::mem::replace(&mut self.stage, Stage::Rest) {
+            Stage::Rest => Ok(None),
+            Stage::Coarse => self.coarse(compiled, clock),
+            Stage::Fine(render, seen) => self.fine(compiled, render, seen, clock),
+        }
+    }
+
+    fn coarse(&mut self, compiled: &Compiled, clock: &dyn Fn() -> f64) -> Result<Option<Shown>, String> {
+        let job = self.job(compiled)?;
+        let pixels = f64::from(self.width) * f64::from(self.height);
+        let budget = if self.moving { MOVING } else { RESTING };
+        let affordable = |&divisor: &u32| {
+            self.cost.map_or(divisor >= 8, |cost| cost * pixels / f64::from(divisor * divisor) <= budget)
+        };
+        let divisor = DIVISORS.into_iter().find(affordable).unwrap_or(16);
+        let side = |side: u32| side.div_ceil(divisor).max(1);
+        let coarse = Job {
+            width: side(job.width),
+            height: side(job.height),
+            sampling: Sampling::Center,
+            noise: None,
+            adaptive: false,
+            ..job.clone()
+        };
+        let start = clock();
+        let mut render = ProgressiveRender::new(&compiled.world, &coarse).map_err(wrong)?;
+        let control = Control::default();
+        while render.next_pass(&compiled.world, &control).map_err(wrong)?.is_some() {}
+        let shown = self.picture_of(&render, [coarse.width, coarse.height], 1, None)?;
+        let made = (clock() - start) / f64::from(coarse.width * coarse.height);
+        // A clock without steps, or a first picture that was slow for want of caches, is forgotten
+        // soon.
+        let known = self.cost.map_or(made, |cost| 0.5 * (cost + made));
+        self.cost = (made > 0.0).then_some(known).or(self.cost);
+        self.tiles = self.cost.map_or(4, |cost| ((STEP / cost / 256.0) as u64).clamp(2, 4096));
+        if !self.moving {
+            let render = ProgressiveRender::new(&compiled.world, &job).map_err(wrong)?;
+            self.stage = Stage::Fine(Box::new(render), None);
+        }
+        self.told = clock();
+        Ok(Some(self.head(shown, None, clock)))
+    }
+
+    fn fine(
+        &mut self,
+        compiled: &Compiled,
+        mut render: Box<ProgressiveRender>,
+        seen: Option<u32>,
+        clock: &dyn Fn() -> f64,
+    ) -> Result<Option<Shown>, String> {
+        let control = Control { most_tiles: Some(self.tiles), ..Control::default() };
+        let start = clock();
+        let passed = render.next_pass(&compiled.world, &control);
+        let took = clock() - start;
+        self.rays += control.rays.load(std::sync::atomic::Ordering::Relaxed);
+        if took > 0.0 {
+            let wanted = self.tiles as f64 * (STEP / took).clamp(0.5, 2.0);
+            self.tiles = (wanted as u64).clamp(1, 1 << 16);
+        }
+        let (samples, finished) = match passed {
+            Ok(Some(progress)) => (Some(progress.samples), progress.samples >= progress.all_samples),
+            Ok(None) => (seen, true),
+            Err(RenderError::Cancelled) => (seen, false),
+            Err(error) => return Err(wrong(error)),
+        };
+        let due = samples.is_some() && (samples != seen && seen.is_none() || clock() - self.told > BETWEEN);
+        let mut shown = None;
+        if due || finished {
+            let hash = finished.then(|| render.part().hash().to_string());
+            let picture = self.picture_of(&render, [self.width, self.height], samples.unwrap_or(1), hash)?;
+            self.told = clock();
+            shown = Some(self.head(picture, Some(render.part().job()), clock));
+        }
+        match finished {
+            true => self.shown = Some(*render),
+            false => self.stage = Stage::Fine(render, samples),
+        }
+        Ok(shown)
+    }
+
+    /// The finished picture, encoded again.
+    pub fn again(&self, clock: &dyn Fn() -> f64) -> Option<Shown> {
+        let render = self.shown.as_ref().filter(|_| !self.is_busy())?;
+        let job = render.part().job();
+        let hash = Some(render.part().hash().to_string());
+        let shown = self.picture_of(render, [job.width, job.height], job.sampling.samples(), hash).ok()?;
+        Some(self.head(shown, Some(job), clock))
+    }
+
+    /// The picture as a file.
+    pub fn export(&self, name: &str) -> Result<Vec<u8>, String> {
+        let render = self.shown.as_ref().ok_or("the picture is not finished yet")?;
+        let mut rendered = render.part().pictures().map_err(|error| error.to_string())?;
+        let layer = if rendered.layers.is_empty() { None } else { Some(rendered.layers.swap_remove(0)) };
+        export(name, &layer.ok_or("the job has no picture")?, display(self.stops, &self.tone))
+    }
+
+    fn picture_of(
+        &self,
+        render: &ProgressiveRender,
+        [width, height]: [u32; 2],
+        samples: u32,
+        hash: Option<String>,
+    ) -> Result<Shown, String> {
+        let rendered = render.part().pictures().map_err(wrong)?;
+        let color = self.picture == "color";
+        let layer = rendered.pictures.first().ok_or("the job has no picture")?;
+        let how = if color { display(self.stops, &self.tone) } else { durer::image::Transfer::Linear.into() };
+        let head = PictureHead {
+            picture: self.picture.clone(),
+            width,
+            height,
+            full_width: self.width,
+            full_height: self.height,
+            samples,
+            all_samples: samples,
+            rays: self.rays as f64,
+            ms: 0.0,
+            hash,
+        };
+        Ok((head, pixels(layer, &how)))
+    }
+
+    fn head(&self, (head, bytes): Shown, job: Option<&Job>, clock: &dyn Fn() -> f64) -> Shown {
+        let all_samples = job.map_or(head.all_samples, |job| job.sampling.samples());
+        (PictureHead { all_samples, ms: clock() - self.changed, ..head }, bytes)
+    }
+}
+
+fn wrong(error: RenderError) -> String {
+    error.to_string()
+}

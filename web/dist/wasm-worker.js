@@ -1,0 +1,3 @@
+const e=[];let t=t=>{e.push(t)};self.onmessage=e=>t(e.data);function n(e){self.postMessage(e.buffer,{transfer:[e.buffer]})}async function r(){let r=await import(
+/* @vite-ignore */
+new URL(`./wasm/durer_wasm.js`,self.location.href).href);await r.default({module_or_path:new URL(`./wasm/durer_wasm_bg.wasm`,self.location.href)});let i=new r.Engine,a=new MessageChannel,o=!1,s=()=>{o=i.step(n),o&&a.port2.postMessage(null)};a.port1.onmessage=s,t=e=>{i.receive(e,n),o||(o=!0,a.port2.postMessage(null))};for(let n of e)t(n)}r().catch(e=>self.postMessage(`the library did not load: ${e}`));

@@ -1,0 +1,36 @@
+/** Keeps the page for times without a network: what was once fetched is answered from memory where the network fails. */
+const name = "durer";
+const files = [
+  "./",
+  "index.html",
+  "index.js",
+  "index.css",
+  "wasm-worker.js",
+  "inter-latin-wght-normal.woff2",
+  "inter-latin-ext-wght-normal.woff2",
+  "inter-greek-wght-normal.woff2",
+  "wasm/durer_wasm.js",
+  "wasm/durer_wasm_bg.wasm",
+];
+
+self.addEventListener("install", (event) => {
+  event.waitUntil(caches.open(name).then((cache) => cache.addAll(files)));
+  self.skipWaiting();
+});
+
+self.addEventListener("activate", (event) => event.waitUntil(self.clients.claim()));
+
+self.addEventListener("fetch", (event) => {
+  if (event.request.method !== "GET") return;
+  const answer = async () => {
+    const cache = await caches.open(name);
+    try {
+      const fresh = await fetch(event.request);
+      if (fresh.ok) await cache.put(event.request, fresh.clone());
+      return fresh;
+    } catch {
+      return (await cache.match(event.request, { ignoreSearch: true })) ?? Response.error();
+    }
+  };
+  event.respondWith(answer());
+});

@@ -1,0 +1,133 @@
+import type { Answer, Ask, Event, Request } from "../protocol";
+import { decode } from "./wire";
+
+/** Carries messages to an engine: a server, or a worker. */
+export interface Line {
+  send(ask: Ask): void;
+  close(): void;
+}
+
+/** What a line tells. */
+export interface LineEvents {
+  message(buffer: ArrayBuffer): void;
+  closed(why: string): void;
+}
+
+export type EventOf<K extends Event["kind"]> = Extract<Event, { kind: K }>;
+type Handler = (event: Event, bytes: Uint8Array<ArrayBuffer>) => void;
+
+interface Waiting {
+  kind: Event["kind"];
+  resolve(event: Event, bytes: Uint8Array<ArrayBuffer>): void;
+  reject(error: Error): void;
+}
+
+/** The ray tracer, wherever it runs. */
+export class Engine {
+  readonly name: string;
+  #line: Line;
+  #sessions = new Map<number, Session>();
+  #next = 1;
+  #lost: ((why: string) => void)[] = [];
+
+  constructor(name: string, connect: (events: LineEvents) => Line) {
+    this.name = name;
+    this.#line = connect({
+      message: (buffer) => this.#receive(buffer),
+      closed: (why) => {
+        for (const session of this.#sessions.values()) session.fail(why);
+        for (const tell of this.#lost) tell(why);
+      },
+    });
+  }
+
+  /** Makes a session: one scene, camera and picture. */
+  session(): Session {
+    const id = this.#next++;
+    const session = new Session(id, this.#line, () => this.#sessions.delete(id));
+    this.#sessions.set(id, session);
+    return session;
+  }
+
+  /** Calls back when the engine is gone. */
+  onLost(tell: (why: string) => void) {
+    this.#lost.push(tell);
+  }
+
+  #receive(buffer: ArrayBuffer) {
+    const { answer, bytes } = decode(buffer);
+    this.#sessions.get(answer.session)?.receive(answer, bytes);
+  }
+}
+
+/** A scene, its camera and its picture. */
+export class Session {
+  readonly id: number;
+  #line: Line;
+  #forget: () => void;
+  #handlers = new Set<Handler>();
+  #waiting = new Map<number, Waiting>();
+  #next = 1;
+
+  constructor(id: number, line: Line, forget: () => void) {
+    this.id = id;
+    this.#line = line;
+    this.#forget = forget;
+  }
+
+  /** Sends a request that nobody waits for. */
+  tell(request: Request) {
+    this.#line.send({ session: this.id, id: this.#next++, request });
+  }
+
+  /** Sends a request and waits for an event of a kind. */
+  ask<K extends Event["kind"]>(request: Request, kind: K): Promise<EventOf<K>> {
+    return this.askBytes(request, kind).then(([event]) => event);
+  }
+
+  /** The same with the bytes of the answer. */
+  askBytes<K extends Event["kind"]>(
+    request: Request,
+    kind: K,
+  ): Promise<[EventOf<K>, Uint8Array<ArrayBuffer>]> {
+    const id = this.#next++;
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, {
+        kind,
+        resolve: (event, bytes) => resolve([event as EventOf<K>, bytes]),
+        reject,
+      });
+      this.#line.send({ session: this.id, id, request });
+    });
+  }
+
+  /** Calls back for all events; returns what ends that. */
+  on(handler: Handler): () => void {
+    this.#handlers.add(handler);
+    return () => this.#handlers.delete(handler);
+  }
+
+  receive(answer: Answer, bytes: Uint8Array<ArrayBuffer>) {
+    const { event, id } = answer;
+    const waiting = this.#waiting.get(id);
+    if (waiting && event.kind === waiting.kind) {
+      this.#waiting.delete(id);
+      waiting.resolve(event, bytes);
+    } else if (waiting && event.kind === "refused") {
+      this.#waiting.delete(id);
+      waiting.reject(new Error(event.why));
+    }
+    for (const handler of this.#handlers) handler(event, bytes);
+  }
+
+  fail(why: string) {
+    for (const waiting of this.#waiting.values()) waiting.reject(new Error(why));
+    this.#waiting.clear();
+  }
+
+  close() {
+    this.tell({ kind: "close" });
+    this.#handlers.clear();
+    this.#forget();
+  }
+}

@@ -1,0 +1,23 @@
+import type { Ask } from "../protocol";
+import type { Line, LineEvents } from "./engine";
+
+/** A line to the server that the page came from. The token is in the page's address. */
+export function socket(address: string, events: LineEvents): Line {
+  const socket = new WebSocket(address);
+  const early: string[] = [];
+  socket.binaryType = "arraybuffer";
+  socket.onopen = () => {
+    for (const text of early) socket.send(text);
+    early.length = 0;
+  };
+  socket.onmessage = (message) => events.message(message.data as ArrayBuffer);
+  socket.onclose = () => events.closed("the server has ended");
+  return {
+    send(ask: Ask) {
+      const text = JSON.stringify(ask);
+      if (socket.readyState === WebSocket.CONNECTING) early.push(text);
+      else if (socket.readyState === WebSocket.OPEN) socket.send(text);
+    },
+    close: () => socket.close(),
+  };
+}

@@ -1,0 +1,114 @@
+import { useState } from "preact/hooks";
+import { short } from "../ui/slider";
+import { type Store, useStore } from "../viewer/store";
+import { RaysView } from "./rays-view";
+import { roles } from "./segments";
+import { Stepper } from "./stepper";
+import { Tests } from "./tests";
+import { Tree } from "./tree";
+
+/** Why a pixel has its colour. */
+export function Explain({ store }: { store: Store }) {
+  useStore(store);
+  const [mode, setMode] = useState<"tree" | "steps">("tree");
+  const { pixel } = store;
+  return (
+    <div class="explain">
+      <RaysView store={store} />
+      {pixel ? (
+        <>
+          <Legend store={store} />
+          <header class="pixel">
+            <span class="chip large" style={{ background: `rgb(${pixel.bytes.join(" ")})` }} />
+            <div>
+              <strong>
+                Pixel {pixel.x}, {pixel.y}
+              </strong>
+              <p>{pixel.color.map((x) => short(x)).join("  ")}</p>
+            </div>
+            <div class="tabs" role="tablist" aria-label="How it is told">
+              <Tab name="Tree" on={mode === "tree"} choose={() => setMode("tree")} />
+              <Tab name="Step by step" on={mode === "steps"} choose={() => setMode("steps")} />
+            </div>
+          </header>
+          {pixel.samples > 1 && <Samples store={store} />}
+          {mode === "tree" ? (
+            <>
+              <Tree store={store} />
+              <Tests store={store} />
+            </>
+          ) : (
+            <Stepper store={store} />
+          )}
+        </>
+      ) : (
+        <div class="hint large">
+          <p>
+            <strong>Click a pixel</strong> to see its ray, what the ray hits, and every term of its colour.
+          </p>
+          <p>Drag to go around, scroll to come nearer, hold Shift to slide.</p>
+          <p>In the text, drag a number with Alt held, and click a square to pick its colour.</p>
+        </div>
+      )}
+    </div>
+  );
+}
+
+function Tab({ name, on, choose }: { name: string; on: boolean; choose(): void }) {
+  return (
+    <button type="button" role="tab" class="tab" aria-selected={on} onClick={choose}>
+      {name}
+    </button>
+  );
+}
+
+function Samples({ store }: { store: Store }) {
+  const { pixel } = store;
+  if (!pixel) return null;
+  const go = (sample: number) => store.explain(pixel.x, pixel.y, sample);
+  return (
+    <div class="samples">
+      <span>
+        Sample {pixel.sample + 1} of {pixel.samples}, weight {short(pixel.weight)}
+      </span>
+      <button
+        type="button"
+        class="button icon plain"
+        aria-label="Sample before"
+        disabled={pixel.sample === 0}
+        onClick={() => go(pixel.sample - 1)}
+      >
+        ←
+      </button>
+      <button
+        type="button"
+        class="button icon plain"
+        aria-label="Next sample"
+        disabled={pixel.sample + 1 >= pixel.samples}
+        onClick={() => go(pixel.sample + 1)}
+      >
+        →
+      </button>
+    </div>
+  );
+}
+
+function Legend({ store }: { store: Store }) {
+  const there = new Set<string>();
+  const walk = (term: NonNullable<typeof store.pixel>["tree"]) => {
+    if (term?.segment) there.add(term.segment.role);
+    term?.terms.forEach(walk);
+  };
+  walk(store.pixel?.tree ?? null);
+  return (
+    <ul class="legend" aria-label="Colours of the rays">
+      {Object.entries(roles)
+        .filter(([role]) => there.has(role))
+        .map(([role, name]) => (
+          <li key={role} style={{ "--color": `var(--ray-${role})` }}>
+            {name}
+          </li>
+        ))}
+    </ul>
+  );
+}

@@ -1,0 +1,273 @@
+import { useEffect, useLayoutEffect, useMemo, useRef, useState } from "preact/hooks";
+import { type Store, useStore } from "../viewer/store";
+import { frustum, points, roles, segments } from "./segments";
+import {
+  add,
+  type Eye,
+  eyeAround,
+  frame,
+  length,
+  mul,
+  orbit,
+  type Projector,
+  projector,
+  sub,
+  type Vec,
+} from "./space";
+
+/** The rays of a pixel in space, with the outlines of all objects. */
+export function RaysView({ store }: { store: Store }) {
+  useStore(store);
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const [eye, setEye] = useState<Eye | null>(null);
+  const [size, setSize] = useState({ width: 0, height: 0 });
+  const [theme, setTheme] = useState(0);
+  const drag = useRef<{ x: number; y: number; moved: boolean } | null>(null);
+  const start = useMemo(() => beside(store), [store.pixel, store.outlines]);
+  const used = eye ?? start;
+
+  useEffect(() => setEye(null), [start]);
+  useEffect(() => {
+    const again = () => setTheme((count) => count + 1);
+    window.addEventListener("durer-theme", again);
+    const dark = matchMedia("(prefers-color-scheme: dark)");
+    dark.addEventListener("change", again);
+    return () => {
+      window.removeEventListener("durer-theme", again);
+      dark.removeEventListener("change", again);
+    };
+  }, []);
+  useEffect(() => {
+    if (!canvas.current) return;
+    const observer = new ResizeObserver(([entry]) => {
+      if (entry) setSize({ width: entry.contentRect.width, height: entry.contentRect.height });
+    });
+    observer.observe(canvas.current);
+    return () => observer.disconnect();
+  }, []);
+  useLayoutEffect(() => {
+    if (canvas.current) paint(canvas.current, used, size, store);
+  }, [used, size, theme, store.outlines, store.pixel, store.chosen, store.hovered, store.camera, store.cast]);
+
+  const nearest = (x: number, y: number): string | null => {
+    if (!canvas.current) return null;
+    const box = canvas.current.getBoundingClientRect();
+    const view = projector(frame(used), size.width, size.height);
+    let best: { path: string; distance: number } | null = null;
+    for (const { path, segment } of segments(store.pixel)) {
+      const line = view.line(segment.from, segment.to);
+      if (!line) continue;
+      const distance = toLine(x - box.left, y - box.top, line[0], line[1]);
+      if (distance < 9 && (!best || distance < best.distance)) best = { path, distance };
+    }
+    return best?.path ?? null;
+  };
+  const turn = (right: number, up: number) => setEye(orbit(used, right, up));
+
+  return (
+    <canvas
+      ref={canvas}
+      class="rays"
+      tabIndex={0}
+      role="img"
+      aria-label={label(store)}
+      onPointerDown={(event) => {
+        event.currentTarget.setPointerCapture(event.pointerId);
+        drag.current = { x: event.clientX, y: event.clientY, moved: false };
+      }}
+      onPointerMove={(event) => {
+        const from = drag.current;
+        if (!from) return store.hover(nearest(event.clientX, event.clientY));
+        const [dx, dy] = [event.clientX - from.x, event.clientY - from.y];
+        if (!from.moved && Math.hypot(dx, dy) < 4) return;
+        drag.current = { x: event.clientX, y: event.clientY, moved: true };
+        turn(dx * 0.01, dy * 0.01);
+      }}
+      onPointerUp={(event) => {
+        const path = drag.current?.moved ? null : nearest(event.clientX, event.clientY);
+        drag.current = null;
+        if (path) store.choose(path);
+      }}
+      onPointerLeave={() => store.hover(null)}
+      onWheel={(event) => {
+        event.preventDefault();
+        setEye({ ...used, distance: used.distance * Math.exp(event.deltaY * 0.0012) });
+      }}
+      onKeyDown={(event) => {
+        const turns: Record<string, [number, number]> = {
+          ArrowLeft: [-0.1, 0],
+          ArrowRight: [0.1, 0],
+          ArrowUp: [0, -0.1],
+          ArrowDown: [0, 0.1],
+        };
+        const by = turns[event.key];
+        if (!by) return;
+        event.preventDefault();
+        turn(...by);
+      }}
+    />
+  );
+}
+
+function label(store: Store): string {
+  const all = segments(store.pixel);
+  if (all.length === 0) return "The scene in lines.";
+  return `The rays of the pixel in space: ${all.map(({ segment }) => roles[segment.role]).join(", ")}.`;
+}
+
+/** From the side of what the camera sees. */
+function beside(store: Store): Eye {
+  const { pixel, camera } = store;
+  const seen = points(pixel, camera);
+  if (!camera) return eyeAround(seen, 0.8, 0.4);
+  const yaw = Math.atan2(-camera.forward[0], -camera.forward[2]) + 0.95;
+  const pitch = Math.min(
+    0.7,
+    Math.max(0.15, Math.asin(Math.max(-1, Math.min(1, -camera.forward[1]))) + 0.28),
+  );
+  if (seen.length < 2) seen.push(add(camera.eye, mul(camera.distance * 1.4, camera.forward)));
+  return eyeAround(seen, yaw, pitch);
+}
+
+function toLine(x: number, y: number, a: { x: number; y: number }, b: { x: number; y: number }): number {
+  const [dx, dy] = [b.x - a.x, b.y - a.y];
+  const t = Math.max(0, Math.min(1, ((x - a.x) * dx + (y - a.y) * dy) / (dx * dx + dy * dy || 1)));
+  return Math.hypot(x - a.x - t * dx, y - a.y - t * dy);
+}
+
+function paint(canvas: HTMLCanvasElement, eye: Eye, size: { width: number; height: number }, store: Store) {
+  const context = canvas.getContext("2d");
+  if (!context || size.width < 1) return;
+  const ratio = window.devicePixelRatio || 1;
+  canvas.width = Math.round(size.width * ratio);
+  canvas.height = Math.round(size.height * ratio);
+  context.setTransform(ratio, 0, 0, ratio, 0, 0);
+  context.lineCap = "round";
+  context.lineJoin = "round";
+  const view = projector(frame(eye), size.width, size.height);
+  const style = getComputedStyle(canvas);
+  const color = (name: string) => style.getPropertyValue(name);
+  objects(context, view, store, color("--solid"), color("--accent"));
+  const { camera, head } = store;
+  if (camera) {
+    const aspect = head ? head.full_width / head.full_height : 1;
+    stroke(context, view, frustum(camera, aspect, camera.distance * 0.35), color("--soft"), 1, 0.8);
+  }
+  rays(context, view, store, color);
+  for (const lamp of store.lamps) {
+    const at = view.point(lamp.at);
+    if (at) dot(context, at.x, at.y, 4, color("--ray-scattered"));
+  }
+}
+
+function objects(
+  context: CanvasRenderingContext2D,
+  view: Projector,
+  store: Store,
+  plain: string,
+  strong: string,
+) {
+  const term = focused(store);
+  for (const { object, lines } of store.outlines) {
+    const chosen = term?.object === object;
+    context.strokeStyle = chosen ? strong : plain;
+    context.globalAlpha = chosen ? 0.95 : 0.42;
+    context.lineWidth = chosen ? 1.4 : 0.8;
+    context.beginPath();
+    for (const line of lines) {
+      for (let i = 0; i + 5 < line.length; i += 3) {
+        const seen = view.line(line.slice(i, i + 3) as Vec, line.slice(i + 3, i + 6) as Vec);
+        if (!seen) continue;
+        context.moveTo(seen[0].x, seen[0].y);
+        context.lineTo(seen[1].x, seen[1].y);
+      }
+    }
+    context.stroke();
+  }
+  context.globalAlpha = 1;
+}
+
+function focused(store: Store) {
+  const path = store.hovered ?? store.chosen;
+  let term = store.pixel?.tree ?? null;
+  for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
+  return term;
+}
+
+function rays(
+  context: CanvasRenderingContext2D,
+  view: Projector,
+  store: Store,
+  color: (name: string) => string,
+) {
+  const focus = store.hovered ?? store.chosen;
+  for (const { path, segment, term } of segments(store.pixel)) {
+    const strong = path === focus;
+    const paint = color(`--ray-${segment.role}`);
+    const dashed = segment.role === "shadowed" || segment.role === "lit";
+    context.setLineDash(dashed ? [5, 4] : []);
+    stroke(context, view, [[segment.from, segment.to]], paint, strong ? 3.2 : 1.6, strong ? 1 : 0.85);
+    context.setLineDash([]);
+    arrow(context, view, segment.from, segment.to, paint, strong ? 9 : 6);
+    if (term.normal) {
+      const [at, n] = term.normal;
+      const reach = 0.16 * Math.max(1e-6, length(sub(segment.to, segment.from)));
+      stroke(context, view, [[at, add(at, mul(reach, n))]], color("--normal"), 1.6, 1);
+      arrow(context, view, at, add(at, mul(reach * 1.8, n)), color("--normal"), 5);
+      const seen = view.point(at);
+      if (seen) dot(context, seen.x, seen.y, strong ? 4.5 : 3, paint);
+    }
+  }
+}
+
+function stroke(
+  context: CanvasRenderingContext2D,
+  view: Projector,
+  lines: [Vec, Vec][],
+  color: string,
+  width: number,
+  alpha: number,
+) {
+  context.strokeStyle = color;
+  context.lineWidth = width;
+  context.globalAlpha = alpha;
+  context.beginPath();
+  for (const [a, b] of lines) {
+    const seen = view.line(a, b);
+    if (!seen) continue;
+    context.moveTo(seen[0].x, seen[0].y);
+    context.lineTo(seen[1].x, seen[1].y);
+  }
+  context.stroke();
+  context.globalAlpha = 1;
+}
+
+/** A head in the middle of a ray, which says where it goes. */
+function arrow(
+  context: CanvasRenderingContext2D,
+  view: Projector,
+  from: Vec,
+  to: Vec,
+  color: string,
+  size: number,
+) {
+  const seen = view.line(from, to);
+  if (!seen) return;
+  const [a, b] = seen;
+  const angle = Math.atan2(b.y - a.y, b.x - a.x);
+  if (Math.hypot(b.x - a.x, b.y - a.y) < 3 * size) return;
+  const [x, y] = [a.x + 0.56 * (b.x - a.x), a.y + 0.56 * (b.y - a.y)];
+  context.fillStyle = color;
+  context.beginPath();
+  context.moveTo(x + size * Math.cos(angle), y + size * Math.sin(angle));
+  context.lineTo(x + size * Math.cos(angle + 2.5), y + size * Math.sin(angle + 2.5));
+  context.lineTo(x + size * Math.cos(angle - 2.5), y + size * Math.sin(angle - 2.5));
+  context.fill();
+}
+
+function dot(context: CanvasRenderingContext2D, x: number, y: number, radius: number, color: string) {
+  context.fillStyle = color;
+  context.beginPath();
+  context.arc(x, y, radius, 0, 2 * Math.PI);
+  context.fill();
+}

@@ -1,0 +1,61 @@
+import type { CameraState, PixelAccount, Role, Segment, Term } from "../protocol";
+import type { Vec } from "./space";
+import { add, mul } from "./space";
+
+/** A term with its path in the tree. */
+export interface Place {
+  path: string;
+  term: Term;
+}
+
+/** All terms of a tree in the order of reading. */
+export function flat(term: Term | null | undefined, path = "0"): Place[] {
+  if (!term) return [];
+  return [{ path, term }, ...term.terms.flatMap((child, i) => flat(child, `${path}.${i}`))];
+}
+
+/** The segments of a tree, each with the path of its term. */
+export function segments(pixel: PixelAccount | null): { path: string; segment: Segment; term: Term }[] {
+  return flat(pixel?.tree).flatMap(({ path, term }) =>
+    term.segment ? [{ path, segment: term.segment, term }] : [],
+  );
+}
+
+/** Names of rays for people. */
+export const roles: Record<Role, string> = {
+  camera: "camera ray",
+  reflected: "mirrored ray",
+  transmitted: "transmitted ray",
+  scattered: "scattered ray",
+  lit: "shadow ray, free",
+  shadowed: "shadow ray, blocked",
+};
+
+/** Points that an eye should see: hits, the camera, and lights that are not far away. */
+export function points(pixel: PixelAccount | null, camera: CameraState | null): Vec[] {
+  const all: Vec[] = camera ? [camera.eye] : [];
+  for (const { segment } of segments(pixel)) {
+    all.push(segment.from);
+    // A far light would make all else small.
+    if (!segment.escapes && segment.role !== "lit") all.push(segment.to);
+  }
+  return all;
+}
+
+/** The lines of a camera's pyramid up to a distance. */
+export function frustum(camera: CameraState, aspect: number, reach: number): [Vec, Vec][] {
+  const [x, y] = aspect >= 1 ? [1, 1 / aspect] : [aspect, 1];
+  const corner = (sx: number, sy: number): Vec => {
+    const across = add(
+      mul(sx * x * camera.half_width, camera.right),
+      mul(sy * y * camera.half_width, camera.up),
+    );
+    return add(camera.eye, mul(reach, add(camera.forward, across)));
+  };
+  const corners = [corner(-1, -1), corner(1, -1), corner(1, 1), corner(-1, 1)];
+  const lines: [Vec, Vec][] = [];
+  corners.forEach((c, i) => {
+    lines.push([camera.eye, c], [c, corners[(i + 1) % 4] as Vec]);
+  });
+  return lines;
+}

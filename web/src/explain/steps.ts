@@ -1,0 +1,104 @@
+import type { CastAccount, PixelAccount, Term } from "../protocol";
+import { short } from "../ui/slider";
+import { flat } from "./segments";
+
+/** Lines of the algorithm, as a lecture writes it. */
+export const code = [
+  "for each pixel (x, y)",
+  "    ray ← camera(x, y)",
+  "    color ← trace(ray)",
+  "trace(ray):",
+  "    closest ← ∞",
+  "    for each object",
+  "        t ← intersect(object, ray)",
+  "        if 0 < t < closest: closest ← t",
+  "    if closest = ∞: return background",
+  "    color ← ambient",
+  "    for each light",
+  "        if the shadow ray is free: color += shade(light)",
+  "    color += trace(mirrored ray) + trace(transmitted ray)",
+  "    return color",
+] as const;
+
+/** A moment of the algorithm. */
+export interface Step {
+  /** The line of the code that runs. */
+  line: number;
+  /** What happens, with its numbers. */
+  words: string;
+  /** The term that it belongs to. */
+  path: string;
+  /** Number of the object that is asked. */
+  object?: number;
+  /** The least t so far. */
+  closest?: number;
+}
+
+/** The moments of a pixel, in the order in which the algorithm lives them. */
+export function steps(pixel: PixelAccount, casts: Map<string, CastAccount>): Step[] {
+  const all: Step[] = [
+    { line: 0, words: `pixel ${pixel.x}, ${pixel.y}`, path: "0" },
+    { line: 1, words: `a ray through place (${short(pixel.at[0])}, ${short(pixel.at[1])})`, path: "0" },
+  ];
+  if (pixel.tree) trace(pixel.tree, "0", casts, all);
+  all.push({
+    line: 2,
+    words: `the pixel has its colour: ${pixel.bytes.join(", ")} in eight bits`,
+    path: "0",
+  });
+  return all;
+}
+
+function trace(term: Term, path: string, casts: Map<string, CastAccount>, all: Step[]) {
+  all.push({ line: 3, words: term.title, path });
+  all.push({ line: 4, words: "nothing is hit yet", path, closest: Number.POSITIVE_INFINITY });
+  let closest = Number.POSITIVE_INFINITY;
+  for (const test of casts.get(path)?.tests ?? []) {
+    const hit = (test.verdict === "closest" || test.verdict === "farther") && test.t !== null;
+    if (!hit) {
+      all.push({ line: 6, words: `${test.name}: ${test.why}`, path, object: test.object, closest });
+      continue;
+    }
+    const t = test.t ?? closest;
+    if (t < closest) {
+      closest = t;
+      all.push({
+        line: 7,
+        words: `${test.name}: t = ${short(t)} is the closest so far`,
+        path,
+        object: test.object,
+        closest,
+      });
+    } else {
+      const words = `${test.name}: t = ${short(t)} lies behind ${short(closest)}`;
+      all.push({ line: 6, words, path, object: test.object, closest });
+    }
+  }
+  const children = term.terms.map((child, i) => ({ child, path: `${path}.${i}` }));
+  for (const { child, path: at } of children) {
+    if (child.segment && child.segment.role !== "lit" && child.segment.role !== "shadowed") continue;
+    all.push({ line: lineOf(child), words: sentence(child), path: at, closest });
+  }
+  for (const { child, path: at } of children) {
+    for (const inner of flat(child, at)) {
+      const role = inner.term.segment?.role;
+      if (!role || role === "lit" || role === "shadowed") continue;
+      all.push({ line: 12, words: inner.term.title, path: inner.path, closest });
+      trace(inner.term, inner.path, casts, all);
+      break;
+    }
+  }
+  all.push({ line: 13, words: `back with ${term.value.map((x) => short(x, 3)).join(", ")}`, path, closest });
+}
+
+function lineOf(term: Term): number {
+  if (term.title === "Background") return 8;
+  if (term.title === "Ambient light") return 9;
+  if (term.segment) return 11;
+  return term.terms.length > 0 ? 12 : 10;
+}
+
+function sentence(term: Term): string {
+  if (term.segment?.role === "shadowed") return `${term.title}: it adds nothing`;
+  return `${term.title} adds ${term.adds.map((x) => short(x, 3)).join(", ")}`;
+}

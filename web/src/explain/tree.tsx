@@ -1,0 +1,92 @@
+import { useState } from "preact/hooks";
+import type { Term } from "../protocol";
+import { short } from "../ui/slider";
+import type { Store } from "../viewer/store";
+import { Rows } from "./rows";
+
+/** Terms that count for less are folded. */
+const little = 0.01;
+
+/** The tree of a pixel, the largest terms first. */
+export function Tree({ store }: { store: Store }) {
+  const tree = store.pixel?.tree;
+  if (!tree) return <p class="hint">The camera sees nothing through this pixel.</p>;
+  return (
+    <ul class="tree" role="tree" aria-label="Terms of the pixel">
+      <Branch store={store} term={tree} path="0" level={1} />
+    </ul>
+  );
+}
+
+function Branch({ store, term, path, level }: { store: Store; term: Term; path: string; level: number }) {
+  const [open, setOpen] = useState(level < 4);
+  const [all, setAll] = useState(false);
+  const order = term.terms.map((child, i) => ({ child, path: `${path}.${i}` }));
+  order.sort((a, b) => b.child.share - a.child.share);
+  const large = order.filter(
+    ({ child }) => all || Math.abs(child.share) >= little || child.segment?.role === "shadowed",
+  );
+  const hidden = order.length - large.length;
+  const chosen = store.chosen === path;
+  const choose = () => {
+    store.unfolded = !(chosen && store.unfolded);
+    store.choose(path);
+    if (term.place) store.goTo(term.place);
+  };
+  return (
+    <li
+      role="treeitem"
+      aria-expanded={order.length > 0 ? open : undefined}
+      aria-selected={chosen}
+      aria-level={level}
+    >
+      <div
+        class={`term${chosen ? " chosen" : ""}${store.hovered === path ? " hovered" : ""}`}
+        onPointerEnter={() => store.hover(path)}
+        onPointerLeave={() => store.hover(null)}
+      >
+        <button
+          type="button"
+          class="fold"
+          aria-label={open ? "Fold" : "Unfold"}
+          disabled={order.length === 0}
+          onClick={() => setOpen(!open)}
+        >
+          {order.length === 0 ? "·" : open ? "▾" : "▸"}
+        </button>
+        <button type="button" class="title" onClick={choose}>
+          <span class="chip" style={{ background: `rgb(${term.swatch.join(" ")})` }} />
+          <span class={`words ${term.segment ? `ray-${term.segment.role}` : ""}`}>{term.title}</span>
+          <span class="share">{percent(term.share)}</span>
+        </button>
+      </div>
+      {chosen && store.unfolded && (
+        <div class="detail">
+          <Rows rows={term.rows} />
+          <p class="value">
+            adds <strong>{term.adds.map((x) => short(x)).join("  ")}</strong>
+          </p>
+        </div>
+      )}
+      {open && large.length > 0 && (
+        <ul role="group">
+          {large.map(({ child, path: at }) => (
+            <Branch key={at} store={store} term={child} path={at} level={level + 1} />
+          ))}
+        </ul>
+      )}
+      {open && hidden > 0 && (
+        <button type="button" class="more" onClick={() => setAll(true)}>
+          {hidden} more below 1 %
+        </button>
+      )}
+    </li>
+  );
+}
+
+function percent(share: number): string {
+  const value = 100 * share;
+  if (value === 0) return "0 %";
+  if (Math.abs(value) < 0.1) return "< 0.1 %";
+  return `${value.toFixed(Math.abs(value) < 10 ? 1 : 0)} %`;
+}

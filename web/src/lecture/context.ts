@@ -1,0 +1,111 @@
+import { createContext } from "preact";
+import { useContext, useEffect, useMemo, useRef, useState } from "preact/hooks";
+import type { Engine, Session } from "../engine/engine";
+import type { Vec } from "../explain/space";
+import type { CastAccount, PixelAccount, Setting } from "../protocol";
+
+/** The engine of all figures. */
+export const EngineContext = createContext<Engine | null>(null);
+
+/** Samples of figures, which are to be finished soon. */
+const few: Setting[] = [{ name: "samples", value: "4" }];
+
+/** A session with a scene of a figure's own; the text may change. */
+export function useScene(text: string, options: Setting[] = few): Session {
+  const engine = useContext(EngineContext);
+  if (!engine) throw new Error("a figure stands in a lecture");
+  const session = useMemo(() => engine.session(), [engine]);
+  const opened = useRef(false);
+  const key = JSON.stringify(options);
+  useEffect(() => {
+    if (opened.current) session.tell({ kind: "edit", text });
+    else session.tell({ kind: "open", name: "figure.txt", text });
+    opened.current = true;
+  }, [session, text]);
+  useEffect(() => {
+    session.tell({ kind: "options", options });
+  }, [session, key]);
+  useEffect(
+    () =>
+      session.on((event) => {
+        // A figure that writes a wrong scene would show an old one.
+        if (event.kind !== "scene" || event.contents) return;
+        console.error(event.findings.map((finding) => finding.message).join("; "));
+      }),
+    [session],
+  );
+  useEffect(() => () => session.close(), [session]);
+  return session;
+}
+
+/** What all objects of a scene say of a ray; asked anew when the ray or the scene changes. */
+export function useCast(session: Session, origin: Vec, direction: Vec, scene: string): CastAccount | null {
+  const [cast, setCast] = useState<CastAccount | null>(null);
+  const latest = useRef(0);
+  useEffect(() => {
+    const number = ++latest.current;
+    session
+      .ask({ kind: "cast", origin, direction, t_max: null }, "cast")
+      .then(({ cast }) => number === latest.current && setCast(cast))
+      .catch(() => {});
+  }, [session, scene, ...origin, ...direction]);
+  return cast;
+}
+
+/** Why a pixel of a session's picture has its colour. */
+export function usePixel(session: Session, x: number, y: number, key: string): PixelAccount | null {
+  const [pixel, setPixel] = useState<PixelAccount | null>(null);
+  const latest = useRef(0);
+  useEffect(() => {
+    const number = ++latest.current;
+    session
+      .ask({ kind: "explain", x, y, sample: null }, "explained")
+      .then(({ pixel }) => number === latest.current && setPixel(pixel))
+      .catch(() => {});
+  }, [session, x, y, key]);
+  return pixel;
+}
+
+/** Why a ray has its colour: that of the only pixel of a camera that looks along it. */
+export function useTrace(session: Session, from: Vec, direction: Vec, key: string): PixelAccount | null {
+  const [pixel, setPixel] = useState<PixelAccount | null>(null);
+  const latest = useRef(0);
+  useEffect(() => {
+    const number = ++latest.current;
+    const up: Vec = Math.abs(direction[1]) > 0.9 * Math.hypot(...direction) ? [0, 0, 1] : [0, 1, 0];
+    session.tell({ kind: "size", width: 1, height: 1 });
+    session.tell({ kind: "look", center: from, direction, up, angle: 1, moving: false });
+    session
+      .ask({ kind: "explain", x: 0, y: 0, sample: null }, "explained")
+      .then(({ pixel }) => number === latest.current && setPixel(pixel))
+      .catch(() => {});
+  }, [session, key, ...from, ...direction]);
+  return pixel;
+}
+
+/** The number that a test's row has, such as `Δ`. */
+export function numberOf(cast: CastAccount | null, object: number, name: string): number | null {
+  const test = cast?.tests.find((test) => test.object === object);
+  return test?.rows.find((row) => row.name === name)?.value ?? null;
+}
+
+/** The colours of the page in linear light, for backgrounds of rendered figures. */
+export function usePaper(): string {
+  const [dark, setDark] = useState(isDark);
+  useEffect(() => {
+    const look = () => setDark(isDark());
+    const system = matchMedia("(prefers-color-scheme: dark)");
+    system.addEventListener("change", look);
+    window.addEventListener("durer-theme", look);
+    return () => {
+      system.removeEventListener("change", look);
+      window.removeEventListener("durer-theme", look);
+    };
+  }, []);
+  return dark ? "0.0080 0.0086 0.0103" : "0.9647 0.9559 0.9301";
+}
+
+function isDark(): boolean {
+  const theme = document.documentElement.dataset.theme;
+  return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+}

@@ -1,0 +1,182 @@
+import type { ComponentChildren } from "preact";
+import { useRef } from "preact/hooks";
+import { add, mul, type Projector, type Vec } from "../explain/space";
+
+interface LineProps {
+  view: Projector;
+  from: Vec;
+  to: Vec;
+  color: string;
+  width?: number;
+  dashed?: boolean;
+  arrow?: boolean;
+}
+
+/** A line in space. */
+export function Line({ view, from, to, color, width = 2.5, dashed, arrow }: LineProps) {
+  const seen = view.line(from, to);
+  if (!seen) return null;
+  const [a, b] = seen;
+  return (
+    <g stroke={color} fill={color} stroke-width={width} stroke-linecap="round">
+      <line x1={a.x} y1={a.y} x2={b.x} y2={b.y} stroke-dasharray={dashed ? "6 6" : undefined} />
+      {arrow && <Head x={b.x} y={b.y} angle={Math.atan2(b.y - a.y, b.x - a.x)} size={4 + 2.4 * width} />}
+    </g>
+  );
+}
+
+/** The head of an arrow on a page. */
+export function Head({ x, y, angle, size }: { x: number; y: number; angle: number; size: number }) {
+  const corner = (turn: number) =>
+    `${x + size * Math.cos(angle + turn)},${y + size * Math.sin(angle + turn)}`;
+  return <polygon points={`${x},${y} ${corner(2.68)} ${corner(-2.68)}`} stroke="none" />;
+}
+
+/** A vector from a point. */
+export function Arrow(props: Omit<LineProps, "to" | "arrow"> & { dir: Vec; length?: number }) {
+  const { dir, length = 1, ...rest } = props;
+  return <Line {...rest} to={add(props.from, mul(length, dir))} arrow />;
+}
+
+/** A closed or open row of lines. */
+export function Path({
+  view,
+  points,
+  color,
+  width = 2,
+  fill = "none",
+  opacity = 1,
+  closed = false,
+}: {
+  view: Projector;
+  points: Vec[];
+  color: string;
+  width?: number;
+  fill?: string;
+  opacity?: number;
+  closed?: boolean;
+}) {
+  const seen = points.map((point) => view.point(point));
+  if (seen.some((point) => point === null)) return null;
+  const text = seen.map((point) => `${point?.x},${point?.y}`).join(" ");
+  const look = { points: text, stroke: color, "stroke-width": width, fill, "fill-opacity": opacity };
+  return closed ? (
+    <polygon {...look} stroke-linejoin="round" />
+  ) : (
+    <polyline {...look} stroke-linejoin="round" />
+  );
+}
+
+/** A name beside a point in space. */
+export function Name({
+  view,
+  at,
+  color,
+  children,
+  dx = 10,
+  dy = -10,
+}: {
+  view: Projector;
+  at: Vec;
+  color?: string;
+  children: ComponentChildren;
+  dx?: number;
+  dy?: number;
+}) {
+  const seen = view.point(at);
+  if (!seen) return null;
+  return (
+    <text class="name" x={seen.x + dx} y={seen.y + dy} fill={color ?? "var(--ink)"}>
+      {children}
+    </text>
+  );
+}
+
+/** A point in space. */
+export function Dot({
+  view,
+  at,
+  color,
+  radius = 5,
+}: {
+  view: Projector;
+  at: Vec;
+  color: string;
+  radius?: number;
+}) {
+  const seen = view.point(at);
+  return (
+    seen && (
+      <circle cx={seen.x} cy={seen.y} r={radius} fill={color} stroke="var(--paper)" stroke-width={1.5} />
+    )
+  );
+}
+
+interface HandleProps {
+  x: number;
+  y: number;
+  color: string;
+  label: string;
+  /** Where the pointer is, on the page of the drawing. */
+  drag(x: number, y: number): void;
+  /** By arrow keys, in steps of a pixel. */
+  nudge?(dx: number, dy: number): void;
+  end?(): void;
+}
+
+/** A point that is dragged, or moved by arrow keys. */
+export function Handle({ x, y, color, label, drag, nudge, end }: HandleProps) {
+  const held = useRef<{ dx: number; dy: number } | null>(null);
+  const place = (event: PointerEvent & { currentTarget: Element }) => {
+    const svg = event.currentTarget.closest("svg");
+    const box = svg?.getBoundingClientRect();
+    return { x: event.clientX - (box?.left ?? 0), y: event.clientY - (box?.top ?? 0) };
+  };
+  const release = () => {
+    held.current = null;
+    end?.();
+  };
+  return (
+    <g
+      class="handle"
+      role="button"
+      tabIndex={0}
+      aria-label={`${label}: drag, or use the arrow keys`}
+      transform={`translate(${x} ${y})`}
+      onPointerDown={(event) => {
+        event.preventDefault();
+        event.stopPropagation();
+        event.currentTarget.focus();
+        event.currentTarget.setPointerCapture(event.pointerId);
+        const at = place(event);
+        held.current = { dx: x - at.x, dy: y - at.y };
+      }}
+      onPointerMove={(event) => {
+        if (!held.current) return;
+        const at = place(event);
+        drag(at.x + held.current.dx, at.y + held.current.dy);
+      }}
+      onPointerUp={release}
+      onPointerCancel={release}
+      onKeyDown={(event) => {
+        const step = event.shiftKey ? 24 : 6;
+        const by: Record<string, [number, number]> = {
+          ArrowLeft: [-step, 0],
+          ArrowRight: [step, 0],
+          ArrowUp: [0, -step],
+          ArrowDown: [0, step],
+        };
+        const move = by[event.key];
+        if (!move) return;
+        event.preventDefault();
+        event.stopPropagation();
+        if (nudge) nudge(...move);
+        else drag(x + move[0], y + move[1]);
+        end?.();
+      }}
+    >
+      <circle class="halo" r={17} fill={color} />
+      <circle r={8} fill={color} stroke="var(--paper)" stroke-width={2.5} />
+    </g>
+  );
+}

@@ -1,0 +1,201 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import { fixed } from "../../ui/slider";
+import { draw } from "../../viewer/picture";
+import { numberOf, useCast, usePaper, useScene } from "../context";
+import { Handle } from "../draw";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { PlaneName, Plot, type Scale } from "../plot";
+import { paint, sceneOf } from "../scenes";
+import type { Topic } from "../topic";
+
+type Point = [number, number];
+const colors = ["var(--ray-shadowed)", "var(--ray-lit)", "var(--ray-camera)"] as const;
+const names = ["α", "β", "γ"] as const;
+const corner = ["a", "b", "c"] as const;
+const reach: [number, number] = [4.2, 2.35];
+const aspect = reach[0] / reach[1];
+
+function BarycentricFigure() {
+  const [corners, setCorners] = useState<[Point, Point, Point]>([
+    [-2.5, -1.6],
+    [2.7, -1.2],
+    [0.3, 1.9],
+  ]);
+  const [point, setPoint] = useState<Point>([0.1, -0.3]);
+  const [shows, setShows] = useState<"barycentric" | "areas">("barycentric");
+  const [a, b, c] = corners;
+  const scene = sceneOf({
+    paper: usePaper(),
+    materials: [paint.stone],
+    group: `MaterialIndex 0 Triangle { ${corners.map(([x, y], i) => `vertex${i} ${x} ${y} 0`).join(" ")} }`,
+  });
+  const text = scene.replace(
+    /^.*\n/,
+    `OrthographicCamera { center 0 0 5 direction 0 0 -1 up 0 1 0 size ${2 * reach[0]} }\n`,
+  );
+  const session = useScene(text, [{ name: "samples", value: "1" }]);
+  const cast = useCast(session, [...point, 4], [0, 0, -1], text);
+  const weights = names.map((name) => numberOf(cast, 0, name));
+  const inside = weights.every((weight) => (weight ?? -1) >= 0);
+  return (
+    <Figure
+      stage={
+        <div class="layers">
+          {shows === "barycentric" && <Backdrop session={session} />}
+          <Plot reach={reach} aspect={aspect} label="A triangle and a point of its plane">
+            {(scale) => (
+              <>
+                {shows === "areas" &&
+                  [
+                    [point, b, c],
+                    [a, point, c],
+                    [a, b, point],
+                  ].map((part, i) => (
+                    <polygon
+                      key={i}
+                      points={page(part as Point[], scale)}
+                      fill={colors[i]}
+                      fill-opacity={0.32}
+                    />
+                  ))}
+                <polygon
+                  points={page(corners, scale)}
+                  fill="none"
+                  stroke="var(--ink)"
+                  stroke-width={3}
+                  stroke-linejoin="round"
+                />
+                {corners.map((at, i) => (
+                  <line
+                    key={i}
+                    x1={scale.x(point[0])}
+                    y1={scale.y(point[1])}
+                    x2={scale.x(at[0])}
+                    y2={scale.y(at[1])}
+                    stroke={shows === "areas" ? "var(--ink)" : "var(--paper)"}
+                    stroke-width={1.5}
+                  />
+                ))}
+                {corners.map((at, i) => (
+                  <g key={i}>
+                    <PlaneName
+                      scale={scale}
+                      at={at}
+                      dx={at[0] < 0 ? -34 : 18}
+                      dy={at[1] > 0 ? -14 : 26}
+                      color={colors[i] ?? ""}
+                    >
+                      {corner[i]}
+                    </PlaneName>
+                    <Handle
+                      x={scale.x(at[0])}
+                      y={scale.y(at[1])}
+                      color={colors[i] ?? ""}
+                      label={`Corner ${corner[i]}`}
+                      drag={(x, y) => setCorners(corners.with(i, scale.back(x, y)) as [Point, Point, Point])}
+                    />
+                  </g>
+                ))}
+                <PlaneName scale={scale} at={point} dy={-20}>
+                  P
+                </PlaneName>
+                <Handle
+                  x={scale.x(point[0])}
+                  y={scale.y(point[1])}
+                  color="var(--ink)"
+                  label="The point"
+                  drag={(x, y) => setPoint(scale.back(x, y))}
+                />
+              </>
+            )}
+          </Plot>
+        </div>
+      }
+      controls={
+        <Choice
+          label="Shown inside"
+          value={shows}
+          values={[
+            ["barycentric", "Weights as colour"],
+            ["areas", "Weights as areas"],
+          ]}
+          change={(value) => setShows(value)}
+        />
+      }
+    >
+      <Equation
+        numbers={names.map((name, i) => (
+          <span key={name} style={{ color: colors[i] }}>
+            {name} = <b style={{ color: colors[i] }}>{fixed(weights[i] ?? Number.NaN, 3)}</b>
+            {i < 2 ? ", " : ""}
+          </span>
+        ))}
+      >
+        <Sym vector>P</Sym> = <Sym color={colors[0]}>α</Sym> <Sym vector>a</Sym> +{" "}
+        <Sym color={colors[1]}>β</Sym> <Sym vector>b</Sym> + <Sym color={colors[2]}>γ</Sym>{" "}
+        <Sym vector>c</Sym>
+      </Equation>
+      <Equation
+        numbers={
+          inside
+            ? "all are positive: P lies inside"
+            : `${names.filter((_, i) => (weights[i] ?? 0) < 0).join(" and ")} below 0: P lies outside`
+        }
+      >
+        <Sym>α</Sym> + <Sym>β</Sym> + <Sym>γ</Sym> = 1, inside where none is negative
+      </Equation>
+      <Equation
+        numbers={
+          <>
+            D = <b>{fixed(numberOf(cast, 0, "D") ?? Number.NaN, 3)}</b>, t ={" "}
+            <b>{fixed(numberOf(cast, 0, "t") ?? Number.NaN, 3)}</b>
+          </>
+        }
+      >
+        <Sym>β</Sym> = |−<Sym vector>d</Sym>, <Sym vector>o</Sym>−<Sym vector>a</Sym>, <Sym vector>c</Sym>−
+        <Sym vector>a</Sym>| / <Sym>D</Sym> (Cramer)
+      </Equation>
+    </Figure>
+  );
+}
+
+/** The triangle as the tracer sees its barycentric coordinates. */
+function Backdrop({ session }: { session: ReturnType<typeof useScene> }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    session.tell({ kind: "size", width: 1000, height: Math.round(1000 / aspect) });
+    session.tell({ kind: "show", picture: "barycentric", stops: 0, tone: "none" });
+    return session.on((event, bytes) => {
+      if (event.kind !== "picture" || !canvas.current) return;
+      // What is no triangle is the page.
+      const pixels = bytes.slice();
+      for (let i = 0; i < pixels.length; i += 4) {
+        if (pixels[i] === 0 && pixels[i + 1] === 0 && pixels[i + 2] === 0) pixels[i + 3] = 0;
+      }
+      draw(canvas.current, event.head.width, event.head.height, pixels);
+    });
+  }, [session]);
+  return <canvas class="backdrop" ref={canvas} />;
+}
+
+function page(points: Point[], scale: Scale): string {
+  return points.map(([x, y]) => `${scale.x(x)},${scale.y(y)}`).join(" ");
+}
+
+export const barycentric: Topic = {
+  id: "triangle",
+  title: "Triangle",
+  lead: "Three weights say where in a triangle a point lies. They are areas, and they mix whatever the corners have.",
+  text: [
+    "Every point of the plane is a mix of the three corners, with weights that sum to 1. Each weight is the area of the part opposite its corner, as a share of the whole. Drag P across an edge: the weight of the corner opposite turns negative.",
+    "The same weights mix colours, normals and texture coordinates of the corners: this is how a mesh of flat triangles is shaded smoothly.",
+  ],
+  Figure: BarycentricFigure,
+  questions: [
+    { ask: "Where are all three weights the same?", answer: "At the centroid: each is one third." },
+    {
+      ask: "Two neighbours share an edge. Why is there no seam in what the weights mix?",
+      answer: "On the edge the third weight is 0, and the other two depend on the edge's own corners alone.",
+    },
+  ],
+};

@@ -1,0 +1,217 @@
+import { useState } from "preact/hooks";
+import { flat } from "../../explain/segments";
+import { fixed, Slider } from "../../ui/slider";
+import { usePaper, useScene, useTrace } from "../context";
+import { Handle } from "../draw";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { PlaneArrow, PlaneName, Plot } from "../plot";
+import { sceneOf } from "../scenes";
+import type { Topic } from "../topic";
+
+type Side = "outside" | "inside";
+
+function GlassFigure() {
+  const [degrees, setDegrees] = useState(48);
+  const [index, setIndex] = useState(1.5);
+  const [side, setSide] = useState<Side>("outside");
+  const text = sceneOf({
+    paper: usePaper(),
+    materials: [`diffuseColor 0 0 0 specularColor 1 1 1 transparentColor 1 1 1 refractionIndex ${index}`],
+    group: "MaterialIndex 0 Plane { normal 0 1 0 offset 0 }",
+  });
+  const probe = useScene(text, [
+    { name: "samples", value: "1" },
+    { name: "min-throughput", value: "0" },
+    { name: "bounces", value: "1" },
+  ]);
+  const sign = side === "outside" ? 1 : -1;
+  const angle = (degrees * Math.PI) / 180;
+  const from: [number, number] = [-2.1 * Math.sin(angle), sign * 2.1 * Math.cos(angle)];
+  const pixel = useTrace(probe, [...from, 0], [-from[0], -from[1], 0], text);
+  const terms = flat(pixel?.tree).map(({ term }) => term);
+  const split = terms.find((term) => term.rows.some((row) => row.name === "η"));
+  const value = (name: string) => split?.rows.find((row) => row.name === name)?.value ?? null;
+  const [here, there, sine] = [value("η"), value("η′"), value("sin θ′")];
+  const total = sine != null && sine > 1;
+  const mirrored = total ? 1 : value("R");
+  const through = terms.find((term) => term.segment?.role === "transmitted")?.segment;
+  const back = terms.find((term) => term.segment?.role === "reflected")?.segment;
+  const end = (segment: typeof through): [number, number] | null => {
+    if (!segment) return null;
+    const [dx, dy] = [segment.to[0] - segment.from[0], segment.to[1] - segment.from[1]];
+    const size = Math.hypot(dx, dy) || 1;
+    return [(2.1 * dx) / size, (2.1 * dy) / size];
+  };
+  const [ahead, away] = [end(through), end(back)];
+  const width = (share: number) => 1 + 7 * share;
+  return (
+    <Figure
+      stage={
+        <Plot reach={[4.4, 2.4]} label="A ray at the surface of glass">
+          {(scale) => (
+            <>
+              <rect
+                x={0}
+                y={scale.y(0)}
+                width={scale.width}
+                height={scale.height}
+                fill="var(--ray-transmitted)"
+                fill-opacity={0.13}
+              />
+              <line
+                x1={0}
+                x2={scale.width}
+                y1={scale.y(0)}
+                y2={scale.y(0)}
+                stroke="var(--ink)"
+                stroke-width={2.5}
+              />
+              <line
+                x1={scale.x(0)}
+                x2={scale.x(0)}
+                y1={scale.y(2.2)}
+                y2={scale.y(-2.2)}
+                stroke="var(--soft)"
+                stroke-dasharray="6 6"
+              />
+              <text class="name small" x={16} y={scale.y(0) - 14}>
+                air, 1
+              </text>
+              <text class="name small" x={16} y={scale.y(0) + 28}>
+                glass, {fixed(index)}
+              </text>
+              {away && (
+                <PlaneArrow
+                  scale={scale}
+                  from={[0, 0]}
+                  to={away}
+                  color="var(--ray-reflected)"
+                  width={width(mirrored ?? 0)}
+                />
+              )}
+              {ahead && !total && (
+                <PlaneArrow
+                  scale={scale}
+                  from={[0, 0]}
+                  to={ahead}
+                  color="var(--ray-transmitted)"
+                  width={width(1 - (mirrored ?? 0))}
+                />
+              )}
+              <PlaneArrow scale={scale} from={from} to={[0, 0]} color="var(--ray-camera)" width={8} />
+              {away && (
+                <PlaneName scale={scale} at={away} color="var(--ray-reflected)">
+                  {Math.round(100 * (mirrored ?? 0))} %
+                </PlaneName>
+              )}
+              {ahead && !total && (
+                <PlaneName
+                  scale={scale}
+                  at={ahead}
+                  color="var(--ray-transmitted)"
+                  dy={side === "outside" ? 24 : -12}
+                >
+                  {Math.round(100 * (1 - (mirrored ?? 0)))} %
+                </PlaneName>
+              )}
+              <PlaneName scale={scale} at={[from[0] / 3.4, from[1] / 2.2]} dx={6} color="var(--ray-camera)">
+                θ
+              </PlaneName>
+              <Handle
+                x={scale.x(from[0])}
+                y={scale.y(from[1])}
+                color="var(--ray-camera)"
+                label="Start of the ray"
+                drag={(x, y) => {
+                  const [px, py] = scale.back(x, y);
+                  setDegrees(
+                    Math.min(
+                      89,
+                      Math.max(
+                        1,
+                        Math.round((Math.atan2(Math.abs(px), Math.max(0.01, sign * py)) * 180) / Math.PI),
+                      ),
+                    ),
+                  );
+                }}
+              />
+            </>
+          )}
+        </Plot>
+      }
+      controls={
+        <>
+          <Slider
+            label="θ"
+            value={degrees}
+            min={1}
+            max={89}
+            step={1}
+            text={`${degrees}°`}
+            change={setDegrees}
+          />
+          <Slider
+            label="refractive index"
+            value={index}
+            min={1.05}
+            max={2.5}
+            step={0.01}
+            text={fixed(index)}
+            change={setIndex}
+          />
+          <Choice
+            label="Where the ray comes from"
+            value={side}
+            values={[
+              ["outside", "From air"],
+              ["inside", "From glass"],
+            ]}
+            change={(value) => setSide(value)}
+          />
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          sine == null ? (
+            "–"
+          ) : (
+            <>
+              {fixed(here ?? Number.NaN)} · {fixed(Math.sin(angle), 3)} / {fixed(there ?? Number.NaN)} ={" "}
+              <b>{fixed(sine, 3)}</b>
+              {total ? " > 1: total reflection" : `, θ′ = ${fixed((Math.asin(sine) * 180) / Math.PI, 1)}°`}
+            </>
+          )
+        }
+      >
+        sin <Sym>θ</Sym>′ = <Sym>η</Sym> sin <Sym>θ</Sym> / <Sym>η</Sym>′
+      </Equation>
+      <Equation numbers={<b>{mirrored == null ? "–" : fixed(mirrored, 4)}</b>}>
+        <Sym color="var(--ray-reflected)">R</Sym> = <Sym>R</Sym>
+        <sub>0</sub> + (1 − <Sym>R</Sym>
+        <sub>0</sub>) (1 − cos <Sym>θ</Sym>)<sup>5</sup>
+      </Equation>
+    </Figure>
+  );
+}
+
+export const glass: Topic = {
+  id: "glass",
+  title: "Glass",
+  lead: "Snell says where the ray goes, Fresnel how much of the light goes there.",
+  text: [
+    "At the border of two media a ray bends: the sines of its angles are as the refractive indices, the other way round. Part of the light is mirrored, and the more of it the flatter the ray comes in: see the window of a shop from the side.",
+    "Let the ray come from the glass and turn it. Beyond some angle the sine would be more than 1: no light gets out, and the border is a perfect mirror.",
+  ],
+  Figure: GlassFigure,
+  questions: [
+    {
+      ask: "How much does a window mirror that you look straight through?",
+      answer: "With an index of 1.5, R₀ = ((1.5 − 1) / (1.5 + 1))² = 4 % at each side.",
+    },
+    {
+      ask: "At which angle does total reflection begin in glass of index 1.5?",
+      answer: "Where sin θ = 1 / 1.5: at 41.8°.",
+    },
+  ],
+};

@@ -1,0 +1,116 @@
+import { useState } from "preact/hooks";
+import room from "../../../../scenes/cornell-box.txt?raw";
+import type { PictureHead } from "../../protocol";
+import { Slider } from "../../ui/slider";
+import { useScene } from "../context";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { Rendered } from "../rendered";
+import type { Topic } from "../topic";
+
+const counts = [1, 2, 4, 8, 16, 32, 64, 128, 256];
+type Direct = "both" | "lights" | "bsdf";
+
+function PathsFigure() {
+  const [step, setStep] = useState(3);
+  const [bounces, setBounces] = useState(4);
+  const [direct, setDirect] = useState<Direct>("both");
+  const [head, setHead] = useState<PictureHead | null>(null);
+  const samples = counts[step] ?? 1;
+  const session = useScene(room, [
+    { name: "integrator", value: "path" },
+    { name: "samples", value: String(samples) },
+    { name: "bounces", value: String(bounces) },
+    { name: "direct", value: direct },
+  ]);
+  return (
+    <Figure
+      stage={
+        <div class="square">
+          <Rendered
+            session={session}
+            width={400}
+            height={400}
+            label="The Cornell box by paths"
+            told={setHead}
+          />
+        </div>
+      }
+      controls={
+        <>
+          <Slider
+            label="samples"
+            value={step}
+            min={0}
+            max={counts.length - 1}
+            step={1}
+            text={String(samples)}
+            change={setStep}
+          />
+          <Slider
+            label="bounces"
+            value={bounces}
+            min={0}
+            max={12}
+            step={1}
+            text={String(bounces)}
+            change={setBounces}
+          />
+          <Choice
+            label="How the lamp is found"
+            value={direct}
+            values={[
+              ["lights", "By choosing the lamp"],
+              ["bsdf", "By chance"],
+              ["both", "Both, weighted"],
+            ]}
+            change={(value) => setDirect(value)}
+          />
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          head ? (
+            <>
+              <b>{head.samples}</b> of {samples} samples a pixel, {(head.rays / 1e6).toFixed(1)} million rays
+            </>
+          ) : (
+            "…"
+          )
+        }
+      >
+        <Sym>L</Sym> ≈ 1/<Sym>N</Sym> Σ <Sym>f</Sym>(<Sym>path</Sym>
+        <sub>i</sub>) / <Sym>p</Sym>(<Sym>path</Sym>
+        <sub>i</sub>)
+      </Equation>
+      <Equation
+        numbers={
+          <>
+            error ∝ 1/√{samples} = <b>{(1 / Math.sqrt(samples)).toFixed(3)}</b>
+          </>
+        }
+      >
+        four times the samples, half the noise
+      </Equation>
+    </Figure>
+  );
+}
+
+export const paths: Topic = {
+  id: "paths",
+  title: "Paths",
+  lead: "Light comes from everywhere. A path tracer follows it back, one random direction after the other.",
+  text: [
+    "At each hit a direction is drawn by chance, and the path goes on until it finds a lamp or is worth too little. Each path is one guess of the pixel’s light; their mean is right, and its noise falls with the root of their number.",
+    "With 0 bounces only light straight from the lamp is seen. One bounce more, and the ceiling is lit by the floor, and the white boxes take on the red and green of the walls.",
+  ],
+  Figure: PathsFigure,
+  questions: [
+    {
+      ask: "Why is the picture so noisy if the lamp is only found by chance?",
+      answer:
+        "The lamp is small: most paths never meet it, and the few that do must count for all the others.",
+    },
+    { ask: "How many samples does half the noise take?", answer: "Four times as many." },
+  ],
+};

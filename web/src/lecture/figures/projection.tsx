@@ -1,0 +1,149 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import { fixed, Slider } from "../../ui/slider";
+import { draw } from "../../viewer/picture";
+import { usePaper, useScene } from "../context";
+import { Equation, Figure, Sym } from "../parts";
+import { PlaneName, Plot } from "../plot";
+import { paint, sceneOf } from "../scenes";
+import type { Topic } from "../topic";
+
+const [width, height] = [480, 400];
+/** Half the width of what is seen at the sphere in front. */
+const half = 1.9;
+const things: { x: number; z: number; r: number; color: string }[] = [
+  { x: -0.9, z: 0, r: 0.7, color: "#b7663f" },
+  { x: 0.35, z: -2.6, r: 0.7, color: "#4c79a8" },
+  { x: 1.35, z: -5.2, r: 0.7, color: "#c8a45a" },
+];
+
+function ProjectionFigure() {
+  const paper = usePaper();
+  const [angle, setAngle] = useState(60);
+  const parallel = angle <= 1;
+  const distance = half / Math.tan((Math.max(angle, 1) * Math.PI) / 360);
+  const scene = sceneOf({
+    paper,
+    materials: [paint.stone, paint.clay, paint.sky, paint.sand],
+    group: `MaterialIndex 0 Box { min -3 -0.8 -6.4 max 3 -0.7 1 }
+      ${things.map(({ x, z, r }, i) => `MaterialIndex ${i + 1} Sphere { center ${x} 0 ${z} radius ${r} }`).join("\n")}`,
+  });
+  const camera = parallel
+    ? `OrthographicCamera { center 0 0.55 12 direction 0 -0.02 -1 up 0 1 0 size ${2 * half} }`
+    : `PerspectiveCamera { center 0 0.55 ${distance} direction 0 ${-0.35 / Math.max(distance, 6)} -1 up 0 1 0 angle ${angle} }`;
+  const text = scene.replace(/^.*\n/, `${camera}\n`);
+  const session = useScene(text, [{ name: "samples", value: "4" }]);
+  const canvas = useRef<HTMLCanvasElement>(null);
+  useEffect(() => {
+    session.tell({ kind: "size", width, height });
+    return session.on((event, bytes) => {
+      if (event.kind === "picture" && canvas.current)
+        draw(canvas.current, event.head.width, event.head.height, bytes);
+    });
+  }, [session]);
+  return (
+    <Figure
+      stage={
+        <div class="halves">
+          <div class="stage render" style={{ aspectRatio: `${width} / ${height}` }}>
+            <canvas
+              ref={canvas}
+              role="img"
+              aria-label="The picture: three spheres of the same size, one behind the other"
+            />
+          </div>
+          <Plot reach={[4.4, 4.3]} middle={[0, -1.6]} aspect={width / height} label="The rays from above">
+            {(scale) => (
+              <>
+                {[-1, -0.5, 0, 0.5, 1].map((x) => {
+                  const top = -7;
+                  const start: [number, number] = parallel ? [x * half, 3] : [0, distance];
+                  const spread = parallel ? x * half : (x * half * (distance - top)) / distance;
+                  return (
+                    <line
+                      key={x}
+                      x1={scale.x(start[0])}
+                      y1={scale.y(-start[1])}
+                      x2={scale.x(spread)}
+                      y2={scale.y(-top)}
+                      stroke="var(--ray-camera)"
+                      stroke-width={2}
+                    />
+                  );
+                })}
+                {things.map(({ x, z, r, color }) => (
+                  <circle key={z} cx={scale.x(x)} cy={scale.y(-z)} r={r * scale.unit} fill={color} />
+                ))}
+                <line
+                  x1={scale.x(-half)}
+                  x2={scale.x(half)}
+                  y1={scale.y(0)}
+                  y2={scale.y(0)}
+                  stroke="var(--ink)"
+                  stroke-width={3}
+                />
+                {!parallel && distance < 3.4 && (
+                  <>
+                    <circle cx={scale.x(0)} cy={scale.y(-distance)} r={6} fill="var(--ink)" />
+                    <PlaneName scale={scale} at={[0, -distance]}>
+                      eye
+                    </PlaneName>
+                  </>
+                )}
+              </>
+            )}
+          </Plot>
+        </div>
+      }
+      controls={
+        <Slider
+          label="angle"
+          value={angle}
+          min={1}
+          max={110}
+          step={1}
+          text={parallel ? "parallel" : `${angle}°`}
+          change={setAngle}
+        />
+      }
+    >
+      <Equation
+        numbers={
+          parallel ? (
+            "all rays are parallel: size does not depend on distance"
+          ) : (
+            <>
+              {fixed(half, 1)} / tan {angle / 2}° = <b>{fixed(distance, 2)}</b>
+            </>
+          )
+        }
+      >
+        <Sym>distance</Sym> = <Sym>half width</Sym> / tan(<Sym>angle</Sym> / 2)
+      </Equation>
+      <Equation numbers={parallel ? <b>1 : 1</b> : <b>1 : {fixed((distance + 5.2) / distance, 2)}</b>}>
+        the sphere in front appears larger than the last
+      </Equation>
+    </Figure>
+  );
+}
+
+export const projection: Topic = {
+  id: "projection",
+  title: "Perspective and parallels",
+  lead: "Step back and narrow the angle at the same time: perspective fades into a parallel projection.",
+  text: [
+    "The three spheres have the same size. From near, the rays spread from the eye, and what is far behind appears small. The slider narrows the angle and moves the eye away so that the first sphere keeps its size: film makers call it a dolly zoom.",
+    "At the end of the way, all rays are parallel. This is the orthographic camera: lengths can be measured in its pictures, and nothing becomes smaller with distance.",
+  ],
+  Figure: ProjectionFigure,
+  questions: [
+    {
+      ask: "Why do faces look odd in pictures that are taken from very near?",
+      answer:
+        "The nose is much nearer than the ears, in proportion. It is the distance that does it, not the lens.",
+    },
+    {
+      ask: "Where is the eye of the orthographic camera?",
+      answer: "Nowhere, or infinitely far away: each pixel has a start of its own.",
+    },
+  ],
+};

@@ -1,0 +1,110 @@
+import { useState } from "preact/hooks";
+import type { PictureHead } from "../../protocol";
+import { Slider } from "../../ui/slider";
+import { usePaper, useScene } from "../context";
+import { Choice, Equation, Figure, Sym } from "../parts";
+import { Rendered } from "../rendered";
+import { paint, sceneOf } from "../scenes";
+import type { Topic } from "../topic";
+
+const counts = [1, 2, 4, 8, 16, 32, 64, 128];
+const filters = [
+  ["box", "Box"],
+  ["tent", "Tent"],
+  ["blackman-harris", "Blackman-Harris"],
+  ["mitchell", "Mitchell"],
+] as const;
+type Filter = (typeof filters)[number][0];
+
+function SamplesFigure() {
+  const [step, setStep] = useState(0);
+  const [filter, setFilter] = useState<Filter>("box");
+  const [head, setHead] = useState<PictureHead | null>(null);
+  const samples = counts[step] ?? 1;
+  const text = sceneOf({
+    paper: usePaper(),
+    materials: [paint.clay, paint.sky, "diffuseColor 0.85 0.84 0.8", "diffuseColor 0.12 0.12 0.13"],
+    group: `Transform { Translate 0 -1 0 Group {
+        ${stripes()} } }
+      MaterialIndex 0 Sphere { center -1 0.05 0 radius 1.05 }
+      MaterialIndex 1 Box { min 0.5 -1 -1.2 max 2 1.1 -0.2 }`,
+  }).replace(/^.*\n/, "PerspectiveCamera { center 0.5 1.2 6.5 direction -0.02 -0.2 -1 up 0 1 0 angle 38 }\n");
+  const options = [{ name: "samples", value: String(samples) }];
+  if (samples > 1) options.push({ name: "filter", value: filter });
+  const session = useScene(text, options);
+  return (
+    <Figure
+      stage={
+        <Rendered
+          session={session}
+          width={96}
+          height={54}
+          squares
+          label="A picture of few pixels, each shown as a square"
+          told={setHead}
+        />
+      }
+      controls={
+        <>
+          <Slider
+            label="samples"
+            value={step}
+            min={0}
+            max={counts.length - 1}
+            step={1}
+            text={String(samples)}
+            change={setStep}
+          />
+          <Choice label="Filter" value={filter} values={filters} change={(value) => setFilter(value)} />
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          <>
+            96 × 54 pixels, <b>{samples}</b> {samples === 1 ? "ray through each middle" : "rays through each"}
+            , {head ? `${(head.rays / 1e3).toFixed(0)} thousand rays in all` : "…"}
+          </>
+        }
+      >
+        <Sym>pixel</Sym> = Σ <Sym>w</Sym>
+        <sub>i</sub> <Sym>L</Sym>(<Sym>x</Sym>
+        <sub>i</sub>) / Σ <Sym>w</Sym>
+        <sub>i</sub>
+      </Equation>
+    </Figure>
+  );
+}
+
+/** A floor of stripes that become finer than pixels far behind. */
+function stripes(): string {
+  const all = [];
+  for (let i = -14; i < 14; i++) {
+    all.push(
+      `MaterialIndex ${i % 2 === 0 ? 2 : 3} Rectangle { corner ${i * 0.4} 0 -12 edge0 0 0 15 edge1 0.4 0 0 }`,
+    );
+  }
+  return all.join("\n");
+}
+
+export const samples: Topic = {
+  id: "samples",
+  title: "Samples and filters",
+  lead: "One ray through the middle of a pixel sees one point of it. Several see its mean.",
+  text: [
+    "With one ray, an edge is either in a pixel or not: it becomes a staircase, and fine stripes turn into false patterns. More rays, spread over the pixel, take the mean of what it shows.",
+    "A filter says how much a ray counts, by its distance from the pixel’s middle. A box counts all alike; wider filters look softer and hide stairs better.",
+  ],
+  Figure: SamplesFigure,
+  questions: [
+    {
+      ask: "Which part of the picture gains most?",
+      answer:
+        "The edges, and the stripes far behind that are finer than a pixel. Inside even surfaces nothing changes.",
+    },
+    {
+      ask: "How many grey levels can a pixel on an edge have with 4 samples and a box?",
+      answer: "Five: 0, 1, 2, 3 or 4 of them lie on the thing.",
+    },
+  ],
+};

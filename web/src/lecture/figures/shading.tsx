@@ -1,0 +1,223 @@
+import { useState } from "preact/hooks";
+import { add, type Eye, mul, sub, unit, type Vec } from "../../explain/space";
+import type { Term } from "../../protocol";
+import { fixed, Slider } from "../../ui/slider";
+import { useCast, usePaper, useScene, useTrace } from "../context";
+import { Arrow, Dot, Handle, Name } from "../draw";
+import { Equation, Figure, Sym } from "../parts";
+import { Point3 } from "../point";
+import { sceneOf } from "../scenes";
+import { Stage } from "../stage";
+import type { Topic } from "../topic";
+
+function ShadingFigure() {
+  const paper = usePaper();
+  const [lamp, setLamp] = useState<Vec>([-2.7, 1.9, 1.1]);
+  const [toward, setToward] = useState<Vec>(unit([-0.12, 0.42, 0.9]));
+  const [diffuse, setDiffuse] = useState(0.75);
+  const [specular, setSpecular] = useState(0.5);
+  const [exponent, setExponent] = useState(24);
+  const text = sceneOf({
+    paper,
+    ambient: "0.08 0.08 0.09",
+    lights: `PointLight { position ${lamp.join(" ")} color 1 0.98 0.95 }`,
+    materials: [
+      `diffuseColor ${diffuse} ${(diffuse * 0.42).toFixed(4)} ${(diffuse * 0.26).toFixed(4)} specularColor ${specular} ${specular} ${specular} exponent ${exponent}`,
+    ],
+    group: "MaterialIndex 0 Sphere { center 0 0 0 radius 1.35 }",
+  });
+  const session = useScene(text);
+  const probe = useScene(text, [{ name: "samples", value: "1" }]);
+  const [eye, setEye] = useState<Eye>({
+    target: [-0.5, 0.3, 0],
+    distance: 10.5,
+    yaw: 0.1,
+    pitch: 0.12,
+    angle: 40,
+  });
+  const seenFrom: Vec = [
+    eye.target[0] + eye.distance * Math.sin(eye.yaw) * Math.cos(eye.pitch),
+    eye.target[1] + eye.distance * Math.sin(eye.pitch),
+    eye.target[2] + eye.distance * Math.cos(eye.yaw) * Math.cos(eye.pitch),
+  ];
+  const point = mul(1.35, toward);
+  const cast = useCast(session, mul(4, point), mul(-1, toward), text);
+  const n: Vec = cast?.hit?.normal ?? toward;
+  const l = unit(sub(lamp, point));
+  const v = unit(sub(seenFrom, point));
+  const h = unit(add(l, v));
+  const account = useTrace(probe, seenFrom, unit(sub(point, seenFrom)), text);
+  const light = find(account?.tree ?? null, (term) => term.rows.some((row) => row.name === "l"));
+  const nl = number(light, "n · l");
+  const nh = number(light, "n · h");
+  const power = number(light, "power");
+  return (
+    <Figure
+      stage={
+        <Stage
+          session={session}
+          eye={eye}
+          setEye={setEye}
+          label="A ball in the light of a lamp, with the vectors at a point"
+        >
+          {(view) => {
+            const seen = view.point(point);
+            return (
+              <>
+                <Arrow
+                  view={view}
+                  from={point}
+                  dir={l}
+                  color="var(--ray-scattered)"
+                  length={1.25}
+                  width={3.5}
+                />
+                <Name view={view} at={add(point, mul(1.25, l))} color="var(--ray-scattered)">
+                  l
+                </Name>
+                <Arrow view={view} from={point} dir={n} color="var(--ink)" length={1.25} width={3.5} />
+                <Name view={view} at={add(point, mul(1.25, n))}>
+                  n
+                </Name>
+                <Arrow
+                  view={view}
+                  from={point}
+                  dir={h}
+                  color="var(--ray-reflected)"
+                  length={1.1}
+                  width={3.5}
+                />
+                <Name view={view} at={add(point, mul(1.1, h))} color="var(--ray-reflected)" dy={22}>
+                  h
+                </Name>
+                <Dot view={view} at={lamp} color="var(--ray-scattered)" radius={11} />
+                <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The lamp" move={setLamp} />
+                {seen && (
+                  <Handle
+                    x={seen.x}
+                    y={seen.y}
+                    color="var(--ray-camera)"
+                    label="The point"
+                    drag={(x, y) => {
+                      const { origin, direction } = view.ray(x, y);
+                      const b =
+                        origin[0] * direction[0] + origin[1] * direction[1] + origin[2] * direction[2];
+                      const c = origin.reduce((sum, x) => sum + x * x, 0) - 1.35 * 1.35;
+                      const root = Math.sqrt(Math.max(0, b * b - c));
+                      setToward(unit(add(origin, mul(-b - root, direction))));
+                    }}
+                  />
+                )}
+              </>
+            );
+          }}
+        </Stage>
+      }
+      controls={
+        <>
+          <Slider
+            label="diffuse"
+            value={diffuse}
+            min={0}
+            max={1}
+            step={0.01}
+            text={fixed(diffuse)}
+            change={setDiffuse}
+          />
+          <Slider
+            label="specular"
+            value={specular}
+            min={0}
+            max={1}
+            step={0.01}
+            text={fixed(specular)}
+            change={setSpecular}
+          />
+          <Slider
+            label="exponent"
+            value={exponent}
+            min={1}
+            max={200}
+            step={1}
+            text={String(exponent)}
+            change={setExponent}
+          />
+        </>
+      }
+    >
+      <Equation
+        numbers={
+          nl == null ? (
+            "the lamp is behind the surface"
+          ) : (
+            <>
+              max(0, <b>{fixed(nl, 3)}</b>) · k_d
+            </>
+          )
+        }
+      >
+        <Sym>L</Sym> = <Sym>k</Sym>
+        <sub>d</sub> max(0, <Sym vector>n</Sym> ·{" "}
+        <Sym vector color="var(--ray-scattered)">
+          l
+        </Sym>
+        )
+      </Equation>
+      <Equation
+        numbers={
+          nh == null ? (
+            "–"
+          ) : (
+            <>
+              {fixed(specular)} · <b>{fixed(nh, 3)}</b>
+              <sup>{exponent}</sup> = <b>{fixed(specular * (power ?? 0), 3)}</b>
+            </>
+          )
+        }
+      >
+        + <Sym>k</Sym>
+        <sub>s</sub> max(0, <Sym vector>n</Sym> ·{" "}
+        <Sym vector color="var(--ray-reflected)">
+          h
+        </Sym>
+        )<sup>exponent</sup>
+      </Equation>
+    </Figure>
+  );
+}
+
+function find(term: Term | null, wanted: (term: Term) => boolean): Term | null {
+  if (!term) return null;
+  if (wanted(term)) return term;
+  for (const child of term.terms) {
+    const found = find(child, wanted);
+    if (found) return found;
+  }
+  return null;
+}
+
+function number(light: Term | null, name: string): number | null {
+  const term = find(light, (inner) => inner.rows.some((row) => row.name === name));
+  return term?.rows.find((row) => row.name === name)?.value ?? null;
+}
+
+export const shading: Topic = {
+  id: "shading",
+  title: "Diffuse light and highlights",
+  lead: "How bright a point is depends on three vectors: the normal, the way to the lamp, and the way to the eye.",
+  text: [
+    "A matt surface spreads light evenly. What it gets goes with the cosine between its normal n and the way to the lamp l: a beam that comes in flat is spread over more of the surface.",
+    "A highlight is where the surface mirrors the lamp towards the eye, about. Blinn takes the vector h halfway between the way to the lamp and that to the eye; where the normal is near to it, the surface shines. The exponent says how near it must be.",
+  ],
+  Figure: ShadingFigure,
+  questions: [
+    {
+      ask: "You go around the ball. Which of the two terms changes?",
+      answer: "The highlight: it depends on the eye. The diffuse term stays.",
+    },
+    {
+      ask: "Why is max(0, n · l) needed?",
+      answer: "Behind the edge of light the cosine is negative: without it the lamp would take light away.",
+    },
+  ],
+};

@@ -1,0 +1,155 @@
+import { useState } from "preact/hooks";
+import { add, type Eye, length, mul, sub, unit, type Vec } from "../../explain/space";
+import { fixed, Slider, short } from "../../ui/slider";
+import { useCast, usePaper, useScene } from "../context";
+import { Dot, Line, Name } from "../draw";
+import { Equation, Figure, Sym } from "../parts";
+import { Point3 } from "../point";
+import { paint, sceneOf } from "../scenes";
+import { Stage } from "../stage";
+import type { Topic } from "../topic";
+
+function ShadowFigure() {
+  const paper = usePaper();
+  const [lamp, setLamp] = useState<Vec>([-1.7, 2.3, 0.7]);
+  const [point, setPoint] = useState<Vec>([1.5, -1, -0.4]);
+  const [radius, setRadius] = useState(0.75);
+  const text = sceneOf({
+    paper,
+    ambient: "0.16 0.16 0.18",
+    lights: `PointLight { position ${lamp.join(" ")} color 0.85 0.84 0.8 }`,
+    materials: [paint.stone, paint.clay, paint.sky],
+    group: `MaterialIndex 0 Disc { center 0 -1 0 normal 0 1 0 radius 3.6 }
+      MaterialIndex 1 Sphere { center 0 0.1 0 radius ${radius} }
+      MaterialIndex 2 Box { min 1.2 -1 -2.2 max 2.2 -0.2 -1.4 }`,
+  });
+  const session = useScene(text);
+  const [eye, setEye] = useState<Eye>({
+    target: [0, 0.55, 0],
+    distance: 12.5,
+    yaw: 0.35,
+    pitch: 0.34,
+    angle: 40,
+  });
+  const away = sub(lamp, point);
+  const distance = length(away);
+  const l = unit(away);
+  // A little above the floor, where the next ray starts.
+  const start = add(point, [0, 1e-4, 0]);
+  const cast = useCast(session, start, l, text);
+  const hits = (cast?.tests ?? []).filter(
+    (test) => test.t != null && test.t > 0 && test.t < distance && test.object !== 0,
+  );
+  const blocker = hits.sort((a, b) => (a.t ?? 0) - (b.t ?? 0))[0] ?? null;
+  const t = blocker?.t ?? null;
+  const color = blocker ? "var(--ray-shadowed)" : "var(--ray-lit)";
+  return (
+    <Figure
+      stage={
+        <Stage
+          session={session}
+          eye={eye}
+          setEye={setEye}
+          label="A shadow ray from a point of the floor to the lamp"
+        >
+          {(view) => (
+            <>
+              <Line
+                view={view}
+                from={point}
+                to={t == null ? lamp : add(point, mul(t, l))}
+                color={color}
+                width={3.5}
+              />
+              {t != null && (
+                <>
+                  <Line view={view} from={add(point, mul(t, l))} to={lamp} color={color} width={1.5} dashed />
+                  <Dot view={view} at={add(point, mul(t, l))} color={color} radius={7} />
+                  <Name view={view} at={add(point, mul(t, l))} color={color}>
+                    t = {fixed(t)}
+                  </Name>
+                </>
+              )}
+              <Name view={view} at={point} dy={30}>
+                P
+              </Name>
+              <Name view={view} at={lamp} color="var(--ray-scattered)" dx={18}>
+                lamp
+              </Name>
+              <Point3 view={view} at={lamp} color="var(--ray-scattered)" label="The lamp" move={setLamp} />
+              <Point3
+                view={view}
+                at={point}
+                color={color}
+                label="The point on the floor"
+                plane={[0, 1, 0]}
+                move={([x, , z]) => {
+                  const out = Math.max(1, Math.hypot(x, z) / 3.5);
+                  setPoint([x / out, -1, z / out]);
+                }}
+              />
+            </>
+          )}
+        </Stage>
+      }
+      controls={
+        <Slider
+          label="size of the ball"
+          value={radius}
+          min={0.2}
+          max={1.1}
+          step={0.01}
+          text={fixed(radius)}
+          change={setRadius}
+        />
+      }
+    >
+      <Equation
+        numbers={
+          blocker ? (
+            <>
+              <b>{fixed(t ?? 0, 3)}</b> &lt; {fixed(distance, 3)}: something stands before the lamp
+            </>
+          ) : (
+            <>no hit with t &lt; {fixed(distance, 3)}: the lamp is seen</>
+          )
+        }
+      >
+        shadow where a hit has 0 &lt; <Sym>t</Sym> &lt; |<Sym vector>lamp</Sym> − <Sym vector>P</Sym>|
+      </Equation>
+      <Equation
+        numbers={cast?.tests
+          .map((test) => `${test.name.split(" ")[0]}: ${test.t == null ? "–" : short(test.t, 3)}`)
+          .join(", ")}
+      >
+        any hit will do: the closest is not needed
+      </Equation>
+    </Figure>
+  );
+}
+
+export const shadow: Topic = {
+  id: "shadow",
+  title: "Shadows",
+  lead: "A point is lit by a lamp if a ray from it to the lamp meets nothing on the way.",
+  text: [
+    "The shadow ray starts at the point and goes to the lamp. A hit between both hides the lamp, and its light is left out. What lies behind the lamp does not matter: the ray ends there.",
+    "Drag the point across the edge of the shadow. Drag the lamp below the ball’s middle and see the shadow grow long.",
+  ],
+  Figure: ShadowFigure,
+  questions: [
+    {
+      ask: "Why may the search end at the first hit that is found, whichever it is?",
+      answer: "Any one hides the lamp. Shadow rays are cheaper than camera rays for that reason.",
+    },
+    {
+      ask: "Where must the shadow ray not be stopped?",
+      answer:
+        "At its own start: rounding would let the surface shadow itself, in speckles. This program moves the start off the surface by a bound on its error.",
+    },
+    {
+      ask: "Why has this shadow a sharp edge?",
+      answer: "The lamp is a point. A lamp with extent is seen in part along the edge: a half-shadow.",
+    },
+  ],
+};

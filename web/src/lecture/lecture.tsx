@@ -1,0 +1,111 @@
+import { useEffect, useRef, useState } from "preact/hooks";
+import type { Engine } from "../engine/engine";
+import { EngineContext } from "./context";
+import { Question } from "./parts";
+import { topics } from "./topics";
+
+/** The lecture: a book whose figures run the tracer, and slides of the same. */
+export function Lecture({ engine, topic }: { engine: Engine; topic: string }) {
+  const [presents, setPresents] = useState(false);
+  const place = useRef<HTMLElement>(null);
+  const at = Math.max(
+    0,
+    topics.findIndex((known) => known.id === topic),
+  );
+  const now = topics[at] ?? topics[0];
+  const go = (to: number) => {
+    const next = topics[to];
+    if (next) location.hash = `#/lecture/${next.id}`;
+  };
+
+  useEffect(() => {
+    place.current?.scrollTo({ top: 0 });
+  }, [now]);
+  useEffect(() => {
+    const key = (event: KeyboardEvent) => {
+      const inside =
+        event.target instanceof Element && event.target.closest("input, .handle, .drags, select");
+      if (inside || event.ctrlKey || event.metaKey || event.altKey || event.shiftKey) return;
+      if (event.key === "ArrowRight" || event.key === "PageDown") go(at + 1);
+      else if (event.key === "ArrowLeft" || event.key === "PageUp") go(at - 1);
+      else if (event.key === "p") present(!presents);
+      else if (event.key === "Escape") present(false);
+      else return;
+      event.preventDefault();
+    };
+    const left = () => {
+      if (!document.fullscreenElement) setPresents(false);
+    };
+    window.addEventListener("keydown", key);
+    document.addEventListener("fullscreenchange", left);
+    return () => {
+      window.removeEventListener("keydown", key);
+      document.removeEventListener("fullscreenchange", left);
+    };
+  });
+  const present = (on: boolean) => {
+    setPresents(on);
+    if (on) document.documentElement.requestFullscreen?.().catch(() => {});
+    else if (document.fullscreenElement) document.exitFullscreen();
+  };
+  if (!now) return null;
+  return (
+    <EngineContext.Provider value={engine}>
+      <div class={`lecture${presents ? " presents" : ""}`}>
+        <nav class="contents" aria-label="Topics">
+          <ol>
+            {topics.map((known) => (
+              <li key={known.id}>
+                <a href={`#/lecture/${known.id}`} aria-current={known === now ? "page" : undefined}>
+                  {known.title}
+                </a>
+              </li>
+            ))}
+          </ol>
+        </nav>
+        <main class="chapter" ref={place} tabIndex={-1}>
+          <article>
+            <header>
+              <p class="number">
+                {at + 1} of {topics.length}
+              </p>
+              <h1>{now.title}</h1>
+              <p class="lead">{now.lead}</p>
+            </header>
+            <now.Figure key={now.id} />
+            <div class="prose">
+              {now.text.map((paragraph) => (
+                <p key={paragraph}>{paragraph}</p>
+              ))}
+            </div>
+            {now.questions.length > 0 && (
+              <section class="questions" aria-label="Questions">
+                {now.questions.map(({ ask, answer }) => (
+                  <Question key={ask} ask={ask}>
+                    {answer}
+                  </Question>
+                ))}
+              </section>
+            )}
+            <footer class="turn">
+              <button type="button" class="button" disabled={at === 0} onClick={() => go(at - 1)}>
+                ← {topics[at - 1]?.title ?? ""}
+              </button>
+              <button type="button" class="button" aria-pressed={presents} onClick={() => present(!presents)}>
+                {presents ? "Leave presentation" : "Present"}
+              </button>
+              <button
+                type="button"
+                class="button"
+                disabled={at + 1 >= topics.length}
+                onClick={() => go(at + 1)}
+              >
+                {topics[at + 1]?.title ?? ""} →
+              </button>
+            </footer>
+          </article>
+        </main>
+      </div>
+    </EngineContext.Provider>
+  );
+}

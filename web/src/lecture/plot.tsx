@@ -1,0 +1,115 @@
+import type { ComponentChildren } from "preact";
+import { useEffect, useRef, useState } from "preact/hooks";
+
+/** Maps the plane of a figure to the page. */
+export interface Scale {
+  x(x: number): number;
+  y(y: number): number;
+  /** Back to the plane. */
+  back(x: number, y: number): [number, number];
+  /** Pixels of a unit. */
+  unit: number;
+  width: number;
+  height: number;
+}
+
+interface Props {
+  /** What is seen at least, in units: from -x to x and from -y to y around the middle. */
+  reach: [number, number];
+  middle?: [number, number];
+  label: string;
+  aspect?: number;
+  children(scale: Scale): ComponentChildren;
+}
+
+/** A drawing in the plane. */
+export function Plot({ reach, middle = [0, 0], label, aspect = 16 / 9, children }: Props) {
+  const box = useRef<HTMLDivElement>(null);
+  const [size, setSize] = useState({ width: 0, height: 0 });
+  useEffect(() => {
+    if (!box.current) return;
+    const observer = new ResizeObserver(([entry]) => {
+      if (entry) setSize({ width: entry.contentRect.width, height: entry.contentRect.height });
+    });
+    observer.observe(box.current);
+    return () => observer.disconnect();
+  }, []);
+  const { width, height } = size;
+  const unit = Math.min(width / (2 * reach[0]), height / (2 * reach[1]));
+  const scale: Scale = {
+    x: (x) => width / 2 + (x - middle[0]) * unit,
+    y: (y) => height / 2 - (y - middle[1]) * unit,
+    back: (x, y) => [(x - width / 2) / unit + middle[0], (height / 2 - y) / unit + middle[1]],
+    unit,
+    width,
+    height,
+  };
+  return (
+    <div class="stage plot" ref={box} style={{ aspectRatio: String(aspect) }}>
+      <svg width={width} height={height} role="group" aria-label={label}>
+        {width > 1 && children(scale)}
+      </svg>
+    </div>
+  );
+}
+
+/** An arrow in the plane. */
+export function PlaneArrow({
+  scale,
+  from,
+  to,
+  color,
+  width = 3,
+  dashed = false,
+  head = true,
+}: {
+  scale: Scale;
+  from: [number, number];
+  to: [number, number];
+  color: string;
+  width?: number;
+  dashed?: boolean;
+  head?: boolean;
+}) {
+  const [x1, y1, x2, y2] = [scale.x(from[0]), scale.y(from[1]), scale.x(to[0]), scale.y(to[1])];
+  const angle = Math.atan2(y2 - y1, x2 - x1);
+  const size = 5 + 2.6 * width;
+  const corner = (turn: number) =>
+    `${x2 + size * Math.cos(angle + turn)},${y2 + size * Math.sin(angle + turn)}`;
+  const short = head ? size * 0.6 : 0;
+  return (
+    <g stroke={color} fill={color} stroke-width={width} stroke-linecap="round">
+      <line
+        x1={x1}
+        y1={y1}
+        x2={x2 - short * Math.cos(angle)}
+        y2={y2 - short * Math.sin(angle)}
+        stroke-dasharray={dashed ? "7 7" : undefined}
+      />
+      {head && <polygon points={`${x2},${y2} ${corner(2.68)} ${corner(-2.68)}`} stroke="none" />}
+    </g>
+  );
+}
+
+/** A name on a drawing. */
+export function PlaneName({
+  scale,
+  at,
+  color,
+  children,
+  dx = 12,
+  dy = -12,
+}: {
+  scale: Scale;
+  at: [number, number];
+  color?: string;
+  children: ComponentChildren;
+  dx?: number;
+  dy?: number;
+}) {
+  return (
+    <text class="name" x={scale.x(at[0]) + dx} y={scale.y(at[1]) + dy} fill={color ?? "var(--ink)"}>
+      {children}
+    </text>
+  );
+}

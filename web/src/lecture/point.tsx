@@ -1,0 +1,29 @@
+import { add, dot, mul, type Projector, sub, type Vec } from "../explain/space";
+import { Handle } from "./draw";
+
+interface Props {
+  view: Projector;
+  at: Vec;
+  color: string;
+  label: string;
+  move(to: Vec): void;
+  end?(): void;
+  /** Normal of the plane in which it moves; without one, that of the page. */
+  plane?: Vec;
+}
+
+/** A point in space that is dragged within a plane. */
+export function Point3({ view, at, color, label, move, end, plane }: Props) {
+  const seen = view.point(at);
+  if (!seen) return null;
+  const drag = (x: number, y: number) => {
+    const { origin, direction } = view.ray(x, y);
+    const middle = view.ray(seen.x, seen.y);
+    const normal = plane ?? middle.direction;
+    const slope = dot(direction, normal);
+    if (Math.abs(slope) < 1e-3) return;
+    const to = add(origin, mul(dot(sub(at, origin), normal) / slope, direction));
+    if (to.every((c) => Math.abs(c) < 50)) move(to);
+  };
+  return <Handle x={seen.x} y={seen.y} color={color} label={label} drag={drag} {...(end ? { end } : {})} />;
+}

@@ -1,0 +1,36 @@
+import { useEffect, useRef } from "preact/hooks";
+import type { Session } from "../engine/engine";
+import type { PictureHead } from "../protocol";
+import { draw } from "../viewer/picture";
+
+interface Props {
+  session: Session;
+  width: number;
+  height: number;
+  label: string;
+  /** Whether pixels are shown as squares. */
+  squares?: boolean;
+  told?(head: PictureHead): void;
+}
+
+/** The picture of a session's own camera. */
+export function Rendered({ session, width, height, label, squares = false, told }: Props) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const tell = useRef(told);
+  tell.current = told;
+  useEffect(() => {
+    session.tell({ kind: "size", width, height });
+    return session.on((event, bytes) => {
+      if (event.kind !== "picture" || !canvas.current) return;
+      // A coarse picture of so few pixels would only flicker.
+      if (squares && event.head.width < width) return;
+      draw(canvas.current, event.head.width, event.head.height, bytes);
+      tell.current?.(event.head);
+    });
+  }, [session, width, height, squares]);
+  return (
+    <div class="stage render" style={{ aspectRatio: `${width} / ${height}` }}>
+      <canvas ref={canvas} class={squares ? "squares" : ""} role="img" aria-label={label} />
+    </div>
+  );
+}

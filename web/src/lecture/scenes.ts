@@ -1,0 +1,37 @@
+/** Scenes of figures: few things, soft light, and the page's own colour behind them. */
+export interface Parts {
+  /** Colour behind all things: see `usePaper`. */
+  paper: string;
+  materials: string[];
+  group: string;
+  lights?: string;
+  ambient?: string;
+}
+
+const sun = "DirectionalLight { direction -0.55 -1 -0.45 color 0.72 0.71 0.68 }";
+
+/** The text of a scene, whose camera a figure replaces. */
+export function sceneOf({
+  paper,
+  materials,
+  group,
+  lights = sun,
+  ambient = "0.34 0.34 0.36",
+}: Parts): string {
+  return `PerspectiveCamera { center 0 0 10 direction 0 0 -1 up 0 1 0 angle 34 }
+Background { color ${paper} ambientLight ${ambient} }
+Lights { ${lights} }
+Materials { ${materials.map((inside) => `PhongMaterial { ${inside} }`).join("\n")} }
+Group { ${group} }
+`;
+}
+
+/** Calm colours for things. */
+export const paint = {
+  clay: "diffuseColor 0.72 0.30 0.18 specularColor 0.12 0.12 0.12 exponent 30",
+  sky: "diffuseColor 0.20 0.38 0.62 specularColor 0.12 0.12 0.12 exponent 30",
+  sand: "diffuseColor 0.78 0.62 0.36 specularColor 0.08 0.08 0.08 exponent 20",
+  sage: "diffuseColor 0.30 0.48 0.34 specularColor 0.08 0.08 0.08 exponent 20",
+  stone: "diffuseColor 0.58 0.57 0.55",
+  mirror: "diffuseColor 0.03 0.03 0.035 specularColor 0.7 0.7 0.7 exponent 200 reflectiveColor 0.6 0.62 0.65",
+} as const;

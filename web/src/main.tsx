@@ -1,0 +1,19 @@
+import "./style/font.css";
+import "./style/tokens.css";
+import "./style/controls.css";
+import "./style/app.css";
+import "./style/editor.css";
+import "./style/explain.css";
+import "./style/lecture.css";
+import "./style/figures.css";
+import { render } from "preact";
+import { App } from "./app";
+import { connect, hasServer } from "./engine/connect";
+
+const root = document.getElementById("app");
+if (root) render(<App engine={connect()} />, root);
+
+// Static files work without a network after the first visit.
+if (!hasServer() && "serviceWorker" in navigator && location.protocol.startsWith("http")) {
+  navigator.serviceWorker.register("./offline.js").catch(() => {});
+}

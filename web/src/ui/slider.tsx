@@ -1,0 +1,47 @@
+import { useId } from "preact/hooks";
+
+interface Props {
+  label: string;
+  value: number;
+  min: number;
+  max: number;
+  step?: number;
+  /** The value as it is shown. */
+  text?: string;
+  change(value: number): void;
+}
+
+/** A slider with its name and its value. */
+export function Slider({ label, value, min, max, step, text, change }: Props) {
+  const id = useId();
+  return (
+    <div class="slider">
+      <label for={id}>{label}</label>
+      <input
+        id={id}
+        type="range"
+        min={min}
+        max={max}
+        step={step ?? (max - min) / 400}
+        value={value}
+        onInput={(event) => change(event.currentTarget.valueAsNumber)}
+      />
+      <output for={id}>{text ?? short(value)}</output>
+    </div>
+  );
+}
+
+/** A number for people: four significant digits, with a true minus sign. */
+export function short(x: number, digits = 4): string {
+  if (!Number.isFinite(x)) return Number.isNaN(x) ? "–" : x > 0 ? "∞" : "−∞";
+  if (Math.abs(x) < 5e-6) return "0";
+  const text = String(Number(x.toPrecision(digits)));
+  return text.replace("-", "−");
+}
+
+/** A number with a fixed count of decimals, for what changes while it is read. */
+export function fixed(x: number, decimals = 2): string {
+  if (!Number.isFinite(x)) return short(x);
+  const text = x.toFixed(decimals);
+  return (Number(text) === 0 ? text.replace("-", "") : text).replace("-", "−");
+}

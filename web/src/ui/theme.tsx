@@ -1,0 +1,32 @@
+import { useEffect, useState } from "preact/hooks";
+
+type Theme = "system" | "light" | "dark";
+const next: Record<Theme, Theme> = { system: "light", light: "dark", dark: "system" };
+const sign: Record<Theme, string> = { system: "◐", light: "☀", dark: "☾" };
+
+function stored(): Theme {
+  const known = localStorage.getItem("durer-theme");
+  return known === "light" || known === "dark" ? known : "system";
+}
+
+/** Chooses light, dark, or what the system has. */
+export function ThemeButton() {
+  const [theme, setTheme] = useState<Theme>(stored);
+  useEffect(() => {
+    localStorage.setItem("durer-theme", theme);
+    if (theme === "system") delete document.documentElement.dataset.theme;
+    else document.documentElement.dataset.theme = theme;
+    window.dispatchEvent(new CustomEvent("durer-theme"));
+  }, [theme]);
+  return (
+    <button
+      type="button"
+      class="button icon plain"
+      title={`Colours: ${theme}`}
+      aria-label={`Colours: ${theme}`}
+      onClick={() => setTheme(next[theme])}
+    >
+      {sign[theme]}
+    </button>
+  );
+}

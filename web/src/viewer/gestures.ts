@@ -1,0 +1,114 @@
+import type { Store } from "./store";
+
+interface Point {
+  x: number;
+  y: number;
+}
+
+/** Turns what mouse, fingers and keys do over a picture into motions of the camera; returns what ends it. */
+export function gestures(
+  element: HTMLElement,
+  store: Store,
+  click: (x: number, y: number) => void,
+): () => void {
+  const pointers = new Map<number, Point>();
+  let start: Point | null = null;
+  let dragged = false;
+  let wheel = 0;
+  const size = () => Math.max(1, element.clientHeight);
+  const stop = new AbortController();
+  const options = { signal: stop.signal };
+
+  const spread = () => {
+    const [a, b] = [...pointers.values()];
+    if (!a || !b) return null;
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, distance: Math.hypot(a.x - b.x, a.y - b.y) };
+  };
+
+  element.addEventListener(
+    "pointerdown",
+    (event) => {
+      element.setPointerCapture(event.pointerId);
+      pointers.set(event.pointerId, { x: event.clientX, y: event.clientY });
+      if (pointers.size === 1) {
+        start = { x: event.clientX, y: event.clientY };
+        dragged = false;
+      }
+    },
+    options,
+  );
+  element.addEventListener(
+    "pointermove",
+    (event) => {
+      const last = pointers.get(event.pointerId);
+      if (!last) return;
+      const before = spread();
+      const now = { x: event.clientX, y: event.clientY };
+      if (start && Math.hypot(now.x - start.x, now.y - start.y) > 4) dragged = true;
+      pointers.set(event.pointerId, now);
+      if (!dragged) return;
+      const after = spread();
+      if (before && after) {
+        if (after.distance > 0) store.move({ kind: "dolly", factor: before.distance / after.distance }, true);
+        const [right, up] = [(after.x - before.x) / size(), (before.y - after.y) / size()];
+        store.move({ kind: "pan", right, up }, true);
+        return;
+      }
+      const [dx, dy] = [(now.x - last.x) / size(), (now.y - last.y) / size()];
+      if (event.shiftKey || (event.buttons & 6) !== 0) store.move({ kind: "pan", right: dx, up: -dy }, true);
+      else if (event.ctrlKey || event.metaKey)
+        store.move({ kind: "turn", right: dx * 1.5, up: -dy * 1.5 }, true);
+      else store.move({ kind: "orbit", right: dx * Math.PI, up: -dy * Math.PI }, true);
+    },
+    options,
+  );
+  const release = (event: PointerEvent) => {
+    if (!pointers.delete(event.pointerId) || pointers.size > 0) return;
+    if (dragged) store.settle();
+    else if (event.type === "pointerup" && event.button === 0) click(event.clientX, event.clientY);
+    start = null;
+  };
+  element.addEventListener("pointerup", release, options);
+  element.addEventListener("pointercancel", release, options);
+  element.addEventListener("contextmenu", (event) => event.preventDefault(), options);
+  element.addEventListener(
+    "wheel",
+    (event) => {
+      event.preventDefault();
+      store.move({ kind: "dolly", factor: Math.exp(event.deltaY * (event.ctrlKey ? 0.01 : 0.0012)) }, true);
+      clearTimeout(wheel);
+      wheel = window.setTimeout(() => store.settle(), 140);
+    },
+    { ...options, passive: false },
+  );
+  element.addEventListener("keydown", (event) => key(event, store), options);
+  return () => stop.abort();
+}
+
+const turn = 0.06;
+const walk = 0.05;
+
+function key(event: KeyboardEvent, store: Store) {
+  if (event.ctrlKey || event.metaKey || event.altKey) return;
+  const step = event.shiftKey ? 3 : 1;
+  const motions: Record<string, Parameters<Store["move"]>[0]> = {
+    ArrowLeft: { kind: "orbit", right: -turn * step, up: 0 },
+    ArrowRight: { kind: "orbit", right: turn * step, up: 0 },
+    ArrowUp: { kind: "orbit", right: 0, up: turn * step },
+    ArrowDown: { kind: "orbit", right: 0, up: -turn * step },
+    "+": { kind: "dolly", factor: 0.9 },
+    "-": { kind: "dolly", factor: 1 / 0.9 },
+    w: { kind: "walk", forward: walk, right: 0, up: 0 },
+    s: { kind: "walk", forward: -walk, right: 0, up: 0 },
+    a: { kind: "walk", forward: 0, right: -walk, up: 0 },
+    d: { kind: "walk", forward: 0, right: walk, up: 0 },
+    e: { kind: "walk", forward: 0, right: 0, up: walk },
+    q: { kind: "walk", forward: 0, right: 0, up: -walk },
+    h: { kind: "home" },
+    f: { kind: "frame" },
+  };
+  const motion = motions[event.key.length === 1 ? event.key.toLowerCase() : event.key];
+  if (!motion) return;
+  event.preventDefault();
+  store.move(motion, false);
+}

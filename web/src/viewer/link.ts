@@ -1,0 +1,29 @@
+import whitted from "../../../scenes/whitted.txt?raw";
+
+/** The scene that the page opens with where nothing else is said. */
+export const firstScene: string = whitted;
+
+const mark = "#/scene/";
+
+/** A link that holds a whole scene: compressed, in the part of the address that no server sees. */
+export async function linkOf(text: string): Promise<string> {
+  const stream = new Blob([text]).stream().pipeThrough(new CompressionStream("deflate-raw"));
+  const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
+  let letters = "";
+  for (const byte of bytes) letters += String.fromCharCode(byte);
+  const code = btoa(letters).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return `${location.href.split("#")[0]}${mark}${code}`;
+}
+
+/** The scene in a link; `null` where there is none, or it is damaged. */
+export async function openLink(hash: string): Promise<string | null> {
+  if (!hash.startsWith(mark)) return null;
+  try {
+    const letters = atob(hash.slice(mark.length).replaceAll("-", "+").replaceAll("_", "/"));
+    const bytes = Uint8Array.from(letters, (letter) => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+    return await new Response(stream).text();
+  } catch {
+    return null;
+  }
+}

@@ -1,0 +1,195 @@
+import type { FieldState } from "../protocol";
+import { Dragged } from "../ui/dragged";
+import { Slider } from "../ui/slider";
+import { type Store, useStore } from "./store";
+
+/** The camera's fields, how the picture is shown, and how it is made. */
+export function Settings({ store }: { store: Store }) {
+  useStore(store);
+  return (
+    <div class="scrolls">
+      <CameraFields store={store} />
+      <Display store={store} />
+      <Job store={store} />
+    </div>
+  );
+}
+
+function CameraFields({ store }: { store: Store }) {
+  const { camera } = store;
+  if (!camera) return null;
+  return (
+    <section class="settings" aria-label="Camera">
+      <h3>{camera.keyword}</h3>
+      {camera.fields
+        .filter((field) => field.values.length > 0)
+        .map((field) => (
+          <Field key={field.name} store={store} field={field} />
+        ))}
+      <div class="row">
+        <button
+          type="button"
+          class="button"
+          disabled={!camera.moved}
+          onClick={() => store.session.tell({ kind: "write_camera" })}
+        >
+          Write into the scene
+        </button>
+        <button type="button" class="button" onClick={() => store.move({ kind: "home" }, false)}>
+          As written
+        </button>
+        <button type="button" class="button" onClick={() => store.move({ kind: "frame" }, false)}>
+          See all
+        </button>
+      </div>
+    </section>
+  );
+}
+
+function Field({ store, field }: { store: Store; field: FieldState }) {
+  const set = (values: number[], moving: boolean) =>
+    store.session.tell({ kind: "field", name: field.name, values, moving });
+  const [only] = field.values;
+  const bounded = field.least !== null && field.most !== null;
+  if (field.values.length === 1 && only !== undefined && bounded) {
+    const [min, max] = [Math.max(field.least ?? 0, 0.5), Math.min(field.most ?? 180, 179)];
+    return (
+      <div title={field.doc} onPointerUp={() => set(field.values, false)}>
+        <Slider
+          label={field.name}
+          value={only}
+          min={min}
+          max={max}
+          step={0.1}
+          change={(x) => set([x], true)}
+        />
+      </div>
+    );
+  }
+  const size = Math.max(0.5, Math.hypot(...field.values));
+  return (
+    <div class="field" title={field.doc}>
+      <span class="label">{field.name}</span>
+      <span class="vector">
+        {field.values.map((value, i) => (
+          <Dragged
+            key={i}
+            label={`${field.name} ${"xyz"[i] ?? ""}`}
+            value={value}
+            decimals={3}
+            step={size / 400}
+            change={(x, moving) => set(field.values.with(i, x), moving)}
+          />
+        ))}
+      </span>
+    </div>
+  );
+}
+
+function Display({ store }: { store: Store }) {
+  return (
+    <section class="settings" aria-label="Display">
+      <h3>Display</h3>
+      <Slider
+        label="Exposure"
+        value={store.stops}
+        min={-16}
+        max={8}
+        step={0.25}
+        text={`${store.stops >= 0 ? "+" : "−"}${Math.abs(store.stops)} EV`}
+        change={(stops) => store.show(store.picture, stops)}
+      />
+      <div class="field">
+        <label for="tone">Tone curve</label>
+        <select
+          id="tone"
+          value={store.tone}
+          onChange={(event) => store.show(store.picture, store.stops, event.currentTarget.value)}
+        >
+          {store.opened?.tones.map((tone) => (
+            <option key={tone}>{tone}</option>
+          ))}
+        </select>
+      </div>
+      <div class="row">
+        {["picture.png", "picture.exr"].map((name) => (
+          <button key={name} type="button" class="button" onClick={() => download(store, name)}>
+            {name.slice(-3).toUpperCase()}
+          </button>
+        ))}
+      </div>
+    </section>
+  );
+}
+
+async function download(store: Store, name: string) {
+  try {
+    const [, bytes] = await store.session.askBytes({ kind: "export", name }, "exported");
+    const link = document.createElement("a");
+    link.href = URL.createObjectURL(new Blob([bytes]));
+    link.download = name;
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
+  } catch (error) {
+    store.refused = String(error);
+    store.changed();
+  }
+}
+
+const sizes = ["256x256", "512x512", "640x480", "1280x720", "1920x1080"];
+
+function Job({ store }: { store: Store }) {
+  const job = store.contents?.job;
+  const option = (name: string) => store.options.find((known) => known.name === name)?.value ?? "";
+  if (!job) return null;
+  const size = store.head ? `${store.head.full_width}x${store.head.full_height}` : job.size.join("x");
+  return (
+    <section class="settings" aria-label="Render">
+      <h3>Render</h3>
+      <div class="field">
+        <label for="size">Size</label>
+        <select
+          id="size"
+          value={size}
+          onChange={(event) => {
+            const [width = 512, height = 512] = event.currentTarget.value.split("x").map(Number);
+            store.session.tell({ kind: "size", width, height });
+          }}
+        >
+          {[...new Set([job.size.join("x"), size, ...sizes])].map((name) => (
+            <option key={name} value={name}>
+              {name.replace("x", " × ")}
+            </option>
+          ))}
+        </select>
+      </div>
+      <div class="field">
+        <label for="integrator">Integrator</label>
+        <select
+          id="integrator"
+          value={option("integrator") || job.integrator}
+          onChange={(event) => store.setOption("integrator", event.currentTarget.value)}
+        >
+          {store.opened?.integrators.map((choice) => (
+            <option key={choice.name} title={choice.doc}>
+              {choice.name}
+            </option>
+          ))}
+        </select>
+      </div>
+      {(["samples", "bounces"] as const).map((name) => (
+        <div key={name} class="field">
+          <label for={name}>{name === "samples" ? "Samples" : "Bounces"}</label>
+          <input
+            id={name}
+            type="number"
+            min={name === "samples" ? 1 : 0}
+            max={name === "samples" ? 65536 : 255}
+            value={option(name) || job[name]}
+            onChange={(event) => store.setOption(name, event.currentTarget.value || null)}
+          />
+        </div>
+      ))}
+    </section>
+  );
+}

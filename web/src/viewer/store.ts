@@ -1,0 +1,298 @@
+import { useEffect, useReducer } from "preact/hooks";
+import type { Session } from "../engine/engine";
+import type {
+  CameraState,
+  CastAccount,
+  Contents,
+  Event,
+  Finding,
+  Lamp,
+  Motion,
+  Outline,
+  PictureHead,
+  PixelAccount,
+  Setting,
+  Word,
+} from "../protocol";
+
+type Opened = Extract<Event, { kind: "opened" }>;
+
+/** Everything that the viewer knows, and what it can ask for. */
+export class Store {
+  readonly session: Session;
+  opened: Opened | null = null;
+  text = "";
+  /** Counts texts that did not come from the editor. */
+  textVersion = 0;
+  edited = false;
+  diskText: string | null = null;
+  conflict = false;
+  findings: Finding[] = [];
+  contents: Contents | null = null;
+  valid = true;
+  camera: CameraState | null = null;
+  head: PictureHead | null = null;
+  pixels: Uint8Array<ArrayBuffer> | null = null;
+  pixel: PixelAccount | null = null;
+  cast: CastAccount | null = null;
+  /** Path of the chosen term in the tree. */
+  chosen = "0";
+  /** Whether its formulas are shown. */
+  unfolded = false;
+  hovered: string | null = null;
+  outlines: Outline[] = [];
+  lamps: Lamp[] = [];
+  words: Word[] = [];
+  refused: string | null = null;
+  picture = "color";
+  stops = 0;
+  tone = "none";
+  options: Setting[] = [];
+  /** Line that is to be shown in the editor, by the bytes of its text. */
+  jump: { start: number; end: number; count: number } | null = null;
+  #listeners = new Set<() => void>();
+  #waiting: Motion[] = [];
+  #due = false;
+
+  constructor(session: Session) {
+    this.session = session;
+    session.on((event, bytes) => this.#hear(event, bytes));
+    session.ask({ kind: "language" }, "language").then(({ words }) => {
+      this.words = words;
+      this.changed();
+    });
+  }
+
+  subscribe(listener: () => void): () => void {
+    this.#listeners.add(listener);
+    return () => this.#listeners.delete(listener);
+  }
+
+  changed() {
+    for (const listener of this.#listeners) listener();
+  }
+
+  open(name: string, text: string | null) {
+    this.pixel = null;
+    this.cast = null;
+    this.session.tell({ kind: "open", name, text });
+  }
+
+  edit(text: string) {
+    if (text === this.text) return;
+    this.text = text;
+    this.edited = true;
+    this.session.tell({ kind: "edit", text });
+    this.changed();
+  }
+
+  /** Puts a text into the editor. */
+  replace(text: string) {
+    this.textVersion++;
+    this.edit(text);
+  }
+
+  show(picture: string, stops = this.stops, tone = this.tone) {
+    this.picture = picture;
+    this.stops = stops;
+    this.tone = tone;
+    this.session.tell({ kind: "show", picture, stops, tone });
+    this.changed();
+  }
+
+  setOption(name: string, value: string | null) {
+    this.options = this.options.filter((option) => option.name !== name);
+    if (value !== null) this.options.push({ name, value });
+    this.session.tell({ kind: "options", options: this.options });
+    this.changed();
+  }
+
+  /** Moves the camera; motions are joined until the next frame. */
+  move(motion: Motion, moving: boolean) {
+    if (!moving) {
+      this.session.tell({ kind: "move", motion, moving });
+      return;
+    }
+    this.#waiting.push(motion);
+    if (this.#due) return;
+    this.#due = true;
+    requestAnimationFrame(() => {
+      this.#due = false;
+      const motions = this.#waiting;
+      this.#waiting = [];
+      for (const motion of joined(motions)) this.session.tell({ kind: "move", motion, moving: true });
+    });
+  }
+
+  /** The motion has ended: the fine picture may come. */
+  settle() {
+    requestAnimationFrame(() =>
+      this.session.tell({
+        kind: "move",
+        motion: { kind: "walk", forward: 0, right: 0, up: 0 },
+        moving: false,
+      }),
+    );
+  }
+
+  async explain(x: number, y: number, sample: number | null = null) {
+    try {
+      const { pixel } = await this.session.ask({ kind: "explain", x, y, sample }, "explained");
+      this.pixel = pixel;
+      this.chosen = "0";
+      this.hovered = null;
+      this.cast = null;
+      this.unfolded = false;
+      this.choose("0");
+    } catch (error) {
+      this.refused = String(error);
+    }
+    this.changed();
+  }
+
+  /** Chooses a term of the tree, and asks all objects about its ray. */
+  async choose(path: string) {
+    this.chosen = path;
+    const term = termAt(this.pixel, path);
+    this.changed();
+    if (!term?.ray) return;
+    const [origin, direction] = term.ray;
+    const { cast } = await this.session.ask({ kind: "cast", origin, direction, t_max: term.t_max }, "cast");
+    if (this.chosen === path) {
+      this.cast = cast;
+      this.changed();
+    }
+  }
+
+  hover(path: string | null) {
+    if (this.hovered === path) return;
+    this.hovered = path;
+    this.changed();
+  }
+
+  /** Takes over the text that another program wrote. */
+  takeDisk(text: string) {
+    this.diskText = null;
+    this.replace(text);
+    this.edited = false;
+    this.changed();
+  }
+
+  keepMine() {
+    this.diskText = null;
+    this.changed();
+  }
+
+  goTo(place: { start: number; end: number } | null) {
+    if (!place) return;
+    this.jump = { start: place.start, end: place.end, count: (this.jump?.count ?? 0) + 1 };
+    this.changed();
+  }
+
+  async save(force: boolean) {
+    try {
+      this.session.tell({ kind: "save", force });
+    } catch (error) {
+      this.refused = String(error);
+    }
+  }
+
+  #hear(event: Event, bytes: Uint8Array<ArrayBuffer>) {
+    switch (event.kind) {
+      case "opened":
+        this.opened = event;
+        this.text = event.text ?? "";
+        this.textVersion++;
+        this.edited = false;
+        this.diskText = null;
+        this.conflict = false;
+        this.contents = null;
+        break;
+      case "scene":
+        this.findings = event.findings;
+        this.valid = event.contents !== null;
+        this.refused = null;
+        if (event.contents) {
+          const first = this.contents === null;
+          this.contents = event.contents;
+          this.camera = event.contents.camera;
+          if (first) this.#frame(event.contents.job.size);
+          this.#outlines();
+        }
+        break;
+      case "checked":
+        this.findings = event.findings;
+        break;
+      case "camera":
+        this.camera = event.camera;
+        break;
+      case "picture":
+        this.head = event.head;
+        this.pixels = bytes;
+        break;
+      case "text":
+        if (event.from_disk && this.edited) {
+          this.diskText = event.text;
+        } else {
+          this.text = event.text;
+          this.textVersion++;
+          this.edited = !event.from_disk;
+          if (event.from_disk) this.session.tell({ kind: "edit", text: event.text });
+        }
+        break;
+      case "saved":
+        this.edited = false;
+        this.conflict = false;
+        this.diskText = null;
+        break;
+      case "conflict":
+        this.conflict = true;
+        break;
+      case "refused":
+        this.refused = event.why;
+        break;
+    }
+    this.changed();
+  }
+
+  #frame([width, height]: [number, number]) {
+    this.session.tell({ kind: "size", width, height });
+  }
+
+  async #outlines() {
+    const { outlines, lamps } = await this.session.ask({ kind: "outlines" }, "outlines");
+    this.outlines = outlines;
+    this.lamps = lamps;
+    this.changed();
+  }
+}
+
+/** Motions of one kind after each other become one. */
+export function joined(motions: Motion[]): Motion[] {
+  const all: Motion[] = [];
+  for (const motion of motions) {
+    const last = all.at(-1);
+    if (last?.kind === "dolly" && motion.kind === "dolly") last.factor *= motion.factor;
+    else if (
+      (last?.kind === "orbit" || last?.kind === "pan" || last?.kind === "turn") &&
+      motion.kind === last.kind
+    ) {
+      last.right += motion.right;
+      last.up += motion.up;
+    } else all.push({ ...motion });
+  }
+  return all;
+}
+
+/** The term at a path such as `0.2.1` in the tree of a pixel. */
+export function termAt(pixel: PixelAccount | null, path: string) {
+  let term = pixel?.tree ?? null;
+  for (const step of path.split(".").slice(1)) term = term?.terms[Number(step)] ?? null;
+  return term;
+}
+
+/** Renders again when the store changes. */
+export function useStore(store: Store) {
+  const [, again] = useReducer((count: number) => count + 1, 0);
+  useEffect(() => store.subscribe(() => again(undefined as never)), [store]);
+}
