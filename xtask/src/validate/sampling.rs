@@ -3,7 +3,7 @@
 use super::Table;
 use super::measure::world;
 use anyhow::Result;
-use durer::bsdf::proof::{self, Cells, Furnace, Verdict};
+use durer::bsdf::proof::{self, Cells, Furnace, Seen, Verdict};
 use durer::bsdf::warp;
 use durer::math::{Ray64, Vec2, Vec3, fp};
 use durer::medium::HenyeyGreenstein;
@@ -31,6 +31,30 @@ pub fn furnaces(table: &mut Table) {
             if (mean - 1.0).abs() > 0.002 + 3.0 * error {
                 right = false;
                 println!("  {name}, roughness {roughness}, cosine {cosine}: {mean:.5} ± {error:.5}");
+            }
+        }
+        table.row(&format!("| {name} | {least:.4} | {most:.4} |"), right);
+    }
+    brushed(table);
+}
+
+/// The same over anisotropy, azimuth and side, for materials that may be rougher along one axis.
+fn brushed(table: &mut Table) {
+    for (name, material) in proof::brushed() {
+        let furnace = Furnace::new(&material);
+        let (mut least, mut most, mut right) = (f64::MAX, f64::MIN, true);
+        let sides = if material.base_metalness > 0.0 { &[false][..] } else { &[false, true] };
+        let seen = ROUGHNESSES[1..].iter().flat_map(|&r| COSINES.map(|c| (r, c)));
+        let seen = seen.flat_map(|seen| [0.3, 0.6, 0.9, 1.0].map(|anisotropy| (seen, anisotropy)));
+        for ((roughness, cosine), anisotropy) in seen {
+            for (&inside, turn) in sides.iter().flat_map(|side| [0.0, 0.07, 0.2, 0.25].map(|turn| (side, turn))) {
+                let from = Seen { roughness, anisotropy, cosine, turn, inside, eta: None };
+                let (mean, error) = furnace.gives_to(from, 1 << 14);
+                (least, most) = (least.min(mean), most.max(mean));
+                if (mean - 1.0).abs() > 0.002 + 3.0 * error {
+                    right = false;
+                    println!("  {name}, {from:?}: {mean:.5} ± {error:.5}");
+                }
             }
         }
         table.row(&format!("| {name} | {least:.4} | {most:.4} |"), right);

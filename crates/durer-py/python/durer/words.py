@@ -9,13 +9,13 @@ import numpy.typing as npt
 
 from .things import Camera, Light, Material, Shape, Thing
 
-__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "Wood"]
+__all__ = ["Background", "Box", "CaveCamera", "Checkerboard", "Cone", "CubeMapCamera", "Cylinder", "CylindricalCamera", "DirectionalLight", "Disc", "Ellipsoid", "EquirectangularCamera", "FisheyeCamera", "Fog", "HairMaterial", "HeightField", "Marble", "Mix", "MultipleCenterCamera", "Noise", "OmnimaxCamera", "OrthographicCamera", "ParabolicCamera", "PerspectiveCamera", "PhongMaterial", "PhotometricLight", "PinholeCamera", "Plane", "PointLight", "PrincipledMaterial", "ProjectiveCamera", "PushBroomCamera", "Quadric", "Rectangle", "Sphere", "SpotLight", "StereoCamera", "Texture", "ThinLensCamera", "Torus", "Triangle", "TriangleMesh", "TwoSided", "Wood"]
 
 
 class Background(Thing):
     """What a ray sees that hits nothing, and the light that is everywhere.
 
-    color: three numbers; 0.5 0.5 0.5 where it is not given. Colour of rays that hit nothing.
+    color: three numbers; 0.5 0.5 0.5 where it is not given. Colour of rays that hit nothing. A scene of ours without a `Background` is black around under `path`, where light is only what a scene says.
 
     ambient_light: three numbers; 0 0 0 where it is not given. Light that reaches every surface.
 
@@ -315,6 +315,10 @@ class ThinLensCamera(Camera):
 
     shift_up: number; 0 where it is not given. What is seen moves upwards by this part of half the larger side.
 
+    near: number, 0 or more; 0 where it is not given. Distance along the axis before which nothing is seen.
+
+    far: number, more than 0. Distance along the axis beyond which nothing is seen.
+
     handedness: `right`, `left`; right where it is not given. Which side of the picture is right: `left` makes a mirror image, as in coordinates of the left hand.
     """
 
@@ -331,6 +335,8 @@ class ThinLensCamera(Camera):
         blade_angle: Optional[float] = None,
         shift_right: Optional[float] = None,
         shift_up: Optional[float] = None,
+        near: Optional[float] = None,
+        far: Optional[float] = None,
         handedness: Optional[Literal["right", "left"]] = None,
     ) -> None:
         super().__init__("ThinLensCamera", [
@@ -344,6 +350,8 @@ class ThinLensCamera(Camera):
             ("bladeAngle", blade_angle),
             ("shiftRight", shift_right),
             ("shiftUp", shift_up),
+            ("near", near),
+            ("far", far),
             ("handedness", handedness),
         ])
 
@@ -1017,6 +1025,10 @@ class PrincipledMaterial(Material):
 
     specular_ior: number, more than 0; 1.5 where it is not given. Index of refraction inside.
 
+    surroundings: `nested`, `ignored`; nested where it is not given. `nested`: glass in other glass or in water refracts by the indices of both; `ignored`: `specularIor` is the index inside over the index outside, whatever the surface lies in, as pbrt and Mitsuba have it.
+
+    energy_compensation: `on`, `off`; on where it is not given. `on`: light that a rough metal, glass or coat reflects between its facets is given back, so that none is lost; `off`: a ray is reflected or refracted once, as pbrt and Mitsuba have it, and the rougher the surface, the darker it is.
+
     transmission_weight: number, from 0 to 1; 0 where it is not given. From 0 (matte) to 1 (glass).
 
     transmission_weight_texture: path. A picture that multiplies `transmissionWeight`.
@@ -1101,19 +1113,25 @@ class PrincipledMaterial(Material):
 
     emission_texture: path. A picture that multiplies `emissionColor`; its values are read as sRGB.
 
+    emission_vertex_colors: `on`, `off`; off where it is not given. `on`: the colours of a mesh's vertices multiply `emissionColor`.
+
     normal_texture: path. A picture of normals in tangent space, as glTF has it: red and green point along u and v, blue outwards.
 
     bump_texture: path. A picture of heights, which bends the normals as if the surface rose where it is bright: a bump map.
 
     bump_height: number; 0.01 where it is not given. How far its white lies above its black, in units of the world; negative where white lies deep.
 
+    normal_bending: `on`, `off`; on where it is not given. `on`: normals of pictures that are turned away from who looks are bent until mirrors show what is outside; `off`: such places are black, as in Mitsuba.
+
     opacity: number, from 0 to 1; 1 where it is not given. Share of the surface that is there, from 0 to 1: the rest lets light through as if nothing were there.
 
     opacity_texture: path. A picture that multiplies `opacity`: its alpha where it has one, else red.
 
+    opacity_cutoff: number, 0 or more. All is there whose opacity, by `opacity`, pictures and the alpha of vertices together, is at least this, and nothing of the rest; where it is not given, all is there in part.
+
     walls: `solid`, `thin`; solid where it is not given. `thin`: a sheet without inside, through which light goes straight; `solid`: the skin of a body.
 
-    backs: `shown`, `hidden`; shown where it is not given. `hidden`: cameras and lights without extent look through faces that are turned away from them; `shown`: both sides are seen.
+    backs: `shown`, `hidden`, `black`; shown where it is not given. `shown`: both sides are seen; `hidden`: cameras and lights without extent look through faces that are turned away from them; `black`: such faces scatter no light.
     """
 
     def __init__(
@@ -1140,6 +1158,8 @@ class PrincipledMaterial(Material):
         specular_rotation: Optional[float] = None,
         specular_rotation_texture: Optional[str] = None,
         specular_ior: Optional[float] = None,
+        surroundings: Optional[Literal["nested", "ignored"]] = None,
+        energy_compensation: Optional[Literal["on", "off"]] = None,
         transmission_weight: Optional[float] = None,
         transmission_weight_texture: Optional[str] = None,
         transmission_color: Optional[npt.ArrayLike] = None,
@@ -1182,13 +1202,16 @@ class PrincipledMaterial(Material):
         emission_color: Optional[npt.ArrayLike] = None,
         emission_spectrum: Optional[str] = None,
         emission_texture: Optional[str] = None,
+        emission_vertex_colors: Optional[Literal["on", "off"]] = None,
         normal_texture: Optional[str] = None,
         bump_texture: Optional[str] = None,
         bump_height: Optional[float] = None,
+        normal_bending: Optional[Literal["on", "off"]] = None,
         opacity: Optional[float] = None,
         opacity_texture: Optional[str] = None,
+        opacity_cutoff: Optional[float] = None,
         walls: Optional[Literal["solid", "thin"]] = None,
-        backs: Optional[Literal["shown", "hidden"]] = None,
+        backs: Optional[Literal["shown", "hidden", "black"]] = None,
     ) -> None:
         super().__init__("PrincipledMaterial", [
             ("baseWeight", base_weight),
@@ -1212,6 +1235,8 @@ class PrincipledMaterial(Material):
             ("specularRotation", specular_rotation),
             ("specularRotationTexture", specular_rotation_texture),
             ("specularIor", specular_ior),
+            ("surroundings", surroundings),
+            ("energyCompensation", energy_compensation),
             ("transmissionWeight", transmission_weight),
             ("transmissionWeightTexture", transmission_weight_texture),
             ("transmissionColor", transmission_color),
@@ -1254,11 +1279,14 @@ class PrincipledMaterial(Material):
             ("emissionColor", emission_color),
             ("emissionSpectrum", emission_spectrum),
             ("emissionTexture", emission_texture),
+            ("emissionVertexColors", emission_vertex_colors),
             ("normalTexture", normal_texture),
             ("bumpTexture", bump_texture),
             ("bumpHeight", bump_height),
+            ("normalBending", normal_bending),
             ("opacity", opacity),
             ("opacityTexture", opacity_texture),
+            ("opacityCutoff", opacity_cutoff),
             ("walls", walls),
             ("backs", backs),
         ])
@@ -1441,6 +1469,26 @@ class Mix(Material):
             ("materialIndex", material2),
             ("share", share),
             ("shareTexture", share_texture),
+        ])
+
+
+class TwoSided(Material):
+    """A surface whose front has one material and whose back, the side that its normal does not point to, another.
+
+    material1: whole number; must be given. The material of the front.
+
+    material2: whole number; must be given. That of the back.
+    """
+
+    def __init__(
+        self,
+        *,
+        material1: Union[int, Material],
+        material2: Union[int, Material],
+    ) -> None:
+        super().__init__("TwoSided", [
+            ("materialIndex", material1),
+            ("materialIndex", material2),
         ])
 
 

@@ -1,31 +1,11 @@
 //! Area lights: surfaces that emit, in world space, and how points on them are sampled.
 
-use super::closed::{Closed, ON_SURFACE};
+use super::closed::{Body, Closed};
+use super::seen::{EmitterPoint, ON_SURFACE, Placement, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
-use crate::math::{Aabb, Affine, Vec2, Vec3, fp};
+use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::{DVec2, DVec3};
 use std::f32::consts::PI;
-
-/// Placement of an object in the world; `None` is the identity.
-#[derive(Clone, Copy, Debug)]
-pub struct Placement<'a>(pub Option<&'a Affine>);
-
-impl Placement<'_> {
-    /// A point in world space.
-    pub fn point(&self, p: Vec3) -> DVec3 {
-        self.0.map_or(p.as_dvec3(), |to_world| to_world.point64(p))
-    }
-
-    /// A vector in world space.
-    pub fn vector(&self, v: Vec3) -> Vec3 {
-        self.0.map_or(v, |to_world| to_world.vector(v))
-    }
-
-    /// A unit normal in world space, by the inverse transpose.
-    pub fn normal(&self, n: Vec3) -> Vec3 {
-        self.0.map_or(n, |to_world| to_world.normal(n))
-    }
-}
 
 /// Surface in world space whose points can be sampled. Positions are in double precision, as those
 /// of ray hits are.
@@ -43,25 +23,31 @@ pub enum EmitterShape {
     Closed(Closed),
 }
 
-/// Point sampled on an emitter, as seen from a receiver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EmitterPoint {
-    /// Unit vector to it.
-    pub wi: Vec3,
-    /// How far it is.
-    pub distance: f32,
-    /// The cosine of the emitter's normal there to the way back; less than 0 behind it.
-    pub cosine: f32,
-    /// Density per solid angle with which it was chosen.
-    pub pdf: f32,
-}
-
 impl EmitterShape {
     /// Triangle of corners in object space, with its unit normal in world space.
     pub fn triangle([a, b, c]: [Vec3; 3], place: &Placement) -> (EmitterShape, Vec3) {
         let n = (b - a).as_dvec3().cross((c - a).as_dvec3()).normalize_or_zero().as_vec3();
         let edges = [place.vector(b - a), place.vector(c - a)];
         (EmitterShape::Triangle(place.point(a), edges), place.normal(n))
+    }
+
+    /// A body placed in the world, `axes` being the images of x, y and z in the object's space; it has
+    /// normals to all sides. `None` where the map leaves no volume.
+    pub fn body(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
+        let closed = Closed::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
+        Some((EmitterShape::Closed(closed), Vec3::ZERO))
+    }
+
+    /// The cone or cylinder between two points with a radius at each.
+    pub fn frustum(place: &Placement, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
+        // The larger disc is the body's base.
+        let ([base, top], [large, small]) = match radii[0] >= radii[1] {
+            true => (ends, radii),
+            false => ([ends[1], ends[0]], [radii[1], radii[0]]),
+        };
+        let frame = Frame::around((top - base).normalize_or(Vec3::Y));
+        let axes = [large * frame.tangent, large * frame.bitangent, top - base];
+        EmitterShape::body(place, Body::Frustum(small / large), base, axes)
     }
 
     /// Its area.
@@ -193,11 +179,6 @@ fn in_ring(u: Vec2, inner: f32) -> Vec2 {
 /// From one point to another.
 fn offset(to: DVec3, from: DVec3) -> Vec3 {
     (to - from).as_vec3()
-}
-
-/// 1 - cos of the angle whose sine's square is given, without cancellation.
-pub(super) fn one_minus_cosine(sine2: f32) -> f32 {
-    sine2 / (1.0 + (1.0 - sine2).max(0.0).sqrt())
 }
 
 /// Whether a point is in a sphere or on it, by the squares of its distance from the centre and of the

@@ -3,7 +3,7 @@
 //! Each is the image of a body of fixed size. A point is chosen on that body; how much the map
 //! stretches the surface there turns its density into one per area of the world.
 
-use super::area::{EmitterPoint, EmitterShape, Placement, one_minus_cosine};
+use super::seen::{EmitterPoint, ON_SURFACE, one_minus_cosine};
 use crate::bsdf::{Frame, warp};
 use crate::math::{Aabb, Vec2, Vec3, fp};
 use glam::DVec3;
@@ -30,9 +30,6 @@ pub struct Closed {
     body: Body,
 }
 
-/// Points within this share of a ball's radius of its surface lie on it.
-pub(super) const ON_SURFACE: f32 = 1e-5;
-
 /// Points of the mean over a surface.
 const POINTS: u16 = 64;
 
@@ -47,24 +44,6 @@ impl Closed {
         let closed = Closed { center, axes, body };
         let most: f32 = axes.iter().map(|axis| axis.length()).product();
         (most.is_finite() && closed.volume().abs() > 1e-6 * most && most > 0.0).then_some(closed)
-    }
-
-    /// A body placed in the world, `axes` being the images of x, y and z in the object's space.
-    pub fn emitter(place: &Placement, body: Body, center: Vec3, axes: [Vec3; 3]) -> Option<(EmitterShape, Vec3)> {
-        let closed = Closed::new(body, place.point(center), axes.map(|axis| place.vector(axis)))?;
-        Some((EmitterShape::Closed(closed), Vec3::ZERO))
-    }
-
-    /// The cone or cylinder between two points with a radius at each.
-    pub fn frustum(place: &Placement, ends: [Vec3; 2], radii: [f32; 2]) -> Option<(EmitterShape, Vec3)> {
-        // The larger disc is the body's base.
-        let ([base, top], [large, small]) = match radii[0] >= radii[1] {
-            true => (ends, radii),
-            false => ([ends[1], ends[0]], [radii[1], radii[0]]),
-        };
-        let frame = Frame::around((top - base).normalize_or(Vec3::Y));
-        let axes = [large * frame.tangent, large * frame.bitangent, top - base];
-        Closed::emitter(place, Body::Frustum(small / large), base, axes)
     }
 
     /// Whether it is an ellipsoid.

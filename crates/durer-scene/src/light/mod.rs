@@ -5,16 +5,18 @@ mod closed;
 pub mod directional;
 pub mod photometric;
 pub mod point;
+mod seen;
 pub mod spot;
 
 use crate::describe::{FileName, described_list};
 use crate::math::{Color, LUMINANCE, Vec3};
-pub use area::{EmitterPoint, EmitterShape, Placement};
+pub use area::EmitterShape;
 pub use closed::{Body, Closed};
 pub use directional::DirectionalLight;
 use glam::DVec3;
 pub use photometric::{PhotometricLight, Profile};
 pub use point::PointLight;
+pub use seen::{EmitterPoint, Placement};
 pub use spot::{Fade, SpotLight};
 
 macro_rules! delegate {

@@ -5,7 +5,7 @@ use super::cylinder::{Axis, BASE, SIDE, TOP};
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Closed, EmitterShape, Placement};
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -146,7 +146,7 @@ impl Shape for Cone {
     }
 
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        Closed::frustum(place, [self.base, self.top], [self.base_radius, self.top_radius])
+        EmitterShape::frustum(place, [self.base, self.top], [self.base_radius, self.top_radius])
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -4,7 +4,7 @@ use super::chord::Chord;
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, exactly, inset, padded, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Body, Closed, EmitterShape, Placement};
+use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::DVec3;
 
@@ -89,7 +89,7 @@ impl Shape for Cuboid {
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let half = 0.5 * (self.max - self.min);
         let axes = [half.x * Vec3::X, half.y * Vec3::Y, half.z * Vec3::Z];
-        Closed::emitter(place, Body::Cube, 0.5 * (self.min + self.max), axes)
+        EmitterShape::body(place, Body::Cube, 0.5 * (self.min + self.max), axes)
     }
 
     fn tangent(&self, _: Vec3) -> Option<Vec3> {

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Closed, EmitterShape, Placement};
+use crate::light::{EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma};
 use glam::{DVec2, DVec3};
 
@@ -180,7 +180,7 @@ impl Shape for Cylinder {
     }
 
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
-        Closed::frustum(place, [self.base, self.top], [self.radius; 2])
+        EmitterShape::frustum(place, [self.base, self.top], [self.radius; 2])
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -3,7 +3,7 @@
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, padded, tessellate, turn};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Body, Closed, EmitterShape, Placement};
+use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, fp, gamma, roots};
 use glam::DVec3;
 
@@ -81,7 +81,7 @@ impl Shape for Ellipsoid {
 
     fn emitter(&self, place: &Placement) -> Option<(EmitterShape, Vec3)> {
         let axes = [self.radii.x * Vec3::X, self.radii.y * Vec3::Y, self.radii.z * Vec3::Z];
-        Closed::emitter(place, Body::Ball, self.center, axes)
+        EmitterShape::body(place, Body::Ball, self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -3,7 +3,7 @@
 use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, Uv, tessellate};
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Body, Closed, EmitterShape, Placement};
+use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Ray, Vec2, Vec3, fp, gamma};
 use glam::DVec3;
 
@@ -128,7 +128,7 @@ impl Shape for Sphere {
                 < 1e-5 * radius * radius;
         match round {
             true => Some((EmitterShape::Sphere(place.point(self.center), radius), Vec3::ZERO)),
-            false => Closed::emitter(
+            false => EmitterShape::body(
                 place,
                 Body::Ball,
                 self.center,

@@ -4,7 +4,7 @@ use super::{Flip, MeshData, Plane, Shape, ShapeHit, Surface, disc_reach, padded,
 use crate::bsdf::Frame;
 use crate::describe::{Rule, described};
 use crate::dialect::set;
-use crate::light::{Body, Closed, EmitterShape, Placement};
+use crate::light::{Body, EmitterShape, Placement};
 use crate::math::{Aabb, Line, Vec2, Vec3, gamma, roots};
 use glam::DVec3;
 
@@ -131,7 +131,7 @@ impl Shape for Torus {
         let axis = self.axis.normalize_or(Vec3::Y);
         let frame = Frame::around(axis);
         let axes = [frame.tangent, frame.bitangent, axis].map(|axis| self.major_radius * axis);
-        Closed::emitter(place, Body::Ring(self.minor_radius / self.major_radius), self.center, axes)
+        EmitterShape::body(place, Body::Ring(self.minor_radius / self.major_radius), self.center, axes)
     }
 
     fn tangent(&self, point: Vec3) -> Option<Vec3> {

@@ -88,7 +88,7 @@ fn without_a_background_light_is_only_what_a_scene_says() {
     let of = |background: &str| {
         read(&format!(
             "PerspectiveCamera {{ center 0 0 5 direction 0 0 -1 up 0 1 0 angle 30 }} {background}
-             Lights {{ PointLight {{ position 0 2 0 candela 1000 }} }} Materials {{ {MATTE} }}
+             Lights {{ PointLight {{ position 0 2 0 color 1 1 1 candela 1000 }} }} Materials {{ {MATTE} }}
              Group {{ MaterialIndex 0 Sphere {{ center 9 -9 0 radius 1 }} }}"
         ))
     };
