@@ -148,10 +148,10 @@ fn every_cause_has_its_scene() {
 
 /// Codes that no scene can trigger, or that commands other than `check` report.
 const WITHOUT: [(&str, &str); 6] = [
-    ("misread-mesh", "the files are those of the course"),
-    ("not-finite", "what makes no numbers is told as that"),
-    ("all-missed", "as far as is known, something says why"),
-    ("one-color", "as far as is known, something says why"),
-    ("dialect", "it goes with others"),
-    ("mesh-file", "the readers of models tell it"),
+    ("misread-mesh", "it needs files of the course"),
+    ("not-finite", "values that give NaN have their own findings"),
+    ("all-missed", "another finding explains every known case"),
+    ("one-color", "another finding explains every known case"),
+    ("dialect", "it accompanies other findings"),
+    ("mesh-file", "the readers of models report it"),
 ];

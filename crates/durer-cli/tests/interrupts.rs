@@ -126,7 +126,7 @@ fn a_bar_is_shown_on_a_terminal_only() {
             .stdin(Stdio::null());
         script.env("TERM", "xterm").output().ok()
     };
-    let Some(shown) = on_terminal("") else { return println!("skipped: there is no `script`") };
+    let Some(shown) = on_terminal("") else { return println!("skipped: `script` not found") };
     let quiet = on_terminal("--quiet").unwrap();
     assert!(String::from_utf8_lossy(&shown.stdout).contains("rays/s"), "{shown:?}");
     assert!(!String::from_utf8_lossy(&quiet.stdout).contains("rays/s"), "{quiet:?}");

@@ -76,7 +76,7 @@ fn pictures_are_what_their_commands_make() {
         let older = command.contains("--show cost");
         assert!(
             older || made == kept,
-            "{picture} is not what the command beside it makes; the guide says how to make all anew"
+            "{picture} differs from the output of its command; the guide says how to render the pictures again"
         );
     };
     // Run two at a time: small renders leave threads idle.

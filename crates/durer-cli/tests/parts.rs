@@ -192,7 +192,7 @@ fn a_full_disk_is_told_and_the_old_file_is_intact() {
             let output = command.args(line.split_whitespace()).current_dir(place.path("")).output().unwrap();
             let said = String::from_utf8_lossy(&output.stderr).into_owned();
             if said.contains("prlimit: not found") {
-                return println!("skipped: there is no `prlimit`");
+                return println!("skipped: `prlimit` not found");
             }
             assert_eq!(output.status.code(), Some(1), "{said}");
             assert!(said.contains(&format!("cannot write `{name}`")), "{said}");

@@ -377,7 +377,7 @@ fn a_thing_sits_in_a_photograph_of_others() {
     let Some(course) = corpus() else { return };
     let picture = course.with_file_name("samples/photos/bundler-kermit/kermit001.jpg");
     if !picture.is_file() {
-        return println!("skipped: there is no {}", picture.display());
+        return println!("skipped: {} not found", picture.display());
     }
     let place = Place::new();
     place.put("plate.jpg", std::fs::read(&picture).unwrap());

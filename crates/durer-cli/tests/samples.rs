@@ -41,7 +41,7 @@ fn khronos(name: &str) -> Option<PathBuf> {
     let mut found = Vec::new();
     below(&folder, &["glb", "gltf"], &mut found);
     if found.is_empty() {
-        println!("skipped: there is no {}", folder.display());
+        println!("skipped: {} not found", folder.display());
     }
     found.into_iter().next()
 }

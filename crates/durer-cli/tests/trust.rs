@@ -325,7 +325,7 @@ fn without_threads_the_calling_thread_does_it_all() {
     let nobody = "setpriv --reuid=65534 --regid=65534 --clear-groups";
     let usable = place.shell(&format!("chmod 777 . && cp {} own && {nobody} ./own dialects", common::durer()));
     if usable.code != Some(0) {
-        return println!("skipped: there is no other user to be: {}", usable.err);
+        return println!("skipped: cannot switch to another user: {}", usable.err);
     }
     let run = |limit: u32, arguments: &str| {
         let ran = place.shell(&format!("{nobody} bash -c 'ulimit -u {limit}; exec ./own {arguments}'"));

@@ -50,7 +50,7 @@ fn info_as_text_and_json() {
         (Some("f04"), Some(2), Some(1))
     );
     assert!(json["scene"].is_object() && json["nodes_per_ray"].as_f64().is_some());
-    assert!(json["tree_cost"].is_null(), "there is no mesh");
+    assert!(json["tree_cost"].is_null(), "the scene has no mesh");
     place.put("ball.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     place.put(
         "mesh.txt",

@@ -183,9 +183,9 @@ fn meeting(lines: &[[Vector2<f64>; 2]], size: f64) -> Option<Vector3<f64>> {
     (values[1] > 1e-9 * values[0]).then(|| Vector3::new(v[0] * size, v[1] * size, v[2]))
 }
 
-/// Estimates the camera with vanishing points v and w: f² = -(v - c)·(w - c), and (v - c, f) and (w
-/// - c, f) are the directions of the axes. `distance` is the distance of the origin, since
-/// photographs do not determine their scale.
+/// Estimates the camera with vanishing points v and w: f² = -(v - c)·(w - c). The directions of the
+/// axes are (v - c, f) and (w - c, f). `distance` is the distance of the origin, since photographs
+/// do not determine their scale.
 ///
 /// Source: Hartley, Zisserman, *Multiple View Geometry in Computer Vision*, 2nd edition, 2004,
 /// section 8.6; Guillou and others, *Using Vanishing Points for Camera Calibration and Coarse 3D

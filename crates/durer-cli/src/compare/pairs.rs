@@ -11,7 +11,7 @@ pub struct Pair {
     /// Name of the file, or its path below the folder.
     pub name: String,
     pub reference: PathBuf,
-    /// `None` if there is no counterpart.
+    /// `None` without a counterpart.
     pub picture: Option<PathBuf>,
 }
 

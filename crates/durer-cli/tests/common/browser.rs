@@ -29,7 +29,7 @@ fn chromium() -> Option<PathBuf> {
         .iter()
         .find_map(|name| std::env::split_paths(&paths).map(|folder| folder.join(name)).find(|path| path.is_file()));
     if found.is_none() {
-        println!("skipped: there is no chromium to open the page in");
+        println!("skipped: chromium not found");
     }
     found
 }

@@ -1,6 +1,6 @@
 //! Shared helpers: a temporary folder with a scene, and the program run in it.
 
-#![allow(dead_code, reason = "each test file is a program of its own and uses a part")]
+#![allow(dead_code, reason = "each test file is a separate program that uses a part")]
 
 pub mod browser;
 
@@ -157,7 +157,7 @@ pub fn corpus() -> Option<PathBuf> {
     let beside = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared");
     let folder = std::env::var_os("DURER_CORPUS").map_or_else(beside, PathBuf::from).join("course");
     if !folder.is_dir() {
-        println!("skipped: there is no {}", folder.display());
+        println!("skipped: {} not found", folder.display());
         return None;
     }
     Some(folder)
