@@ -19,7 +19,7 @@ impl Path<'_> {
             Material::Phong(phong) => Some(phong),
             Material::Solid(..) => None,
         });
-        let mirrored = self.photons.is_none() && phongs.any(|phong| shows(phong));
+        let mirrored = self.photons.is_none() && phongs.any(shows);
         let by_chance = self.world.objects().iter().filter(|object| {
             let is_chosen =
                 self.world.shines_to_both_sides(object.material).is_some() && emitter_of(object, 0).is_some();

@@ -138,20 +138,21 @@ impl Octree {
 /// The child that a ray enters first.
 fn first_child([x, y, z]: [f32; 3], middle: [f32; 3]) -> usize {
     // The axis of the plane that is crossed last on the way in.
-    let (axis, t) = match () {
-        () if x > y && x > z => (0, x),
-        () if !(x > y) && y > z => (1, y),
-        () => (2, z),
+    // NaN compares as false, as in the official programs.
+    let (axis, t) = match (x > y, x > z, y > z) {
+        (true, true, _) => (0, x),
+        (false, _, true) => (1, y),
+        _ => (2, z),
     };
     (0..3).filter(|&other| other != axis && middle[other] < t).map(|other| 4 >> other).sum()
 }
 
 /// The axis of the plane that a ray leaves through.
 fn first_plane([x, y, z]: [f32; 3]) -> usize {
-    match () {
-        () if x < y && x < z => 0,
-        () if !(x < y) && y < z => 1,
-        () => 2,
+    match (x < y, x < z, y < z) {
+        (true, true, _) => 0,
+        (false, _, true) => 1,
+        _ => 2,
     }
 }
 
