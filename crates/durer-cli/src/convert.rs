@@ -58,6 +58,8 @@ pub fn run(args: &ConvertArgs) -> Result<(), Failure> {
     let as_scene = scene_format_for(&name).filter(|format| format.write.is_some() && args.to.is_none());
     // Render options add what the model lacks later.
     options.staging.bare = as_scene.is_some();
+    // A written camera has no picture: it is framed for a square one.
+    options.staging.aspect = Some(1.0);
     let loaded = load(&args.scene, &options, &mut files, &mut diagnostics).map_err(report::unreadable)?;
     report::print(&files, &diagnostics, false);
     let loaded = loaded.ok_or(Failure::Input(None))?;

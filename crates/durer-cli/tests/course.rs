@@ -109,7 +109,7 @@ fn what_is_refused() {
         ("-input scene.txt -output o.tga --dialect f05", "f04"),
         ("-input scene.txt -output o.tga --compat foo", "foo"),
         ("-input scene.txt -output o.tgb", ".tga"),
-        ("-input scene.txt -output o.tga -normals o.tga", "one file"),
+        ("-input scene.txt -output o.tga -normals o.tga", "both name"),
         ("-input missing.txt -output o.tga", "missing.txt"),
     ] {
         place.refused(2, &format!("course {options}"), &[words]);
@@ -254,8 +254,7 @@ fn light_that_is_no_number_is_told_with_its_pixel_and_its_cause() {
     let lit = plain().replace("DirectionalLight { direction -1 -2 -1 color 0.9 0.9 0.8 }", lamp);
     place.put("lamp.txt", lit);
     let ran = place.gives(0, "course --dialect f16 -input lamp.txt -size 9 9 -output o.png");
-    let told =
-        ran.err.lines().find(|line| line.contains("not finite numbers")).unwrap_or_else(|| panic!("{}", ran.err));
+    let told = ran.err.lines().find(|line| line.contains("not finite")).unwrap_or_else(|| panic!("{}", ran.err));
     assert!(told.contains("the first in pixel ") && told.contains("the falloff of light 0 is missing"), "{told}");
 }
 

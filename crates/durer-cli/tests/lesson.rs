@@ -61,7 +61,7 @@ fn only_files_of_an_earlier_lesson_are_replaced() {
     std::fs::create_dir(place.path("site")).unwrap();
     place.put("site/index.html", "my own page");
     let ran = place.gives(2, &format!("lesson scene.txt -o site -q {SMALL}"));
-    assert!(ran.err.contains("`site/index.html` is not of an earlier lesson"), "{}", ran.err);
+    assert!(ran.err.contains("`site/index.html` does not belong to an earlier lesson"), "{}", ran.err);
     assert_eq!(names(&place.path("site")), ["index.html"]);
 }
 

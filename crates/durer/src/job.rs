@@ -313,6 +313,10 @@ impl RenderJob {
 
     fn set_of_method(&mut self, name: &str, text: &str) -> Result<(), String> {
         if name == "integrator" {
+            let known: Vec<&str> = Method::kinds().iter().map(Method::name).collect();
+            if !known.contains(&text) {
+                return Err(format!("expected one of {}", known.join(", ")));
+            }
             self.method = Some(text.into());
             return Ok(());
         }

@@ -309,7 +309,9 @@ impl<'w> Whitted<'w> {
                     dark &= direct.is_dark(part.phong);
                 }
                 // Only listeners need the visibility of a light that adds nothing.
-                if (dark || seen.color == Color::ZERO) && !T::LISTENS {
+                // An infinite light times 0 is NaN, as in the official programs.
+                let adds_nothing = dark && seen.color.is_finite() || seen.color == Color::ZERO;
+                if adds_nothing && !T::LISTENS {
                     continue;
                 }
                 shadows[count] = self.shadow_ray(surface, number, &seen);

@@ -8,6 +8,7 @@ use super::verdict::{GRAZING, MAX_JUDGED, VISIBLE, Verdict, most_common};
 use super::within::around;
 use durer_diag::{Diagnostic, Severity, Span};
 use durer_formats::course::place::{block, section};
+use durer_render::world::Material;
 use durer_scene::camera::Projection;
 use durer_scene::light::{Emitter as _, Light};
 use durer_scene::math::Vec3;
@@ -71,6 +72,10 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
     let mut found = enclosed(scout);
     found.extend(each(scout, |light, verdict| {
         let Verdict::Inside(object) = verdict else { return None };
+        // Photons leave a body of glass.
+        if scout.subject.job.method.prepares() && transmits(scout, object) {
+            return None;
+        }
         let name = scout.object(object);
         let (diagnostic, span) = useless(scout, light, format!("this light is inside the {name}"))?;
         let bounds = scout.world().objects()[object as usize].bounds()?;
@@ -80,6 +85,15 @@ pub(super) fn inside(scout: &SceneProbe) -> Vec<Finding> {
         Some(diagnostic.help(format!("move it out: `position {}` is above it, say", vector(above))))
     }));
     found
+}
+
+/// Returns true if light passes through the surface of an object.
+fn transmits(scout: &SceneProbe, object: u32) -> bool {
+    let material = scout.world().objects()[object as usize].material as usize;
+    match scout.world().materials().get(material) {
+        Some(Material::Phong(phong)) => phong.transparent.max_element() > 0.0,
+        _ => false,
+    }
 }
 
 pub(super) fn blocked(scout: &SceneProbe) -> Vec<Finding> {

@@ -341,7 +341,7 @@ pub static TOPICS: [Topic; 18] = [
             at("crates/durer-bvh/src/math/affine.rs", "fn normal"),
             at("crates/durer-bvh/src/math/affine.rs", "fn inverse_ray"),
             at("crates/durer-render/src/world/object.rs", "fn surface"),
-            at("crates/durer-scene/src/dialect.rs", "MovedNormals"),
+            at("crates/durer-scene/src/dialect/compat.rs", "MovedNormals"),
         ],
         shots: &[color("normals by M", MOVED), color("normals by the inverse transpose of M", FRESNEL)],
         lacking: "nothing that is seen of it is sheared or scaled unevenly",

@@ -47,7 +47,6 @@ fn options_are_set_by_name_and_spelled_again() {
         ("filter", "mitchell"),
         ("filter-radius", "3"),
         ("noise-threshold", "0.5"),
-        ("adaptive", ""),
         ("seed", "7"),
     ];
     let mut options = RenderJob::default();
@@ -57,10 +56,14 @@ fn options_are_set_by_name_and_spelled_again() {
     let job = options.resolve(&context(&scene, rules), None).unwrap();
     let again = RenderJob::of(&job, &context(&scene, rules));
     let words = "--integrator path --clamp 2 --bounces 3 --shadows=off --no-refraction --min-throughput 0.25 \
-                 --samples 9 --filter mitchell --filter-radius 3 --noise-threshold 0.5 --adaptive --seed 7";
+                 --samples 9 --filter mitchell --filter-radius 3 --noise-threshold 0.5 --seed 7";
     assert_eq!(again.spelled().join(" "), words);
     let text = |job: &Job| serde_json::to_string(job).unwrap();
     assert_eq!(text(&again.resolve(&context(&scene, rules), None).unwrap()), text(&job));
+    let adaptive = RenderJob::default().samples(32_u32).adaptive(true).resolve(&context(&scene, rules), None).unwrap();
+    assert_eq!(RenderJob::of(&adaptive, &context(&scene, rules)).spelled(), ["--samples 32", "--adaptive"]);
+    let both = RenderJob::default().adaptive(true).noise_threshold(0.5_f32).resolve(&context(&scene, rules), None);
+    assert!(both.unwrap_err().contains("remove one of them"));
     // A job of defaults spells only its number of samples.
     let usual = RenderJob::default().resolve(&context(&scene, rules), None).unwrap();
     assert_eq!(RenderJob::of(&usual, &context(&scene, rules)).spelled(), ["--samples 16"]);
