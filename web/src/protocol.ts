@@ -24,7 +24,7 @@ session: number,
  */
 id: number, 
 /**
- * What it says.
+ * The event.
  */
 event: Event, };
 
@@ -46,7 +46,7 @@ name: string,
  */
 base64: string, 
 /**
- * Whether it is the scene itself.
+ * True for the scene itself.
  */
 opens: boolean, } | { "kind": "edit", 
 /**
@@ -66,7 +66,7 @@ height: number, } | { "kind": "show",
  */
 picture: string, 
 /**
- * What multiplies light, in powers of two.
+ * Exposure in stops: light is multiplied by this power of two.
  */
 stops: number, 
 /**
@@ -82,7 +82,7 @@ options: Array<Setting>, } | { "kind": "move",
  */
 motion: Motion, 
 /**
- * Whether more is to come at once: then only coarse pictures are made.
+ * True while the motion lasts: only coarse pictures are made.
  */
 moving: boolean, } | { "kind": "field", 
 /**
@@ -94,7 +94,7 @@ name: string,
  */
 values: Array<number>, 
 /**
- * Whether more is to come at once.
+ * True while the motion lasts.
  */
 moving: boolean, } | { "kind": "look", 
 /**
@@ -102,11 +102,11 @@ moving: boolean, } | { "kind": "look",
  */
 center: [number, number, number], 
 /**
- * Where it looks.
+ * View direction.
  */
 direction: [number, number, number], 
 /**
- * What is up.
+ * Up direction.
  */
 up: [number, number, number], 
 /**
@@ -114,7 +114,7 @@ up: [number, number, number],
  */
 angle: number, 
 /**
- * Whether more is to come at once.
+ * True while the motion lasts.
  */
 moving: boolean, } | { "kind": "write_camera" } | { "kind": "explain", 
 /**
@@ -130,7 +130,7 @@ y: number,
  */
 sample: number | null, } | { "kind": "cast", 
 /**
- * Where the ray starts.
+ * Origin of the ray.
  */
 origin: [number, number, number], 
 /**
@@ -138,7 +138,7 @@ origin: [number, number, number],
  */
 direction: [number, number, number], 
 /**
- * Where it ends.
+ * End.
  */
 t_max: number | null, } | { "kind": "outlines" } | { "kind": "language" } | { "kind": "export", 
 /**
@@ -146,11 +146,11 @@ t_max: number | null, } | { "kind": "outlines" } | { "kind": "language" } | { "k
  */
 name: string, } | { "kind": "save", 
 /**
- * Whether what others wrote meanwhile is overwritten.
+ * True to overwrite what other programs wrote meanwhile.
  */
 force: boolean, } | { "kind": "pause", 
 /**
- * Whether to stop.
+ * True to pause.
  */
 pause: boolean, } | { "kind": "close" };
 
@@ -168,27 +168,27 @@ name: string,
  */
 text: string | null, 
 /**
- * Whether it can be saved.
+ * True if it can be saved.
  */
 saves: boolean, 
 /**
- * All pictures that can be shown.
+ * Pictures that can be shown.
  */
 pictures: Array<Choice>, 
 /**
- * All tone curves.
+ * Tone curves.
  */
 tones: Array<string>, 
 /**
- * All integrators.
+ * Integrators.
  */
 integrators: Array<Choice>, } | { "kind": "scene", 
 /**
- * What is wrong or odd with it.
+ * Findings of the reader.
  */
 findings: Array<Finding>, 
 /**
- * What is in it; `None` where it has errors: the picture is that of the last one without.
+ * Contents; `None` if it has errors, and the picture stays the last one.
  */
 contents: Contents | null, 
 /**
@@ -204,7 +204,7 @@ findings: Array<Finding>, } | { "kind": "camera",
  */
 camera: CameraState, } | { "kind": "picture", 
 /**
- * What it is.
+ * Meaning.
  */
 head: PictureHead, } | { "kind": "explained", 
 /**
@@ -224,7 +224,7 @@ outlines: Array<Outline>,
  */
 lamps: Array<Lamp>, } | { "kind": "language", 
 /**
- * All that begin something.
+ * Words that begin a statement.
  */
 words: Array<Word>, } | { "kind": "text", 
 /**
@@ -232,7 +232,7 @@ words: Array<Word>, } | { "kind": "text",
  */
 text: string, 
 /**
- * Whether it was changed on disk.
+ * True if it was changed on disk.
  */
 from_disk: boolean, } | { "kind": "exported", 
 /**
@@ -340,11 +340,11 @@ code: string,
  */
 message: string, 
 /**
- * What may have been meant.
+ * Advice.
  */
 help: string | null, 
 /**
- * What comes of it in the picture.
+ * Effect on the picture.
  */
 effect: string | null, 
 /**
@@ -352,11 +352,11 @@ effect: string | null,
  */
 file: string | null, 
 /**
- * Where in it.
+ * Place in it.
  */
 place: Place | null, 
 /**
- * What mends it.
+ * Edits that fix it.
  */
 fix: Array<Change>, };
 
@@ -388,11 +388,11 @@ camera: CameraState,
  */
 objects: Array<Thing>, 
 /**
- * How many objects there are.
+ * Number of objects.
  */
 object_count: number, 
 /**
- * How many triangles they have.
+ * Number of triangles.
  */
 triangles: number, 
 /**
@@ -436,7 +436,7 @@ export type Thing = {
  */
 name: string, 
 /**
- * Where it is written, if in the scene's text.
+ * Place in the scene's text.
  */
 place: Place | null, };
 
@@ -450,7 +450,7 @@ keyword: string,
  */
 eye: [number, number, number], 
 /**
- * Where it looks, of length 1.
+ * View direction, of length 1.
  */
 forward: [number, number, number], 
 /**
@@ -478,7 +478,7 @@ fields: Array<FieldState>,
  */
 statement: string, 
 /**
- * Whether it was moved.
+ * True if it differs from the text.
  */
 moved: boolean, };
 
@@ -496,7 +496,7 @@ doc: string,
  */
 values: Array<number>, 
 /**
- * What it says where it has no numbers.
+ * Its value if that is a word or a file name.
  */
 text: string, 
 /**
@@ -552,7 +552,7 @@ hash: string | null, };
 
 export type Row = { 
 /**
- * What is computed.
+ * Name of the result.
  */
 name: string, 
 /**
@@ -560,33 +560,33 @@ name: string,
  */
 formula: string, 
 /**
- * The same in numbers; may be empty.
+ * The formula with numbers; may be empty.
  */
 numbers: string, 
 /**
- * What comes of it, in words.
+ * The result as text.
  */
 result: string, 
 /**
- * What comes of it, as a number.
+ * The result as a number.
  */
 value: number | null, };
 
 export type Segment = { 
 /**
- * What it is.
+ * Meaning.
  */
 role: Role, 
 /**
- * Where it begins.
+ * Start.
  */
 from: [number, number, number], 
 /**
- * Where it ends.
+ * End.
  */
 to: [number, number, number], 
 /**
- * Whether it goes on for ever.
+ * True if it has no end.
  */
 escapes: boolean, };
 
@@ -594,7 +594,7 @@ export type Role = "camera" | "reflected" | "transmitted" | "scattered" | "lit" 
 
 export type Term = { 
 /**
- * What it is, in a few words.
+ * Title.
  */
 title: string, 
 /**
@@ -606,7 +606,7 @@ rows: Array<Row>,
  */
 value: [number, number, number], 
 /**
- * What it adds to the pixel.
+ * Contribution to the pixel.
  */
 adds: [number, number, number], 
 /**
@@ -618,7 +618,7 @@ share: number,
  */
 swatch: [number, number, number], 
 /**
- * Where the thing is written that it is about.
+ * Place of its object or light in the text.
  */
 place: Place | null, 
 /**
@@ -634,7 +634,7 @@ normal: [[number, number, number], [number, number, number]] | null,
  */
 ray: [[number, number, number], [number, number, number]] | null, 
 /**
- * Where that ray ends.
+ * End of the ray.
  */
 t_max: number | null, 
 /**
@@ -642,7 +642,7 @@ t_max: number | null,
  */
 object: number | null, 
 /**
- * What it is the sum of.
+ * Terms that sum to it.
  */
 terms: Array<Term>, };
 
@@ -664,7 +664,7 @@ color: [number, number, number],
  */
 bytes: [number, number, number], 
 /**
- * How many samples it has.
+ * Number of samples.
  */
 samples: number, 
 /**
@@ -696,7 +696,7 @@ object: number,
  */
 name: string, 
 /**
- * Where it is written.
+ * Place in the text.
  */
 place: Place | null, 
 /**
@@ -708,7 +708,7 @@ verdict: Verdict,
  */
 why: string, 
 /**
- * Where the ray meets it first.
+ * First crossing along the line.
  */
 t: number | null, 
 /**
@@ -718,7 +718,7 @@ rows: Array<Row>, };
 
 export type CastAccount = { 
 /**
- * Where the ray starts.
+ * Origin of the ray.
  */
 origin: [number, number, number], 
 /**
@@ -726,11 +726,11 @@ origin: [number, number, number],
  */
 direction: [number, number, number], 
 /**
- * All objects, up to a limit, in the order in which they are written.
+ * Tests of the objects in the order of the text, up to a limit.
  */
 tests: Array<ObjectTest>, 
 /**
- * How many objects were not told about.
+ * Number of objects beyond the limit.
  */
 left_out: number, 
 /**
@@ -748,7 +748,7 @@ object: number,
  */
 part: number, 
 /**
- * Where on the ray.
+ * Position along the ray.
  */
 t: number, 
 /**
@@ -784,11 +784,11 @@ lines: Array<Array<number>>, };
 
 export type Lamp = { 
 /**
- * Where it is, or from where it comes.
+ * Position; of directional lights, a point from where they shine.
  */
 at: [number, number, number], 
 /**
- * Whether it is infinitely far.
+ * True if it is infinitely far.
  */
 far: boolean, 
 /**
@@ -806,7 +806,7 @@ word: string,
  */
 chapter: string, 
 /**
- * What it is.
+ * Meaning.
  */
 doc: string, 
 /**
@@ -828,11 +828,11 @@ word: string,
  */
 value: string, 
 /**
- * What holds where it is not given.
+ * Default value.
  */
 default: string | null, 
 /**
- * Whether it must be given.
+ * True if it must be given.
  */
 required: boolean, 
 /**

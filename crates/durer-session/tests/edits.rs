@@ -79,6 +79,6 @@ fn edits_never_end_a_session() {
         }
         assert!(ask(serde_json::json!({ "kind": "edit", "text": text })));
     }
-    // Both kinds were met often.
-    assert!(counts.iter().all(|&count| count > 300), "{counts:?}");
+    // About one edit in twenty leaves a valid scene.
+    assert!(counts.iter().all(|&count| count > 100), "{counts:?}");
 }
