@@ -325,6 +325,9 @@ impl RenderJob {
         let kind = field.map(|field| field.kind).ok_or_else(|| self.unknown(name))?;
         use durer_scene::describe::Kind;
         let value = match kind {
+            Kind::Word(words) if !words.contains(&text) => {
+                return Err(format!("expected one of {}", words.join(", ")));
+            }
             Kind::Word(_) => Value::Word(text.into()),
             Kind::Int => Value::Int(text.parse().map_err(|_| "expected a whole number".to_string())?),
             _ => Value::Float(text.parse().map_err(|_| "expected a number".to_string())?),

@@ -131,15 +131,11 @@ pub fn guess(bytes: &[u8], file: u32, hints: &[Hint], exists: &dyn Fn(&str) -> b
     }
     let first = |left: DialectSet| PREFERENCE.into_iter().find(|d| d.is_in(left));
     let by_words = first(left);
-    // Words of all years before 2020 tell no year apart.
-    let tells_years = |reasons: &[(DialectSet, String, Option<Span>)]| {
-        reasons.iter().any(|(keep, ..)| keep & set::CLASSIC != set::CLASSIC)
-    };
     for hint in hints {
         // What contradicts the file and the hints before it tells nothing: options may be another
         // year's.
         let keep = left & hint.set;
-        if keep != 0 && keep != left && (!hint.weak || tells_years(&reasons)) {
+        if keep != 0 && keep != left && !(hint.weak && reasons.is_empty()) {
             left = keep;
             reasons.push((hint.set, hint.why.clone(), None));
         }
