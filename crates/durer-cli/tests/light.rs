@@ -136,7 +136,7 @@ fn broken_lamps_names_and_dark_scenes_are_told_of() {
     assert!(told.contains("no-depth") && told.contains("transmissionDepth 1"), "{told}");
     place.put(
         "bulb.txt",
-        "PerspectiveCamera { center 0 1 8 direction 0 0 -1 up 0 1 0 angle 30 }\n\
+        "PerspectiveCamera { center 0 1 8 direction 0 0 -1 up 0 1 0 angle 30 } Background { color 0.5 0.5 0.5 }\n\
          Lights { PointLight { position 0 1 0 color 5 5 5 falloff 1 } }\n\
          Materials { PrincipledMaterial { baseColor 0.5 0.5 0.5 } PrincipledMaterial { preset glass } }\n\
          Group { MaterialIndex 0 Plane { normal 0 1 0 offset 0 } MaterialIndex 1 Sphere { center 0 1 0 radius 0.6 } }",
