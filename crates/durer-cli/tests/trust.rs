@@ -157,7 +157,6 @@ fn no_file_is_read_and_replaced() {
         format!("explain mesh.txt {size} --pixel 3,3 --html ./m.obj"),
         "convert scene.txt -o here/scene.txt".into(),
         "convert mesh.txt -o m.obj".into(),
-        "convert texture.txt -o hard.png".into(),
         "compare p.png link.png --report hard.png".into(),
         "compare p.png p.png --report r.html --heat here/p.png".into(),
         "compare p.png p.png --report scene.txt --scene scene.txt".into(),

@@ -29,7 +29,7 @@ class Statement:
     group: str
 
 
-STATEMENTS = {name: Statement(*rest) for name, *rest in _durer.options()}
+STATEMENTS = {name: Statement(help, value, words, group) for name, help, value, words, group in _durer.options()}
 
 #: Old names of options.
 _ALIASES = {"weight": "min-throughput", "noise": "noise-threshold", "time": "time-limit"}
@@ -105,12 +105,12 @@ def _texts(keyword: str, name: str, value: Any) -> list[str]:
         return [""]
     if isinstance(value, bool):
         return ["on" if value else "off"]
-    if name == "assets" and not isinstance(value, (str, os.PathLike)):
-        return [os.fspath(folder) for folder in value]
     if name in ("depth-range", "light-range"):
         if np.shape(value) != (2,):
             raise ValueError(f"{keyword} must be two numbers, but is {value!r}")
         return [" ".join(repr(float(x)) for x in value)]
+    if name == "assets" and not isinstance(value, (str, os.PathLike)):
+        return [os.fspath(folder) for folder in value]
     return [_text(name, value)]
 
 
