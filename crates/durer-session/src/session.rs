@@ -75,7 +75,7 @@ impl Session {
         }
     }
 
-    /// Returns true if there is work for [`Session::step`].
+    /// Returns true if there is work for the next step.
     pub fn is_busy(&self) -> bool {
         !self.paused && (self.viewer.is_busy() || self.unchecked)
     }

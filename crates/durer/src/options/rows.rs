@@ -1,5 +1,7 @@
 //! Options of reading, view and work.
 
+#![allow(clippy::unit_arg, reason = "each row assigns and succeeds in one expression")]
+
 use super::RenderOptions;
 use super::memory::Memory;
 use crate::job::{JobOption, OptionForm};
