@@ -1,6 +1,8 @@
 //! The arithmetic of the course's programs since 2012: where their rays go, what they hit, and what
 //! is done where nobody asked for them.
 
+#![allow(clippy::disallowed_methods, reason = "the official programs call the platform's tangent")]
+
 use durer::camera::{CameraSample, Projection};
 use durer::diag::{Diagnostics, Files};
 use durer::dialect::{Compat, Dialect};
