@@ -119,7 +119,8 @@ impl Sums {
     fn mean(&self, samples: u32, rare: f64) -> ([f64; 3], f64, f64) {
         let n = f64::from(samples);
         let mean = self.bright / n;
-        let error = ((self.squares / n - mean * mean).max(0.0) / n).sqrt().hypot(rare / n);
+        let variance = (self.squares / n - mean * mean).max(0.0) / n;
+        let error = (variance + (rare / n) * (rare / n)).sqrt();
         (self.light.map(|sum| sum / n), mean, error)
     }
 }
