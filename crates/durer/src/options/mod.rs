@@ -18,9 +18,8 @@ pub mod memory;
 mod rows;
 
 pub use crate::job::{JobOption, OptionForm};
-use crate::job::{RenderJob, View, option_index, option_name};
+use crate::job::{RenderJob, View, option_index, option_name, unknown_option};
 use crate::{LoadOptions, Loaded};
-use durer_diag::did_you_mean;
 use durer_render::integrator::Method;
 use durer_render::render::{Control, Job, Shard};
 use durer_scene::describe::{DescribedList, Field, Kind};
@@ -76,8 +75,8 @@ impl RenderOptions {
     pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
         let mut rows = READING.iter().chain(VIEW).chain(WORK);
         let set = match rows.find(|row| row.option.name == name) {
-            Some(row) => check(row.option.form, text).and_then(|()| (row.set)(self, text)),
-            None if !is_known(name) => return Err(unknown(name)),
+            Some(row) => row.option.form.check(text).and_then(|()| (row.set)(self, text)),
+            None if !is_known(name) => return Err(unknown_option(name, statements().iter().map(|option| option.name))),
             None => self.job.set(name, text),
         };
         set.map_err(|reason| match text {
@@ -116,20 +115,6 @@ impl RenderOptions {
     }
 }
 
-/// Checks a text against an option's form.
-fn check(form: OptionForm, text: &str) -> Result<(), String> {
-    match form {
-        OptionForm::Whole(least, most) => match text.parse::<u32>() {
-            Ok(number) if (least..=most).contains(&number) => Ok(()),
-            Ok(_) => Err(format!("expected a number from {least} to {most}")),
-            Err(_) => Err("expected a whole number".into()),
-        },
-        OptionForm::Words(words) if !words().contains(&text) => Err(format!("expected one of {}", words().join(", "))),
-        OptionForm::Number(_, test, otherwise) if !text.parse().is_ok_and(test) => Err(otherwise.into()),
-        _ => Ok(()),
-    }
-}
-
 /// Subject of an option.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OptionGroup {
@@ -159,7 +144,6 @@ pub struct OptionStatement {
 
 /// Returns the statements of every option.
 pub fn statements() -> Vec<OptionStatement> {
-    let of = |group| move |option: &JobOption| stated(option, group);
     let rows = |rows: &[rows::Row], group| rows.iter().map(|row| stated(&row.option, group)).collect::<Vec<_>>();
     let mut all = rows(READING, OptionGroup::Reading);
     all.push(OptionStatement {
@@ -176,7 +160,7 @@ pub fn statements() -> Vec<OptionStatement> {
         words: if let Kind::Word(words) = field.kind { words.to_vec() } else { Vec::new() },
         group: OptionGroup::Picture,
     }));
-    all.extend(RenderJob::OPTIONS.iter().map(of(OptionGroup::Picture)));
+    all.extend(RenderJob::OPTIONS.iter().map(|option| stated(option, OptionGroup::Picture)));
     all.extend(rows(VIEW, OptionGroup::Picture));
     all.extend(rows(WORK, OptionGroup::Work));
     all
@@ -198,14 +182,6 @@ fn is_known(name: &str) -> bool {
     name == "integrator"
         || RenderJob::OPTIONS.iter().any(|option| option.name == name)
         || Method::kinds().iter().any(|kind| option_index(kind, name).is_some())
-}
-
-fn unknown(name: &str) -> String {
-    let all = statements();
-    match did_you_mean(name, all.iter().map(|option| option.name)) {
-        Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
-        None => format!("unknown option `{name}`"),
-    }
 }
 
 /// Returns the help of `--integrator`: each integrator with its meaning.

@@ -4,7 +4,8 @@
 //! ([`RenderJob::spelled`]), JSON and Python's arguments walk [`RenderJob::OPTIONS`].
 //! [`RenderJob::resolve`] turns them into a [`Job`], with defaults from the scene.
 
-use durer_diag::did_you_mean;
+mod form;
+
 use durer_render::film::Filter;
 use durer_render::film::aov::Aov;
 use durer_render::film::course::CourseFilter;
@@ -16,6 +17,9 @@ use durer_scene::describe::{DescribedList, Field, Value};
 use durer_scene::dialect::{Dialect, Rules};
 use durer_scene::sampler::Sampler;
 use durer_scene::scene::Scene;
+pub(crate) use form::unknown_option;
+pub use form::{JobOption, OptionForm};
+use form::{OptionValue, one_of};
 
 /// Maximum samples a pixel with a noise threshold.
 const MAX_FOR_NOISE: u32 = 4096;
@@ -24,95 +28,6 @@ const MIN_THROUGHPUT: f32 = 1.0 / 256.0;
 
 /// Default number of scattering events after a path's first hit.
 pub const PATH_BOUNCES: u32 = 16;
-
-/// Form of an option's value.
-#[derive(Clone, Copy, Debug)]
-pub enum OptionForm {
-    /// No value.
-    Flag,
-    /// `on`, `off`, or empty for `on`.
-    Switch,
-    /// A whole number in a range, both ends included.
-    Whole(u32, u32),
-    /// A number, or several joined by a letter; the name of the value.
-    Value(&'static str),
-    /// A number that passes a test: name of the value, test, and message if it fails.
-    Number(&'static str, fn(f32) -> bool, &'static str),
-    /// Two numbers separated by a blank: their names.
-    Two(&'static str, &'static str),
-    /// One of several words.
-    Words(fn() -> Vec<&'static str>),
-}
-
-/// An option of a picture.
-#[derive(Clone, Copy, Debug)]
-pub struct JobOption {
-    /// Name on the command line, without dashes.
-    pub name: &'static str,
-    /// Meaning, unit and default.
-    pub doc: &'static str,
-    /// Form of the value.
-    pub form: OptionForm,
-}
-
-/// A type of an option's value that can be parsed and printed.
-trait OptionValue: Sized {
-    fn parse(text: &str) -> Result<Self, String>;
-    fn shown(&self) -> String;
-}
-
-impl OptionValue for bool {
-    fn parse(text: &str) -> Result<Self, String> {
-        match text {
-            "on" => Ok(true),
-            "off" => Ok(false),
-            _ => Err("expected `on` or `off`".into()),
-        }
-    }
-    fn shown(&self) -> String {
-        if *self { "on".into() } else { "off".into() }
-    }
-}
-
-macro_rules! numbers {
-    ($($type:ty: $what:literal),+) => {
-        $(impl OptionValue for $type {
-            fn parse(text: &str) -> Result<Self, String> {
-                text.parse().map_err(|_| concat!("expected ", $what).into())
-            }
-            fn shown(&self) -> String {
-                self.to_string()
-            }
-        })+
-    };
-}
-
-numbers!(u32: "a whole number", u64: "a whole number", f32: "a number", String: "a word");
-
-/// Width and height in pixels.
-impl OptionValue for (u32, u32) {
-    fn parse(text: &str) -> Result<Self, String> {
-        let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-        match parsed.ok_or("expected WIDTHxHEIGHT, as in 640x480")? {
-            (0, _) | (_, 0) => Err("width and height must be at least 1".into()),
-            size => Ok(size),
-        }
-    }
-    fn shown(&self) -> String {
-        format!("{}x{}", self.0, self.1)
-    }
-}
-
-/// Two numbers.
-impl OptionValue for [f32; 2] {
-    fn parse(text: &str) -> Result<Self, String> {
-        let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
-        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| "expected two numbers".into())
-    }
-    fn shown(&self) -> String {
-        format!("{} {}", self[0], self[1])
-    }
-}
 
 macro_rules! options {
     (
@@ -151,19 +66,8 @@ macro_rules! options {
                 let option = RenderJob::OPTIONS.iter().find(|option| option.name == name);
                 match option.map(|option| option.form) {
                     Some(OptionForm::Flag | OptionForm::Switch) if text.is_empty() => return self.set(name, "on"),
-                    Some(OptionForm::Whole(least, most)) => {
-                        let value: u32 = text.parse().map_err(|_| "expected a whole number".to_string())?;
-                        if !(least..=most).contains(&value) {
-                            return Err(format!("expected a number from {least} to {most}"));
-                        }
-                    }
-                    Some(OptionForm::Number(_, test, otherwise)) if !text.parse().is_ok_and(test) => {
-                        return Err(otherwise.into());
-                    }
-                    Some(OptionForm::Words(words)) if !words().contains(&text) => {
-                        return Err(format!("expected one of {}", words().join(", ")));
-                    }
-                    _ => {}
+                    Some(form) => form.check(text)?,
+                    None => {}
                 }
                 match name {
                     $($word => self.$field = Some(OptionValue::parse(text)?),)*
@@ -313,10 +217,7 @@ impl RenderJob {
 
     fn set_of_method(&mut self, name: &str, text: &str) -> Result<(), String> {
         if name == "integrator" {
-            let known: Vec<&str> = Method::kinds().iter().map(Method::name).collect();
-            if !known.contains(&text) {
-                return Err(format!("expected one of {}", known.join(", ")));
-            }
+            one_of(text, &Method::kinds().iter().map(Method::name).collect::<Vec<_>>())?;
             self.method = Some(text.into());
             return Ok(());
         }
@@ -325,10 +226,10 @@ impl RenderJob {
         let kind = field.map(|field| field.kind).ok_or_else(|| self.unknown(name))?;
         use durer_scene::describe::Kind;
         let value = match kind {
-            Kind::Word(words) if !words.contains(&text) => {
-                return Err(format!("expected one of {}", words.join(", ")));
+            Kind::Word(words) => {
+                one_of(text, words)?;
+                Value::Word(text.into())
             }
-            Kind::Word(_) => Value::Word(text.into()),
             Kind::Int => Value::Int(text.parse().map_err(|_| "expected a whole number".to_string())?),
             _ => Value::Float(text.parse().map_err(|_| "expected a number".to_string())?),
         };
@@ -336,10 +237,7 @@ impl RenderJob {
     }
 
     fn unknown(&self, name: &str) -> String {
-        match did_you_mean(name, RenderJob::OPTIONS.iter().map(|option| option.name)) {
-            Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
-            None => format!("unknown option `{name}`"),
-        }
+        unknown_option(name, RenderJob::OPTIONS.iter().map(|option| option.name))
     }
 
     /// Returns the requested integrator with its options; `usual` if none is requested.

@@ -1,0 +1,121 @@
+//! Forms of options' values: how a text is checked, parsed and printed.
+
+use durer_diag::did_you_mean;
+
+/// Form of an option's value.
+#[derive(Clone, Copy, Debug)]
+pub enum OptionForm {
+    /// No value.
+    Flag,
+    /// `on`, `off`, or empty for `on`.
+    Switch,
+    /// A whole number in a range, both ends included.
+    Whole(u32, u32),
+    /// A number, or several joined by a letter; the name of the value.
+    Value(&'static str),
+    /// A number that passes a test: name of the value, test, and message if it fails.
+    Number(&'static str, fn(f32) -> bool, &'static str),
+    /// Two numbers separated by a blank: their names.
+    Two(&'static str, &'static str),
+    /// One of several words.
+    Words(fn() -> Vec<&'static str>),
+}
+
+/// An option of a picture.
+#[derive(Clone, Copy, Debug)]
+pub struct JobOption {
+    /// Name on the command line, without dashes.
+    pub name: &'static str,
+    /// Meaning, unit and default.
+    pub doc: &'static str,
+    /// Form of the value.
+    pub form: OptionForm,
+}
+
+impl OptionForm {
+    /// Checks the text of a value against the form, as far as the form tells.
+    pub(crate) fn check(self, text: &str) -> Result<(), String> {
+        match self {
+            OptionForm::Whole(least, most) => match text.parse::<u32>() {
+                Ok(number) if (least..=most).contains(&number) => Ok(()),
+                Ok(_) => Err(format!("expected a number from {least} to {most}")),
+                Err(_) => Err("expected a whole number".into()),
+            },
+            OptionForm::Words(words) => one_of(text, &words()),
+            OptionForm::Number(_, test, otherwise) if !text.parse().is_ok_and(test) => Err(otherwise.into()),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Checks that a text is one of some words.
+pub(super) fn one_of(text: &str, words: &[&str]) -> Result<(), String> {
+    if words.contains(&text) { Ok(()) } else { Err(format!("expected one of {}", words.join(", "))) }
+}
+
+/// Returns the message for an option that does not exist, with the nearest name.
+pub(crate) fn unknown_option<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    match did_you_mean(name, known) {
+        Some(near) => format!("unknown option `{name}`; did you mean `{near}`?"),
+        None => format!("unknown option `{name}`"),
+    }
+}
+
+/// A type of an option's value that can be parsed and printed.
+pub(super) trait OptionValue: Sized {
+    fn parse(text: &str) -> Result<Self, String>;
+    fn shown(&self) -> String;
+}
+
+impl OptionValue for bool {
+    fn parse(text: &str) -> Result<Self, String> {
+        match text {
+            "on" => Ok(true),
+            "off" => Ok(false),
+            _ => Err("expected `on` or `off`".into()),
+        }
+    }
+    fn shown(&self) -> String {
+        if *self { "on".into() } else { "off".into() }
+    }
+}
+
+macro_rules! numbers {
+    ($($type:ty: $what:literal),+) => {
+        $(impl OptionValue for $type {
+            fn parse(text: &str) -> Result<Self, String> {
+                text.parse().map_err(|_| concat!("expected ", $what).into())
+            }
+            fn shown(&self) -> String {
+                self.to_string()
+            }
+        })+
+    };
+}
+
+numbers!(u32: "a whole number", u64: "a whole number", f32: "a number", String: "a word");
+
+/// Width and height in pixels.
+impl OptionValue for (u32, u32) {
+    fn parse(text: &str) -> Result<Self, String> {
+        let parsed = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+        match parsed.ok_or("expected WIDTHxHEIGHT, as in 640x480")? {
+            (0, _) | (_, 0) => Err("width and height must be at least 1".into()),
+            size => Ok(size),
+        }
+    }
+    fn shown(&self) -> String {
+        format!("{}x{}", self.0, self.1)
+    }
+}
+
+/// Two numbers.
+impl OptionValue for [f32; 2] {
+    fn parse(text: &str) -> Result<Self, String> {
+        let numbers: Option<Vec<f32>> = text.split_whitespace().map(|word| word.parse().ok()).collect();
+        numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(|| "expected two numbers".into())
+    }
+    fn shown(&self) -> String {
+        format!("{} {}", self[0], self[1])
+    }
+}
