@@ -1,40 +1,24 @@
-//! A scene in lines, to be drawn in space.
+//! Line drawings of a scene, for the page's view in space.
 
 use crate::document::Compiled;
 use crate::protocol::{Lamp, Outline};
-use durer::light::Emitter;
-use durer::math::{Aabb, Vec3};
+use durer::math::Vec3;
 use durer::render::explain::Names;
-use durer::report::outline;
+use durer::report::{LightMark, light_marks, object_outlines};
 
-/// Objects drawn at most: more would hide each other.
-const MAX_OBJECTS: usize = 400;
-/// Lights drawn at most.
-const MAX_LAMPS: usize = 32;
+/// Maximum number of lights drawn.
+const MAX_LIGHTS: usize = 32;
 
-/// The lines of all objects.
+/// Returns the polylines of the objects.
 pub(crate) fn outlines(names: &Names) -> Vec<Outline> {
-    let world = names.world;
-    let ends = world.bounds().union(Aabb::around([world.camera_frame().eye]));
-    let objects = world.objects().iter().take(MAX_OBJECTS).enumerate();
-    let one = |(i, object)| Outline {
-        object: i as u32,
-        lines: outline(object, &ends).into_iter().map(|line| line.iter().flat_map(Vec3::to_array).collect()).collect(),
-    };
-    objects.map(one).collect()
+    let flat = |line: &Vec<Vec3>| line.iter().flat_map(Vec3::to_array).collect();
+    let one =
+        |(i, lines): (usize, Vec<Vec<Vec3>>)| Outline { object: i as u32, lines: lines.iter().map(flat).collect() };
+    object_outlines(names.world).enumerate().map(one).collect()
 }
 
-/// The lights, those without a place beside the scene.
+/// Returns the marks of the lights with their names.
 pub(crate) fn lamps(compiled: &Compiled) -> Vec<Lamp> {
-    let world = &compiled.world;
-    let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
-    let reach = 0.6 * bounds.size().length();
-    let lamps = world.lights().iter().take(MAX_LAMPS).enumerate();
-    let one = |(i, light): (usize, &durer::light::Light)| {
-        let seen = light.illuminate(bounds.center().as_dvec3());
-        let far = seen.distance.is_infinite();
-        let at = bounds.center() + if far { reach } else { seen.distance } * seen.to_light;
-        Lamp { at: at.into(), far, name: compiled.light(i) }
-    };
-    lamps.map(one).collect()
+    let marks = light_marks(&compiled.world).take(MAX_LIGHTS).enumerate();
+    marks.map(|(i, LightMark { at, is_far })| Lamp { at: at.into(), far: is_far, name: compiled.light(i) }).collect()
 }

@@ -11,4 +11,4 @@ mod outlines;
 pub use check::{finding, findings, place};
 pub use compare::comparison;
 pub use explain::{Subject, explanation};
-pub use outlines::{lights, outline, outlines};
+pub use outlines::{LightMark, light_marks, lights, object_outlines, outlines};

@@ -1,7 +1,7 @@
 //! Line drawings of a scene in world space.
 
 use durer_render::world::{Geometry, Object, World};
-use durer_scene::light::{Emitter, Light};
+use durer_scene::light::Emitter;
 use durer_scene::math::{Aabb, Vec3};
 use durer_scene::shape::Shape;
 use serde_json::{Value, json};
@@ -13,26 +13,48 @@ const MAX_TRIANGLES: usize = 600;
 
 /// Returns polylines that outline the objects, in world space.
 pub fn outlines(world: &World) -> Vec<Vec<Vec3>> {
-    let ends = world.bounds().union(Aabb::around([world.camera_frame().eye]));
-    world.objects().iter().take(MAX_OBJECTS).flat_map(|object| outline(object, &ends)).collect()
+    object_outlines(world).flatten().collect()
 }
 
-/// Returns the lights with name and position; for directional lights, a point in the direction they
-/// come from.
-pub fn lights(world: &World) -> Vec<Value> {
-    let bounds = world.bounds().union(Aabb::around([world.camera_frame().eye]));
+/// Returns the polylines of each object in world space, by the object's number; of large scenes, of the first
+/// objects.
+pub fn object_outlines(world: &World) -> impl Iterator<Item = Vec<Vec<Vec3>>> {
+    let ends = with_camera(world);
+    world.objects().iter().take(MAX_OBJECTS).map(move |object| outline(object, &ends))
+}
+
+/// Mark of a light in a drawing of the scene.
+pub struct LightMark {
+    /// Position of the light, or a point beside the scene in the direction that the light comes from. World space.
+    pub at: Vec3,
+    /// True for a light without a position.
+    pub is_far: bool,
+}
+
+/// Returns a mark for each light, by the light's number.
+pub fn light_marks(world: &World) -> impl Iterator<Item = LightMark> {
+    let bounds = with_camera(world);
     let reach = 0.6 * bounds.size().length();
-    let one = |(i, light): (usize, &Light)| {
+    world.lights().iter().map(move |light| {
         let seen = light.illuminate(bounds.center().as_dvec3());
-        let far = seen.distance.is_infinite();
-        let at = bounds.center() + if far { reach } else { seen.distance } * seen.to_light;
-        json!({ "at": at, "name": format!("{} {i}", if far { "from light" } else { "light" }) })
-    };
-    world.lights().iter().enumerate().take(16).map(one).collect()
+        let is_far = seen.distance.is_infinite();
+        LightMark { at: bounds.center() + if is_far { reach } else { seen.distance } * seen.to_light, is_far }
+    })
+}
+
+/// Returns the first lights with name and position; see [`light_marks`].
+pub fn lights(world: &World) -> Vec<Value> {
+    let one = |(i, mark): (usize, LightMark)| json!({ "at": mark.at, "name": format!("{} {i}", if mark.is_far { "from light" } else { "light" }) });
+    light_marks(world).enumerate().take(16).map(one).collect()
+}
+
+/// Bounds of the scene and its camera.
+fn with_camera(world: &World) -> Aabb {
+    world.bounds().union(Aabb::around([world.camera_frame().eye]))
 }
 
 /// Polylines that outline one object in world space; where it has no end, within a box.
-pub fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
+fn outline(object: &Object, ends: &Aabb) -> Vec<Vec<Vec3>> {
     let place = |points: Vec<Vec3>| points.into_iter().map(|p| object.world_point(p)).collect::<Vec<_>>();
     let closed = |[a, b, c]: [Vec3; 3]| vec![a, b, c, a];
     let boxed = || object.bounds().filter(|bounds| !bounds.is_empty()).map_or(Vec::new(), |bounds| boxed(&bounds));
